@@ -8,4 +8,8 @@ namespace sysid {
 /// derivative of |z|^(n - 1) z at z = 0 is 0, which it is for n > 1, and not 0 times infinity.
 NodeId finite_slope(Graph& graph, NodeId root, NodeId leaf);
 
+/// The change of one operation whose operands change by da, db, dc, with slopes as above: linear in these, so with w in the place
+/// of one and 0 in those of the others it is w times the slope by that operand.
+NodeId finite_change(Graph& graph, NodeId id, NodeId da, NodeId db, NodeId dc);
+
 }  // namespace sysid

@@ -46,6 +46,50 @@ Function const log_function{"log", 1, &elementary::log, &elementary::log_lanes, 
 
 namespace {
 
+/// Of one operation, where its operands change by da, db, dc: linear in these.
+NodeId change_of(Graph& graph, NodeId id, NodeId da, NodeId db, NodeId dc, bool held) {
+  Node const node = graph[id];  // a copy: the graph grows below
+  NodeId const zero = graph.constant(0);
+  switch (node.operation) {
+    case Operation::negate:
+      return graph.negate(da);
+    case Operation::add:
+      return graph.add(da, db);
+    case Operation::subtract:
+      return graph.subtract(da, db);
+    case Operation::multiply:
+      return graph.add(graph.multiply(da, node.b), graph.multiply(node.a, db));
+    case Operation::divide:
+      return graph.divide(graph.subtract(da, graph.multiply(id, db)), node.b);
+    case Operation::power:
+      return power_derivative(graph, id, node, da, db, held);
+    case Operation::fused:
+      return graph.add(graph.add(graph.multiply(da, node.b), graph.multiply(node.a, db)), dc);
+    case Operation::square_root:
+      return root_derivative(graph, id, da, held);
+    case Operation::absolute:
+      return graph.multiply(graph.unary(Operation::sign, node.a), da);
+    case Operation::minimum:
+      return graph.select(graph.binary(Operation::less, node.a, node.b), da, db);
+    case Operation::maximum:
+      return graph.select(graph.binary(Operation::less, node.b, node.a), da, db);
+    case Operation::select:
+      return graph.select(node.a, db, dc);
+    case Operation::call: {
+      if (node.function->derivative == nullptr)
+        throw InternalError("the derivative of `" + std::string(node.function->name) + "` is not known");
+      NodeId const second = node.function->arity == 2 ? node.b : node.a;
+      NodeId sum = zero;
+      if (!graph.is_constant(da, 0)) sum = graph.multiply(node.function->derivative(graph, id, node.a, second, 0), da);
+      if (!graph.is_constant(db, 0))
+        sum = graph.add(sum, graph.multiply(node.function->derivative(graph, id, node.a, second, 1), db));
+      return sum;
+    }
+    default:
+      return zero;  // piecewise constant: sign, floor, conditions
+  }
+}
+
 NodeId differentiate(Graph& graph, NodeId root, NodeId leaf, bool held) {
   std::vector<NodeId> const order = graph.reachable({&root, 1});
   NodeId const zero = graph.constant(0), one = graph.constant(1);
@@ -55,64 +99,13 @@ NodeId differentiate(Graph& graph, NodeId root, NodeId leaf, bool held) {
       derivative[id] = one;
       continue;
     }
-    Node const node = graph[id];  // a copy: the graph grows below
+    Node const& node = graph[id];
     int const operands = operand_count(node);
     NodeId const da = operands > 0 ? derivative[node.a] : zero;
     NodeId const db = operands > 1 ? derivative[node.b] : zero;
     NodeId const dc = operands > 2 ? derivative[node.c] : zero;
     if (graph.is_constant(da, 0) && graph.is_constant(db, 0) && graph.is_constant(dc, 0)) continue;
-    NodeId& result = derivative[id];
-    switch (node.operation) {
-      case Operation::negate:
-        result = graph.negate(da);
-        break;
-      case Operation::add:
-        result = graph.add(da, db);
-        break;
-      case Operation::subtract:
-        result = graph.subtract(da, db);
-        break;
-      case Operation::multiply:
-        result = graph.add(graph.multiply(da, node.b), graph.multiply(node.a, db));
-        break;
-      case Operation::divide:
-        result = graph.divide(graph.subtract(da, graph.multiply(id, db)), node.b);
-        break;
-      case Operation::power:
-        result = power_derivative(graph, id, node, da, db, held);
-        break;
-      case Operation::fused:
-        result = graph.add(graph.add(graph.multiply(da, node.b), graph.multiply(node.a, db)), dc);
-        break;
-      case Operation::square_root:
-        result = root_derivative(graph, id, da, held);
-        break;
-      case Operation::absolute:
-        result = graph.multiply(graph.unary(Operation::sign, node.a), da);
-        break;
-      case Operation::minimum:
-        result = graph.select(graph.binary(Operation::less, node.a, node.b), da, db);
-        break;
-      case Operation::maximum:
-        result = graph.select(graph.binary(Operation::less, node.b, node.a), da, db);
-        break;
-      case Operation::select:
-        result = graph.select(node.a, db, dc);
-        break;
-      case Operation::call: {
-        if (node.function->derivative == nullptr)
-          throw InternalError("the derivative of `" + std::string(node.function->name) + "` is not known");
-        NodeId const second = node.function->arity == 2 ? node.b : node.a;
-        NodeId sum = zero;
-        if (!graph.is_constant(da, 0)) sum = graph.multiply(node.function->derivative(graph, id, node.a, second, 0), da);
-        if (!graph.is_constant(db, 0))
-          sum = graph.add(sum, graph.multiply(node.function->derivative(graph, id, node.a, second, 1), db));
-        result = sum;
-        break;
-      }
-      default:
-        break;  // piecewise constant: sign, floor, conditions
-    }
+    derivative[id] = change_of(graph, id, da, db, dc, held);
   }
   return derivative[root];
 }
@@ -122,6 +115,8 @@ NodeId differentiate(Graph& graph, NodeId root, NodeId leaf, bool held) {
 NodeId Graph::differentiate(NodeId root, NodeId leaf) { return sysid::differentiate(*this, root, leaf, false); }
 
 NodeId finite_slope(Graph& graph, NodeId root, NodeId leaf) { return differentiate(graph, root, leaf, true); }
+
+NodeId finite_change(Graph& graph, NodeId id, NodeId da, NodeId db, NodeId dc) { return change_of(graph, id, da, db, dc, true); }
 
 NodeId Graph::substitute(NodeId root, std::function<std::optional<NodeId>(NodeId)> const& replacement) {
   return substitute({&root, 1}, replacement).front();

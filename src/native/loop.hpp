@@ -21,6 +21,9 @@ enum class LoopKind {
   observe,  // at each sample: the sections whose channel is summed there; then the steps to the next sample
   record,   // at each sample: one section, whose results are written out; then the steps to the next sample
   attempt,  // the step section again and again, until no lane's position is below 1
+  tape,     // as `observe`, and the states at each sample and before each step are written out
+  reverse,  // the samples backwards: the states are read from where `tape` wrote them; back over the steps from a sample, then the
+            // sections whose channel is summed there
 };
 
 /// One loop in full. Registers below `kept` hold their values from sample to sample; what is written above them is temporary.
@@ -39,6 +42,7 @@ struct Loop {
   /// the function has no such form; then it is called through memory.
   void const* (*vector_form)(void const* lanes, bool wide) = nullptr;
   int first_record = 0, records = 0;  // registers that a record writes out
+  int first_state = 0, states = 0;    // registers of the tape
   int position = 0;                   // of an attempt: the register of the lanes' places in the interval
 };
 
@@ -50,6 +54,7 @@ struct Call {
   double const* carry = nullptr;                // a row for each sample
   double const* steps = nullptr;                // `substeps` rows for each sample; of an attempt: the row
   double* out = nullptr;                        // records x lanes for each sample from `from` on
+  double* tape = nullptr;                       // states x lanes for each step of each sample from `from` on
   std::int64_t from = 0, to = 0;                // samples [from, to)
   std::int64_t look_from = 0;                   // the first that is observed or recorded
   std::int64_t step_to = 0;                     // the first that is not stepped from

@@ -59,11 +59,20 @@ class Dump {
       section(fmt::format("observe {}: each scored sample", at(names_.channels, static_cast<int>(c))), program_.observe[c],
               "sample");
     section("record: each sample", program_.record, "sample");
+    if (!program_.source.adjoint_by.empty()) reverse(program_.reverse);
     section("epilogue: once per solve", program_.epilogue, "");
     return std::move(text_);
   }
 
  private:
+  void reverse(ReverseSections const& sections) {
+    section("back over a step", sections.step, "step");
+    for (std::size_t c = 0; c < sections.observe.size(); ++c)
+      section(fmt::format("back over {}: each scored sample", at(names_.channels, static_cast<int>(c))), sections.observe[c],
+              "sample");
+    section("back over the start", sections.start, "");
+  }
+
   void section(std::string const& title, Section const& section, std::string const& per) {
     text_ += "\n" + title + "\n";
     Kernel const& table = section.uniforms.kernel;
@@ -99,6 +108,8 @@ class Dump {
     if (r >= layout.first_temporary()) return fmt::format("%{}", r - layout.first_temporary());
     if (r >= layout.first_sum()) return fmt::format("sum{}", r - layout.first_sum());
     if (r >= layout.first_record()) return fmt::format("record{}", r - layout.first_record());
+    if (r >= layout.first_slope()) return fmt::format("slope{}", r - layout.first_slope());
+    if (r >= layout.first_adjoint()) return fmt::format("adjoint({})", at(names_.states, r - layout.first_adjoint()));
     if (r >= layout.first_accumulator()) return fmt::format("total{}", r - layout.first_accumulator());
     if (r >= layout.first_control()) return control_name(r - layout.first_control());
     if (r >= layout.first_state()) return at(names_.states, r - layout.first_state());

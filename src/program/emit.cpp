@@ -8,6 +8,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/text/diagnostic.hpp"
+#include "program/eager_order.hpp"
 
 namespace sysid {
 namespace {
@@ -75,14 +76,15 @@ struct Lowered {
 
 class Emission {
  public:
-  Emission(Graph const& graph, std::span<Goal const> goals, Locate const& locate, std::uint32_t first_temporary)
-      : graph_(graph), goals_(goals), locate_(locate), first_temporary_(first_temporary) {}
+  Emission(Graph const& graph, std::span<Goal const> goals, Locate const& locate, std::uint32_t first_temporary, Order order)
+      : graph_(graph), goals_(goals), locate_(locate), first_temporary_(first_temporary), wanted_(order) {}
 
   Emitted emit() {
     for (Goal const& goal : goals_) lower_below(goal.node);
     for (Goal const& goal : goals_)
       if (auto const found = lowered_.find(goal.node); found != lowered_.end()) ++found->second.uses;
     for (Goal const& goal : goals_) schedule(goal.node);
+    if (wanted_ == Order::eager) reorder();
     find_last_uses();
     assign_targets();
     for (std::size_t i = 0; i < order_.size(); ++i) write(static_cast<int>(i));
@@ -184,6 +186,27 @@ class Emission {
         enter(next);
       }
     }
+  }
+
+  void reorder() {
+    std::vector<std::vector<std::size_t>> operands(order_.size());
+    std::vector<bool> kept(order_.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      for (NodeId const operand : lowered_.at(order_[i]).operands)
+        if (auto const found = lowered_.find(operand); found != lowered_.end())
+          operands[i].push_back(static_cast<std::size_t>(found->second.position));
+      std::sort(operands[i].begin(), operands[i].end());
+      operands[i].erase(std::unique(operands[i].begin(), operands[i].end()), operands[i].end());
+    }
+    for (Goal const& goal : goals_)
+      if (auto const found = lowered_.find(goal.node); found != lowered_.end())
+        kept[static_cast<std::size_t>(found->second.position)] = true;
+    std::vector<NodeId> order;
+    for (std::size_t const i : eager_order(operands, kept)) {
+      lowered_.at(order_[i]).position = static_cast<int>(order.size());
+      order.push_back(order_[i]);
+    }
+    order_ = std::move(order);
   }
 
   /// Operands that no executor reads as a uniform are moved to a register first.
@@ -342,6 +365,7 @@ class Emission {
   std::span<Goal const> goals_;
   Locate const& locate_;
   std::uint32_t first_temporary_;
+  Order wanted_;
   std::unordered_map<NodeId, std::optional<Operand>> located_;
   std::unordered_map<NodeId, Lowered> lowered_;
   std::vector<NodeId> order_;
@@ -352,8 +376,8 @@ class Emission {
 
 }  // namespace
 
-Emitted emit(Graph const& graph, std::span<Goal const> goals, Locate const& locate, std::uint32_t first_temporary) {
-  return Emission(graph, goals, locate, first_temporary).emit();
+Emitted emit(Graph const& graph, std::span<Goal const> goals, Locate const& locate, std::uint32_t first_temporary, Order order) {
+  return Emission(graph, goals, locate, first_temporary, order).emit();
 }
 
 }  // namespace sysid

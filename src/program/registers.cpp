@@ -23,6 +23,10 @@ int first_of(std::uint32_t bank, SimulationProgram const& program) {
       return layout.first_control();
     case accumulator_bank:
       return layout.first_accumulator();
+    case adjoint_bank:
+      return layout.first_adjoint();
+    case slope_bank:
+      return layout.first_slope();
     case record_bank:
       return layout.first_record();
     case sum_bank:
@@ -52,9 +56,10 @@ void touch(Code const& code, std::set<std::uint32_t>& registers) {
 
 void number_registers(SimulationProgram& program, int widest_row) {
   program.uniforms = static_cast<int>(program.constants.size()) + widest_row;
-  std::vector<Section*> sections{&program.prologue, &program.start,  &program.carry,
-                                 &program.step,     &program.record, &program.epilogue};
-  for (Section& observe : program.observe) sections.push_back(&observe);
+  std::vector<Section*> sections{&program.prologue, &program.start,    &program.carry,        &program.step,
+                                 &program.record,   &program.epilogue, &program.reverse.step, &program.reverse.start};
+  for (auto* const observations : {&program.observe, &program.reverse.observe})
+    for (Section& observe : *observations) sections.push_back(&observe);
   for (Section* section : sections) {
     for (Instruction& instruction : section->code) {
       if (instruction.store) instruction.target = numbered(instruction.target, program);
@@ -66,7 +71,9 @@ void number_registers(SimulationProgram& program, int widest_row) {
   }
   std::set<std::uint32_t> hot;
   touch(program.step.code, hot);
-  for (Section const& observe : program.observe) touch(observe.code, hot);
+  touch(program.reverse.step.code, hot);
+  for (auto const* const observations : {&program.observe, &program.reverse.observe})
+    for (Section const& observe : *observations) touch(observe.code, hot);
   program.hot_registers = static_cast<int>(hot.size());
 }
 

@@ -18,6 +18,8 @@ enum Bank : std::uint32_t {
   constant_bank = 7u << 24,
   row_bank = 8u << 24,
   control_bank = 9u << 24,
+  adjoint_bank = 10u << 24,
+  slope_bank = 11u << 24,
 };
 
 /// Gives the instructions of all sections their places in the register file and the uniforms, whose row has `widest_row` values at

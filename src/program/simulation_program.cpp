@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/text/diagnostic.hpp"
+#include "program/adjoint.hpp"
 #include "program/algebra.hpp"
 #include "program/embedded.hpp"
 #include "program/emit.hpp"
@@ -42,6 +43,7 @@ class Compilation {
       expand_step(solver);
       graph_ = program_.graph;
       compile_step();
+      if (!source.adjoint_by.empty()) find_adjoint();
     } else if (solver != nullptr) {
       if (!source.constraints.empty() && !solver->implicit)
         throw InternalError("a solver for explicit equations for a model with algebraic states");
@@ -55,6 +57,7 @@ class Compilation {
     for (std::size_t c = 0; c < source.channels.size(); ++c) compile_observation(static_cast<int>(c));
     compile_records();
     compile_epilogue();
+    if (!program_.source.adjoint_by.empty()) compile_reverse();
     compile_start();
     compile_prologue();
     widest_row_ = std::max(widest_row_, static_cast<int>(source.channels.size()) + data_sums_);
@@ -97,6 +100,41 @@ class Compilation {
     program_.step = section(goals);
   }
 
+  void find_adjoint() {
+    if (!has_adjoint(program_.source)) throw InternalError("an adjoint of a program that has none");
+    adjoint_ = adjoint_of(program_.source, graph_, program_.next);
+    program_.registers.adjoints = static_cast<int>(adjoint_.step.size());
+    program_.registers.slopes = static_cast<int>(adjoint_.slopes.size());
+  }
+
+  void compile_reverse() {
+    ReverseSections& reverse = program_.reverse;
+    std::vector<NodeId> roots = adjoint_.slopes;
+    roots.insert(roots.end(), adjoint_.step.begin(), adjoint_.step.end());
+    Algebra algebra(graph_, roots);
+    std::vector<Goal> goals;
+    add_goals(adjoint_.slopes, slope_leaf, slope_bank, algebra, goals);
+    add_goals(adjoint_.step, adjoint_leaf, adjoint_bank, algebra, goals);
+    reverse.step = section(goals, Order::eager);
+    for (std::vector<NodeId> const& observe : adjoint_.observe) {
+      Algebra of_channel(graph_, observe);
+      goals.clear();
+      add_goals(observe, adjoint_leaf, adjoint_bank, of_channel, goals);
+      reverse.observe.push_back(section(goals));
+    }
+    Algebra of_start(graph_, adjoint_.start);
+    goals.clear();
+    add_goals(adjoint_.start, slope_leaf, slope_bank, of_start, goals);
+    reverse.start = section(goals);
+  }
+
+  /// Of a bank's registers, those that change: not the leaf that stands for the register itself.
+  void add_goals(std::vector<NodeId> const& values, int leaf, std::uint32_t bank, Algebra& algebra, std::vector<Goal>& goals) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (values[i] != graph_.leaf(LeafKind::unknown, leaf + static_cast<int>(i)))
+        goals.push_back({algebra.rewrite(values[i]), bank + static_cast<std::uint32_t>(i)});
+  }
+
   bool is_state(NodeId id, std::size_t state) const {
     Node const& node = graph_[id];
     return node.operation == Operation::leaf && node.leaf_kind == LeafKind::state && node.index == static_cast<int>(state);
@@ -114,7 +152,16 @@ class Compilation {
 
   /// Splits the channel's sums and emits what is left to do at each sample.
   void compile_observation(int channel) {
-    std::vector<NodeId> const& sums = program_.source.channels[static_cast<std::size_t>(channel)].sums;
+    std::vector<NodeId> sums = program_.source.channels[static_cast<std::size_t>(channel)].sums;
+    if (!adjoint_.direct.empty()) {
+      std::vector<NodeId> const& direct = adjoint_.direct[static_cast<std::size_t>(channel)];
+      for (std::size_t k = 0; k < direct.size(); ++k) {
+        if (graph_.is_constant(direct[k], 0)) continue;
+        program_.reverse.direct.push_back({static_cast<int>(sums_.size() + sums.size()), static_cast<int>(k)});
+        sums.push_back(direct[k]);
+      }
+    }
+    program_.first_sums.push_back(static_cast<int>(sums_.size()));
     Algebra algebra(graph_, sums);
     std::vector<Goal> goals;
     std::vector<NodeId> data_terms;
@@ -204,7 +251,7 @@ class Compilation {
 
   // --- one section ---
 
-  Section section(std::vector<Goal> const& goals) {
+  Section section(std::vector<Goal> const& goals, Order order = Order::goal_by_goal) {
     BindingTimes binding(graph_);
     std::vector<NodeId> row;
     Locate const locate = [&](NodeId id) -> std::optional<Operand> {
@@ -215,6 +262,10 @@ class Compilation {
         if (node.leaf_kind == LeafKind::parameter) return Operand{OperandPlace::lane, parameter_bank + index};
         if (node.leaf_kind == LeafKind::state) return Operand{OperandPlace::lane, state_bank + index};
         if (node.leaf_kind == LeafKind::control) return Operand{OperandPlace::lane, control_bank + index};
+        if (node.leaf_kind == LeafKind::unknown && node.index >= slope_leaf)
+          return Operand{OperandPlace::lane, slope_bank + index - slope_leaf};
+        if (node.leaf_kind == LeafKind::unknown && node.index >= adjoint_leaf)
+          return Operand{OperandPlace::lane, adjoint_bank + index - adjoint_leaf};
         if (node.leaf_kind == LeafKind::unknown && node.index >= epilogue_uniform_leaf)
           return Operand{OperandPlace::uniform, row_bank + index - epilogue_uniform_leaf};
         if (node.leaf_kind == LeafKind::unknown && node.index >= accumulator_leaf)
@@ -236,7 +287,7 @@ class Compilation {
       }
       return std::nullopt;
     };
-    Emitted emitted = emit(graph_, goals, locate, temporary_bank);
+    Emitted emitted = emit(graph_, goals, locate, temporary_bank, order);
     program_.registers.temporaries = std::max(program_.registers.temporaries, emitted.temporaries);
     Section result;
     result.code = std::move(emitted.code);
@@ -273,6 +324,7 @@ class Compilation {
   bool hoisting_ = true;
   std::map<std::uint64_t, std::uint32_t> constants_;
   std::vector<std::vector<SumTerm>> sums_;  // of all channels
+  AdjointExpressions adjoint_;
   int data_sums_ = 0;
   int widest_row_ = 0;
 };
@@ -281,11 +333,7 @@ class Compilation {
 
 int SimulationProgram::sum_count() const { return registers.sums; }
 
-int SimulationProgram::sum_row(int channel, int k) const {
-  int row = k;
-  for (int c = 0; c < channel; ++c) row += static_cast<int>(source.channels[static_cast<std::size_t>(c)].sums.size());
-  return row;
-}
+int SimulationProgram::sum_row(int channel, int k) const { return first_sums[static_cast<std::size_t>(channel)] + k; }
 
 SimulationProgram compile(SimulationSource source) { return Compilation(std::move(source)).compile(); }
 

@@ -39,6 +39,8 @@ struct SimulationSource {
   std::vector<ChannelSource> channels;
   std::vector<NodeId> records;     // written out at every sample: expressions of the same leaves (measured as well)
   std::string integrator = "rk4";  // a solver's name
+  /// Parameters by which an adjoint gives the derivative of all sums together (program/adjoint.hpp); empty: there is none.
+  std::vector<int> adjoint_by;
 
   int states() const { return static_cast<int>(derivative.size() + constraints.size()); }
 };
@@ -69,17 +71,32 @@ struct Section {
 
 /// Registers of the file, in this order; uniforms are constants, then one row of the running section's table.
 struct RegisterLayout {
-  int parameters = 0, hoisted = 0, states = 0, control = 0, accumulators = 0, records = 0, sums = 0, temporaries = 0;
+  int parameters = 0, hoisted = 0, states = 0, control = 0, accumulators = 0, adjoints = 0, slopes = 0, records = 0, sums = 0,
+      temporaries = 0;
   int first_hoisted() const { return parameters; }
   int first_state() const { return first_hoisted() + hoisted; }
   int first_control() const { return first_state() + states; }
   int first_accumulator() const { return first_control() + control; }
-  int first_record() const { return first_accumulator() + accumulators; }
+  int first_adjoint() const { return first_accumulator() + accumulators; }
+  int first_slope() const { return first_adjoint() + adjoints; }
+  int first_record() const { return first_slope() + slopes; }
   int first_sum() const { return first_record() + records; }
   int first_temporary() const { return first_sum() + sums; }
   int total() const { return first_temporary() + temporaries; }
   /// What a fixed-step solver carries from sample to sample: the rows before this one.
   int carried() const { return first_record(); }
+};
+
+/// What runs backwards over a simulation, reading its states from a tape. In registers of their own: the derivative of what is
+/// summed from here to the end by each state, and by each parameter of `SimulationSource::adjoint_by`.
+struct ReverseSections {
+  Section step;                  // states before a step, derivatives after it -> derivatives before it
+  std::vector<Section> observe;  // per channel: what a summed sample adds to the derivatives by the states
+  Section start;                 // what the initial states add to the derivatives by the parameters
+  struct Direct {
+    int row, slope;
+  };
+  std::vector<Direct> direct;  // rows of the sums that are derivatives by parameters where states do not move: to be added
 };
 
 struct SimulationProgram {
@@ -95,10 +112,12 @@ struct SimulationProgram {
   Section step;      // one integrator step, one attempt at one, or the map from sample to sample; empty for SUNDIALS' solvers
   EquationKernels equations;     // for those, and to look into failed solves of adaptive methods
   std::vector<Section> observe;  // per channel: one scored sample into the accumulators
+  ReverseSections reverse;       // of an adjoint
   Section record;                // one sample into the record registers
   Section epilogue;              // accumulators -> sums; its row: the number of summed samples of each channel, then all data sums
   std::vector<UniformTable> data_sums;  // per channel: terms of data alone, summed once per data set over the summed samples
   std::vector<std::optional<RunningSum>> running_sums;  // per row of the sums
+  std::vector<int> first_sums;                          // per channel: the row of its first
 
   std::shared_ptr<native::MachineCode> machine_code = std::make_shared<native::MachineCode>();  // of its loops, as they are wanted
 

@@ -43,6 +43,16 @@ class Tangents {
     return std::move(source_);
   }
 
+  SimulationSource with_derivatives() {
+    find_states();
+    number_states();
+    add_states();
+    for (ChannelSource& channel : source_.channels) add_derivatives(channel.sums);
+    source_.records.clear();
+    place_states();
+    return std::move(source_);
+  }
+
  private:
   struct Slope {
     int state;
@@ -215,8 +225,23 @@ SimulationSource with_squares(SimulationSource source, std::span<int const> para
   return Tangents(std::move(source), parameters).squared();
 }
 
+SimulationSource with_gradient(SimulationSource source, std::span<int const> parameters) {
+  if (!has_tangents(source)) throw InternalError("derivatives of a program that has none");
+  return Tangents(std::move(source), parameters).with_derivatives();
+}
+
+namespace {
+
+constexpr int most_states = 64, most_sums = 160;  // larger programs take longer to compile than a search saves
+
+}  // namespace
+
+bool gradient_is_cheap(SimulationSource const& source, int parameters) {
+  int const sums = static_cast<int>(source.channels.size()) * (parameters + 1);
+  return source.states() * (parameters + 1) <= most_states && sums <= most_sums;
+}
+
 bool squares_are_cheap(SimulationSource const& source, int parameters) {
-  constexpr int most_states = 64, most_sums = 160;  // larger programs take longer to compile than a search saves
   int const sums = static_cast<int>(source.channels.size()) * (parameters * (parameters + 1) / 2 + 2 * parameters + 1);
   return source.states() * (parameters + 1) <= most_states && sums <= most_sums;
 }

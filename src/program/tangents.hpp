@@ -25,7 +25,12 @@ bool has_tangents(SimulationSource const& source);
 /// so that no residual leaves the lanes. No records.
 SimulationSource with_squares(SimulationSource source, std::span<int const> parameters);
 
-/// Whether the states and the sums of `with_squares` by K parameters are so few that it costs less than 2 K + 1 values.
+/// The source with the derivatives of its sums alone: behind the n sums of each channel come those by each parameter in turn.
+SimulationSource with_gradient(SimulationSource source, std::span<int const> parameters);
+
+/// Whether the states and the sums of `with_squares`, or of `with_gradient`, by K parameters are so few that it costs less than 2 K
+/// + 1 values.
 bool squares_are_cheap(SimulationSource const& source, int parameters);
+bool gradient_is_cheap(SimulationSource const& source, int parameters);
 
 }  // namespace sysid

@@ -27,10 +27,11 @@ Block::Block(SimulationProgram const& program, Schedule const& schedule, Executo
       stepper_(make_stepper(file_)),
       death_(static_cast<std::size_t>(lanes), -1) {
   // Where steps are not fixed, records are interpreted: nearly all the time goes into the steps.
-  if (loop == native::LoopKind::observe)
+  if (loop == native::LoopKind::observe || loop == native::LoopKind::tape)
     observe_loop_ = machine_loop(program, schedule.solver(), executor, loop);
   else if (fixed_step())
     record_loop_ = machine_loop(program, schedule.solver(), executor, loop);
+  if (loop == native::LoopKind::tape) reverse_loop_ = machine_loop(program, schedule.solver(), executor, native::LoopKind::reverse);
   std::copy(program.constants.begin(), program.constants.end(), file_.file);
 }
 
@@ -97,8 +98,9 @@ void Block::call(native::Function function, native::Call call) const {
   std::vector<std::uint8_t const*> more_summed(channels > most ? channels : 0);
   double const** const rows = channels > most ? more_rows.data() : rows_here;
   std::uint8_t const** const summed = channels > most ? more_summed.data() : summed_here;
+  bool const backwards = function == reverse_loop_;
   for (std::size_t c = 0; c < channels; ++c) {
-    rows[c] = schedule_.observe_row(static_cast<int>(c), 0);
+    rows[c] = backwards ? schedule_.reverse_observe_row(static_cast<int>(c), 0) : schedule_.observe_row(static_cast<int>(c), 0);
     summed[c] = schedule_.summed(static_cast<int>(c));
   }
   double const* const record = schedule_.record_row(0);
@@ -107,7 +109,7 @@ void Block::call(native::Function function, native::Call call) const {
   call.rows = records ? &record : rows;
   call.summed = summed;
   call.carry = schedule_.carry_row(0);
-  call.steps = schedule_.step_row(0, 0);
+  call.steps = backwards ? schedule_.reverse_step_row(0, 0) : schedule_.step_row(0, 0);
   call.substeps = schedule_.solver().substeps;
   function(&call);
 }

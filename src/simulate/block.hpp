@@ -37,6 +37,24 @@ class Block {
   /// Computes the sums from the accumulators; read them with `sums`.
   void finish();
 
+  // With a program that has an adjoint, and the loop `tape`:
+  /// As `advance`, and the states before each step go to `tape`: substeps x states x executor.width for each sample, and one more
+  /// of the last. look: whether samples are added to the accumulators; if not, they have been.
+  void advance_to_tape(int from, int to, int step_to, bool look, double* tape);
+  /// Back over samples [from, to) of such a tape, from the last to the first: over the steps from each that is before `step_to`,
+  /// then over what is summed of it.
+  void reverse(int from, int to, int step_to, double const* tape);
+  /// Derivatives of the sums by the states and by the parameters of `adjoint_by` become 0; at the end they are completed by what
+  /// the initial states depend on.
+  void start_reverse();
+  void finish_reverse();
+  ConstLanes slopes() const { return rows(program_.registers.first_slope(), program_.registers.slopes); }
+  /// Doubles that a sample takes on the tape.
+  std::size_t tape_row() const;
+  /// Goes on from these states [states x executor.width], which were those of a sample before.
+  void put_states(double const* states);
+  void copy_states(double* to) const;
+
   /// Whether many samples are one call of machine code.
   bool runs_loops() const { return (observe_loop_ != nullptr || record_loop_ != nullptr) && fixed_step(); }
 
@@ -66,6 +84,7 @@ class Block {
   bool fixed_step() const { return schedule_.solver().fixed_step(); }
   bool all_live_and_finite() const;
   void observe(int sample);
+  void reverse_interpreted(int sample, bool step, double const* tape);
   void record_interpreted(int from, int to, Lanes out);
   void call(native::Function function, native::Call call) const;
   SimulationProgram const& program_;
@@ -76,8 +95,8 @@ class Block {
   LaneFile file_;
   std::unique_ptr<Stepper> stepper_;
   std::vector<int> death_;
-  native::Function observe_loop_ = nullptr, record_loop_ = nullptr;  // null: interpreted
-  LaneArray recorded_;                                               // by machine code, for all lanes of the executor
+  native::Function observe_loop_ = nullptr, record_loop_ = nullptr, reverse_loop_ = nullptr;  // null: interpreted
+  LaneArray recorded_;  // by machine code, for all lanes of the executor
 };
 
 }  // namespace sysid

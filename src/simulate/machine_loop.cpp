@@ -15,12 +15,18 @@ native::SectionCode code_of(Section const& section) { return {section.code, sect
 /// latencies that they hide.
 constexpr double largest_body = 500;
 
-/// Of the loop over samples, for one vector.
-double instructions(SimulationProgram const& program) {
-  std::size_t sum = program.step.code.size() + program.carry.code.size();
-  for (Section const& observe : program.observe) sum += observe.code.size();
+/// Of a loop over samples, for one vector.
+double body(std::size_t steps, std::vector<Section> const& observations) {
+  std::size_t sum = steps;
+  for (Section const& observe : observations) sum += observe.code.size();
   return static_cast<double>(sum);
 }
+
+double forwards(SimulationProgram const& program) {
+  return body(program.step.code.size() + program.carry.code.size(), program.observe);
+}
+
+double backwards(SimulationProgram const& program) { return body(program.reverse.step.code.size(), program.reverse.observe); }
 
 int vector_lanes(Executor executor) { return executor.width == 1 ? 1 : executor.set == InstructionSet::avx512 ? 8 : 4; }
 int vectors(Executor executor) { return executor.width / vector_lanes(executor); }
@@ -36,7 +42,14 @@ native::Loop write_loop(SimulationProgram const& program, SolverSettings const& 
   loop.one_step = solver.substeps == 1;
   loop.constants = program.constants;
   loop.kept = program.registers.carried();
-  if (kind == native::LoopKind::observe)
+  loop.first_state = program.registers.first_state();
+  loop.states = program.registers.states;
+  if (kind == native::LoopKind::reverse) {
+    for (Section const& observe : program.reverse.observe) loop.samples.push_back(code_of(observe));
+    loop.step = code_of(program.reverse.step);
+    return loop;
+  }
+  if (kind == native::LoopKind::observe || kind == native::LoopKind::tape)
     for (Section const& observe : program.observe) loop.samples.push_back(code_of(observe));
   if (kind == native::LoopKind::record) loop.samples.push_back(code_of(program.record));
   if (solver.fixed_step() && kind != native::LoopKind::attempt) loop.carry = code_of(program.carry);
@@ -61,13 +74,14 @@ native::Function machine_loop(SimulationProgram const& program, SolverSettings c
 }
 
 double compilation_time(SimulationProgram const& program, Executor executor) {
-  return 75e-6 * instructions(program) * vectors(executor);
+  return 75e-6 * (forwards(program) + backwards(program)) * vectors(executor);
 }
 
 int most_native_lanes(SimulationProgram const& program) {
   int most = 1;
+  double const instructions = std::max(forwards(program), backwards(program));
   for (Executor const& each : native_executors(instruction_set()))
-    if (vectors(each) == 1 || instructions(program) * vectors(each) <= largest_body) most = std::max(most, each.width);
+    if (vectors(each) == 1 || instructions * vectors(each) <= largest_body) most = std::max(most, each.width);
   return most;
 }
 

@@ -15,7 +15,7 @@ native::LoopName machine_loop_name(SolverSettings const& solver, Executor execut
 native::Function machine_loop(SimulationProgram const& program, SolverSettings const& solver, Executor executor,
                               native::LoopKind kind);
 
-/// Seconds that compiling that loop takes, roughly, once the compiler has been loaded.
+/// Seconds that compiling that loop takes, with an adjoint both loops, roughly, once the compiler has been loaded.
 double compilation_time(SimulationProgram const& program, Executor executor);
 /// The widest block that suits the program: vectors side by side hide latencies, unless they no longer fit the processor.
 int most_native_lanes(SimulationProgram const& program);

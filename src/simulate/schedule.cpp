@@ -42,6 +42,12 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
   records_ = tabulate(program.record.uniforms, samples(), false);
   for (Section const& observe : program.observe) observe_.push_back(tabulate(observe.uniforms, samples(), false));
 
+  if (!program.source.adjoint_by.empty()) {
+    reverse_steps_ = tabulate(program.reverse.step.uniforms, (samples() - 1) * solver.substeps, true);
+    for (Section const& observe : program.reverse.observe) reverse_observe_.push_back(tabulate(observe.uniforms, samples(), false));
+    reverse_start_ = tabulate(program.reverse.start.uniforms, 1, false);
+  }
+
   for (int const count : counts_) epilogue_.push_back(count);
   for (std::size_t c = 0; c < channels; ++c) {
     UniformRows const terms = tabulate(program.data_sums[c], samples(), false);

@@ -46,6 +46,12 @@ class Schedule {
   double const* carry_row(int sample) const { return carry_.row(sample); }
   double const* observe_row(int channel, int sample) const { return observe_[static_cast<std::size_t>(channel)].row(sample); }
   double const* record_row(int sample) const { return records_.row(sample); }
+  // The same of an adjoint's sections.
+  double const* reverse_step_row(int sample, int substep) const { return reverse_steps_.row(sample * solver_.substeps + substep); }
+  double const* reverse_observe_row(int channel, int sample) const {
+    return reverse_observe_[static_cast<std::size_t>(channel)].row(sample);
+  }
+  double const* reverse_start_row() const { return reverse_start_.values.data(); }
   std::vector<double> const& epilogue_row() const { return epilogue_; }
 
   /// A leaf within a step: at `stage` of step `substep` of the interval after `sample`.
@@ -63,8 +69,8 @@ class Schedule {
   std::vector<std::vector<std::uint8_t>> summed_;  // [channels][samples]
   std::vector<int> counts_;
   int last_summed_ = 0;
-  UniformRows start_, carry_, steps_, records_;
-  std::vector<UniformRows> observe_;
+  UniformRows start_, carry_, steps_, records_, reverse_steps_, reverse_start_;
+  std::vector<UniformRows> observe_, reverse_observe_;
   std::vector<double> epilogue_;
 };
 

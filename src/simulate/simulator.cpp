@@ -10,25 +10,12 @@
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 #include "simulate/block.hpp"
+#include "simulate/looks.hpp"
 #include "simulate/machine_loop.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
 namespace {
-
-/// Dead lanes are looked for after every so many samples.
-constexpr int burial_interval = 64;
-
-/// Steps of machine code that take some milliseconds.
-constexpr int steps_between_looks = 4096;
-
-/// Where a block that is at sample `from` is looked at next: machine code runs on to where dead lanes are looked for, unless it
-/// takes many steps from sample to sample; what is slower can be stopped at every sample.
-int next_look(Block const& block, int substeps, int from, int end) {
-  if (!block.runs_loops()) return from + 1;
-  int const most = std::max(1, steps_between_looks / substeps);
-  return std::min({end, from + most, (from / burial_interval + 1) * burial_interval});
-}
 
 /// Registers of a block beyond this do not stay in a 32 KiB first-level cache beside code and tables.
 constexpr int cache_bytes = 28 * 1024;
@@ -148,17 +135,22 @@ Work Simulator::sums_to(int end, ConstLanes parameters, Lanes out, std::span<Out
       from = to;
     }
     if (end == 0) block.bury(0);
-    block.finish();
-    ConstLanes const sums = block.sums();
-    for (int w = 0; w < lanes; ++w) {
-      Outcome& result = outcome[static_cast<std::size_t>(lane + w)];
-      int const death = block.death()[static_cast<std::size_t>(w)];
-      result = {death < 0, death, block.failure(w)};
-      for (int r = 0; r < sums.rows() && result.ok; ++r)
-        if (!std::isfinite(sums(r, w))) result = {false, std::max(0, end - 1), FailureClass::non_finite};
-      for (int r = 0; r < sums.rows(); ++r) out(r, lane + w) = result.ok ? sums(r, w) : not_a_number;
-    }
+    take_sums(block, end, out.columns(lane, lanes),
+              outcome.subspan(static_cast<std::size_t>(lane), static_cast<std::size_t>(lanes)));
   });
+}
+
+void Simulator::take_sums(Block& block, int end, Lanes out, std::span<Outcome> outcome) {
+  block.finish();
+  ConstLanes const sums = block.sums();
+  for (int w = 0; w < out.width(); ++w) {
+    Outcome& result = outcome[static_cast<std::size_t>(w)];
+    int const death = block.death()[static_cast<std::size_t>(w)];
+    result = {death < 0, death, block.failure(w)};
+    for (int r = 0; r < sums.rows() && result.ok; ++r)
+      if (!std::isfinite(sums(r, w))) result = {false, std::max(0, end - 1), FailureClass::non_finite};
+    for (int r = 0; r < sums.rows(); ++r) out(r, w) = result.ok ? sums(r, w) : not_a_number;
+  }
 }
 
 void Simulator::sums(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {

@@ -28,6 +28,8 @@ struct ExecutionOptions {
   bool (*stopped)() = nullptr;
   /// Interrupted is thrown for what has been given up, so that nothing of it is used.
   bool throws = false;
+  /// Of states that an adjoint goes back over; of longer records it is written again and again, from states kept at checkpoints.
+  std::size_t tape_bytes = std::size_t{32} << 20;
 };
 
 /// How the solve of one lane ended. `sample`: one by which it had failed (looked for every few samples, the same ones for any
@@ -89,6 +91,11 @@ class Simulator {
   /// Of a program whose sums read no state (none is accumulated): without a step. A lane fails by its initial state or a sum.
   Work constant_sums_work(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
 
+  /// With a program that has an adjoint: the sums, and the derivatives of all of them together by the parameters of `adjoint_by` [K
+  /// x W] in `slopes`, to which the rows of ReverseSections::direct have been added. A lane fails as above, or where a derivative
+  /// is not finite.
+  Work gradients_work(ConstLanes parameters, Lanes out, Lanes slopes, std::span<Outcome> outcome) const;
+
   /// Records of samples [first, last): record r of sample i is row (i - first) * records + r of out; a failed lane is NaN in every
   /// row.
   void records(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const;
@@ -109,6 +116,8 @@ class Simulator {
   Executor interpreter(int width, double instructions) const;
   std::optional<Executor> native(int width, double instructions, native::LoopKind loop) const;
   Work sums_to(int end, ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
+  void run_gradient(Block& block, Lanes out, Lanes slopes, std::span<Outcome> outcome) const;
+  static void take_sums(Block& block, int end, Lanes out, std::span<Outcome> outcome);
   static void give_up(int sample, int lane, int lanes, Lanes out, std::span<Outcome> outcome);
   void record_block(Block& block, Redraw const* redraw, int lane, int lanes, int first, int last, Lanes out,
                     std::span<Outcome> outcome) const;

@@ -1,5 +1,6 @@
-// What a value with its gradient, or with the normal equations of its residuals, by tangents costs, in values of the same executor:
-// thread processor time, measured in turns, medians of the ratios of each turn.
+// What a value with its gradient, by tangents or by the adjoint, or with the normal equations of its residuals costs, in values of
+// the same executor: thread processor time, measured in turns, medians of the ratios of each turn. An argument: systems whose names
+// begin so.
 #include <ctime>
 
 #include <algorithm>
@@ -34,42 +35,101 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-struct Sums {
+struct Simulated {
   Simulator simulator;
-  LaneArray out;
+  LaneArray out, slopes;
   std::vector<Outcome> outcome;
 
-  Sums(SimulationSource const& source, Experiment const& experiment, int width, ExecutorKind executor)
-      : Sums(std::make_shared<SimulationProgram const>(compile(source)), experiment, width, executor) {}
-  Sums(std::shared_ptr<SimulationProgram const> const& program, Experiment const& experiment, int width, ExecutorKind executor)
+  Simulated(SimulationSource const& source, Experiment const& experiment, int width, ExecutorKind executor)
+      : Simulated(std::make_shared<SimulationProgram const>(compile(source)), experiment, width, executor) {}
+  Simulated(std::shared_ptr<SimulationProgram const> const& program, Experiment const& experiment, int width, ExecutorKind executor)
       : simulator(program, Schedule(*program, experiment, {.substeps = 1}), {.threads = 1, .executor = executor}),
         out(program->sum_count(), width),
+        slopes(program->registers.slopes, width),
         outcome(static_cast<std::size_t>(width)) {}
-  void operator()(ConstLanes parameters) { simulator.sums(parameters, out, outcome); }
+  void operator()(ConstLanes parameters) {
+    Work const work = slopes.rows() > 0 ? simulator.gradients_work(parameters, out, slopes, outcome)
+                                        : simulator.sums_work(parameters, out, outcome);
+    do_work({&work, 1}, nullptr);
+  }
 };
 
-/// The source with one sum, the squared residual, and its gradient; with the normal equations as well, or without.
-SimulationSource differentiated(SimulationSource source, int parameters, bool squares) {
+enum class Kind { tangents, adjoint, squares };
+constexpr Kind kinds[] = {Kind::tangents, Kind::adjoint, Kind::squares};
+constexpr char const* names[] = {"tangents", "adjoint", "J'r and J'J"};
+
+SimulationSource differentiated(SimulationSource source, int parameters, Kind kind) {
+  std::vector<int> by(static_cast<std::size_t>(parameters));
+  std::iota(by.begin(), by.end(), 0);
+  if (kind == Kind::squares) return with_squares(std::move(source), by);
+  source.records.clear();
+  if (kind == Kind::tangents) return with_gradient(std::move(source), by);
+  source.adjoint_by = by;
+  return source;
+}
+
+/// Of one squared residual.
+SimulationSource of_squares(SimulationSource source) {
   Graph& g = source.graph;
   NodeId const residual = g.subtract(g.leaf(LeafKind::measured, 0), g.leaf(LeafKind::state, 0));
   source.channels.front().sums = {g.power(residual, g.constant(2))};
-  source.records = {squares ? residual : g.constant(0)};
-  std::vector<int> by(static_cast<std::size_t>(parameters));
-  std::iota(by.begin(), by.end(), 0);
-  return with_squares(std::move(source), by);
+  source.records = {residual};
+  return source;
+}
+
+/// The chain of `tests/jobs`: 2 n + 3 parameters m(n), k(n), alpha, beta, precision; measured at every mass.
+SimulationSource measured_chain(int masses) {
+  SimulationSource source;
+  Graph& g = source.graph;
+  auto const p = [&](int i) { return g.leaf(LeafKind::parameter, i); };
+  auto const state = [&](int i, int which) { return i < 0 ? g.constant(0) : g.leaf(LeafKind::state, 2 * i + which); };
+  auto const force = [&](int i) {  // of the spring before mass i
+    if (i >= masses) return g.constant(0);
+    NodeId const stretch = g.subtract(state(i, 0), state(i - 1, 0)), rate = g.subtract(state(i, 1), state(i - 1, 1));
+    return g.multiply(p(masses + i), g.add(stretch, g.multiply(p(2 * masses + 1), rate)));
+  };
+  source.parameters = 2 * masses + 3;
+  source.inputs = 1;
+  for (int i = 0; i < masses; ++i) {
+    NodeId const load = i + 1 == masses ? g.leaf(LeafKind::input, 0) : g.constant(0);
+    NodeId const pull = g.add(g.subtract(load, force(i)), force(i + 1));
+    source.initial.insert(source.initial.end(), {g.constant(0), g.constant(0)});
+    source.derivative.insert(source.derivative.end(),
+                             {state(i, 1), g.subtract(g.divide(pull, p(i)), g.multiply(p(2 * masses), state(i, 1)))});
+    NodeId const precision = p(2 * masses + 2);
+    source.channels.push_back({{systems::normal_log_density(g, i, state(i, 0), precision)}});
+    source.records.push_back(
+        g.multiply(g.unary(Operation::square_root, precision), g.subtract(g.leaf(LeafKind::measured, i), state(i, 0))));
+  }
+  return source;
+}
+
+Case chain_case(int masses) {
+  Case chain = duffing();
+  chain.record.h = 0.0005;
+  chain.experiment = experiment_of(chain.record);
+  chain.experiment.measured.assign(static_cast<std::size_t>(masses), chain.record.measured);
+  chain.centre.assign(static_cast<std::size_t>(masses), 1);
+  for (int i = 0; i < masses; ++i) chain.centre.push_back(1e4 + 500 * (i % 3));
+  chain.centre.insert(chain.centre.end(), {0.5, 5e-4, 1e8});
+  return chain;
 }
 
 /// Derivatives by all parameters but the `silent` last ones.
 void compare(std::string const& name, SimulationSource const& source, Experiment const& experiment, LaneArray const& parameters,
              int silent, ExecutorKind executor) {
   int const width = parameters.width(), count = source.parameters - silent;
-  Sums value(source, experiment, width, executor);
+  Simulated value(source, experiment, width, executor);
   value(parameters);
-  std::printf("%-20s %-6s %2d parameters", name.c_str(), executor == ExecutorKind::native ? "native" : "lanes", count);
-  for (bool const squares : {false, true}) {
-    std::optional<Sums> with;
-    double const compiling = timed([&] { with.emplace(differentiated(source, count, squares), experiment, width, executor); });
-    double const first = timed([&] { (*with)(parameters); });
+  std::printf("%-20s %-6s %2d lanes %2d parameters", name.c_str(), executor == ExecutorKind::native ? "native" : "lanes", width,
+              count);
+  bool first = true;
+  for (Kind const kind : kinds) {
+    bool const large = source.states() * (count + 1) > 300;  // takes minutes to compile
+    if (large && kind != Kind::adjoint) continue;
+    std::optional<Simulated> with;
+    double const compiling = timed([&] { with.emplace(differentiated(source, count, kind), experiment, width, executor); });
+    double const first_batch = timed([&] { (*with)(parameters); });
     std::vector<double> values, ratios;
     int const times = std::max(1, static_cast<int>(0.01 / timed([&] { value(parameters); })));
     for (int round = 0; round < 15; ++round) {
@@ -82,29 +142,27 @@ void compare(std::string const& name, SimulationSource const& source, Experiment
       values.push_back(one / times / width);
       ratios.push_back(both / one);
     }
-    if (!squares) std::printf(", value %7.3f us", 1e6 * median(values));
-    std::printf(", %s %6.2f values (compiled in %.1f ms, first batch %.1f ms)", squares ? "normal equations" : "gradient",
-                median(ratios), 1e3 * compiling, 1e3 * first);
+    if (first) std::printf(", value %7.3f us", 1e6 * median(values));
+    first = false;
+    std::printf(", %s %6.2f values (compiled in %.1f ms, first batch %.1f ms)", names[static_cast<int>(kind)], median(ratios),
+                1e3 * compiling, 1e3 * first_batch);
   }
   std::printf("; differences %d\n", 2 * count + 1);
 }
 
 }  // namespace
 
-int main() {
-  constexpr int width = 64;
-  for (ExecutorKind const executor : {ExecutorKind::lanes, ExecutorKind::native}) {
-    Case const oscillator = duffing(), hysteresis = bouc_wen(), powers = bouc_wen_with_powers();
-    compare("Duffing", systems::duffing(), oscillator.experiment, oscillator.parameters(width), 1, executor);
-    compare("Bouc-Wen n = 2", systems::bouc_wen(2), hysteresis.experiment, hysteresis.parameters(width), 0, executor);
-    compare("Bouc-Wen, n too", systems::bouc_wen(0), powers.experiment, powers.parameters(width), 0, executor);
-    for (int const masses : {2, 5, 7, 10, 20}) {
-      std::vector<double> centre = {1, 2};
-      for (int i = 0; i < masses; ++i) centre.push_back(400 + 10 * i);
-      centre.push_back(1e3);
-      Case chain = duffing();
-      chain.centre = centre;
-      compare("chain of " + std::to_string(masses), systems::chain(masses), chain.experiment, chain.parameters(width), 0, executor);
+int main(int count, char** arguments) {
+  std::string const only = count > 1 ? arguments[1] : "";
+  for (ExecutorKind const executor : {ExecutorKind::lanes, ExecutorKind::native})
+    for (int const width : {4, 8, 64}) {
+      auto const with = [&](std::string const& name, SimulationSource const& source, Case const& of, int silent) {
+        if (name.starts_with(only)) compare(name, source, of.experiment, of.parameters(width), silent, executor);
+      };
+      with("Duffing", of_squares(systems::duffing()), duffing(), 1);
+      with("Bouc-Wen n = 2", of_squares(systems::bouc_wen(2)), bouc_wen(), 0);
+      with("Bouc-Wen, n too", of_squares(systems::bouc_wen(0)), bouc_wen_with_powers(), 0);
+      for (int const masses : {2, 5, 10, 20})
+        with("chain of " + std::to_string(masses), measured_chain(masses), chain_case(masses), 0);
     }
-  }
 }

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "program/random_expressions.hpp"
 #include "simulate/experiments.hpp"
+#include "simulate/random_sources.hpp"
 #include "simulate/simulator.hpp"
 #include "simulate/systems.hpp"
 
@@ -19,13 +19,8 @@ using namespace sysid;
 namespace tangent_tests {
 namespace {
 
-constexpr int samples = 12;
-constexpr double sample_step = 0.05;
-
-double input_at(double t) { return std::sin(7 * t) + 0.3; }
-double measured_at(double t) { return 0.4 * std::cos(3 * t); }
-
-Experiment record() { return testing::experiment(testing::uniform_times(samples, sample_step), {&input_at}, {&measured_at}); }
+using testing::random_sources::input_at, testing::random_sources::measured_at, testing::random_sources::record,
+    testing::random_sources::sample_step, testing::random_sources::samples, testing::random_sources::random_source;
 
 /// Outputs of a source: its sums, then its records of all samples.
 std::vector<double> simulated(SimulationSource const& source, std::vector<double> const& parameters) {
@@ -209,33 +204,6 @@ std::vector<std::optional<Real>> differences(Plain const& plain, std::vector<dou
     result.push_back(std::isfinite(best) && agree ? std::optional(best) : std::nullopt);
   }
   return result;
-}
-
-/// One to three states that stay bounded, of two parameters and an input; four sums and a residual of them.
-SimulationSource random_source(Stream& stream) {
-  SimulationSource source;
-  Graph& g = source.graph;
-  int const states = 1 + static_cast<int>(stream.below(3));
-  source.parameters = 3;
-  source.inputs = 1;
-  source.map = stream.below(4) == 0;
-  source.integrator = stream.below(4) == 0 ? "euler" : "rk4";
-  std::vector<NodeId> leaves = {g.leaf(LeafKind::input, 0), g.leaf(LeafKind::time)}, parameters;
-  for (int p = 0; p < source.parameters; ++p) parameters.push_back(g.leaf(LeafKind::parameter, p));
-  leaves.insert(leaves.end(), parameters.begin(), parameters.end());
-  for (int i = 0; i < states; ++i) leaves.push_back(g.leaf(LeafKind::state, i));
-  int const nodes = 5 + static_cast<int>(stream.below(40));
-  auto const bounded = [&](NodeId e) { return g.divide(e, g.add(g.constant(1), g.multiply(e, e))); };
-  for (NodeId const e : testing::random_expressions(g, leaves, nodes, states, stream)) source.derivative.push_back(bounded(e));
-  while (static_cast<int>(source.derivative.size()) < states) source.derivative.push_back(source.derivative.back());
-  for (int i = 0; i < states; ++i)
-    source.initial.push_back(bounded(testing::random_expressions(g, parameters, 4, 1, stream).front()));
-  std::vector<NodeId> observed = leaves;
-  observed.push_back(g.leaf(LeafKind::measured, 0));
-  source.channels = {{testing::random_expressions(g, observed, 15, 2, stream)}};
-  for (NodeId const e : testing::random_expressions(g, leaves, 15, 2, stream)) source.channels.front().sums.push_back(e);
-  source.records = testing::random_expressions(g, observed, 15, 1, stream);
-  return source;
 }
 
 /// Sums over the samples of products of the residual (0) and its derivatives (1, 2, ...), as `with_squares` has them; nothing where

@@ -39,6 +39,8 @@ bool LoopWriter::write(char const* name) {
   load_kept();
   if (loop_.kind == LoopKind::attempt)
     write_attempts();
+  else if (loop_.kind == LoopKind::reverse)
+    write_reverse();
   else
     write_samples();
   return known_;
@@ -65,6 +67,7 @@ void LoopWriter::write_samples() {
   llvm::PHINode* const sample = builder_.CreatePHI(integer_, 2);
   sample->addIncoming(from, before);
   Registers const open = open_loop(before);
+  if (loop_.kind == LoopKind::tape) write_tape(first_step(sample));
 
   llvm::BasicBlock *const look = block("look"), *const looked = block("looked");
   llvm::BasicBlock* const head = builder_.GetInsertBlock();
@@ -148,9 +151,13 @@ void LoopWriter::write_steps(llvm::Value* sample) {
   join(stepped, before, unstepped);
 }
 
+llvm::Value* LoopWriter::first_step(llvm::Value* sample) {
+  return loop_.one_step ? sample : builder_.CreateMul(sample, argument(offsetof(Call, substeps), integer_));
+}
+
 void LoopWriter::write_substeps(llvm::Value* sample) {
   llvm::Value* const substeps = argument(offsetof(Call, substeps), integer_);
-  llvm::Value* const first = builder_.CreateMul(sample, substeps);
+  llvm::Value* const first = first_step(sample);
   llvm::BasicBlock *const before = builder_.GetInsertBlock(), *const loop = block("substep"), *const done = block("substeps_done");
   builder_.CreateBr(loop);  // there is one at least
   builder_.SetInsertPoint(loop);
@@ -158,6 +165,7 @@ void LoopWriter::write_substeps(llvm::Value* sample) {
   substep->addIncoming(builder_.getInt64(0), before);
   Registers const open = open_loop(before);
   llvm::Value* const row = builder_.CreateAdd(first, substep);
+  if (loop_.kind == LoopKind::tape) write_tape(row);
   write_section(loop_.step, row_at(argument(offsetof(Call, steps), pointer_), row, loop_.step.row));
   llvm::Value* const next = builder_.CreateAdd(substep, builder_.getInt64(1));
   substep->addIncoming(next, builder_.GetInsertBlock());

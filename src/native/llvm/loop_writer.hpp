@@ -28,6 +28,12 @@ class LoopWriter {
   using Registers = std::map<std::uint32_t, Row>;  // those that have a value, by number
 
   void write_samples();
+  void write_reverse();
+  void write_steps_back(llvm::Value* sample);
+  void write_tape(llvm::Value* step);
+  void read_tape(llvm::Value* step);
+  llvm::Value* tape_at(llvm::Value* step);
+  llvm::Value* first_step(llvm::Value* sample);
   void write_attempts();
   void write_look(llvm::Value* sample);
   void write_channel(std::size_t channel, llvm::Value* sample);
