@@ -10,6 +10,7 @@
 
 #include "likelihood/differentiated.hpp"
 #include "likelihood/parameter_space.hpp"
+#include "program/adjoint.hpp"
 #include "program/tangents.hpp"
 #include "solver/solver.hpp"
 
@@ -234,6 +235,16 @@ ProgramNames names_of(CompiledModel const& compiled) {
   return names;
 }
 
+void choose_derivatives(CompiledModel& compiled) {
+  SimulationSource const &residuals = compiled.residuals->source, &likelihood = compiled.likelihood->source;
+  std::vector<int> const by = differentiable_parameters(compiled.model, residuals);
+  if (squares_are_cheap(residuals, static_cast<int>(by.size()))) compiled.differentiated = by;
+  compiled.gradient_by = differentiable_parameters(compiled.model, likelihood);
+  int const count = static_cast<int>(compiled.gradient_by.size());
+  compiled.adjoint = has_adjoint(likelihood) && adjoint_is_cheaper(likelihood, compiled.gradient_by);
+  if (!compiled.adjoint && !gradient_is_cheap(likelihood, count)) compiled.gradient_by.clear();
+}
+
 }  // namespace
 
 int CompiledModel::parameter_rows() const {
@@ -247,7 +258,7 @@ std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::
   compiled->method = method;
   compile_kernels(*compiled);
   compile_programs(*compiled);
-  if (!free_start) compiled->differentiated = differentiated_parameters(compiled->model, compiled->residuals->source);
+  if (!free_start) choose_derivatives(*compiled);
   return compiled;
 }
 
@@ -287,6 +298,17 @@ std::shared_ptr<SimulationProgram const> CompiledModel::squares() const {
     }
     source.graph = graph;
     return std::make_shared<SimulationProgram const>(sysid::compile(with_squares(std::move(source), differentiated)));
+  });
+}
+
+std::shared_ptr<SimulationProgram const> CompiledModel::gradient() const {
+  return gradient_.get([&] {
+    SimulationSource source = likelihood->source;
+    if (adjoint)
+      source.adjoint_by = gradient_by;
+    else
+      source = with_gradient(std::move(source), gradient_by);
+    return std::make_shared<SimulationProgram const>(sysid::compile(std::move(source)));
   });
 }
 

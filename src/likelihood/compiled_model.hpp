@@ -45,8 +45,15 @@ struct CompiledModel {
   /// normal noise are (y - mean)/sd there, which has a derivative at 0.
   std::shared_ptr<SimulationProgram const> squares() const;
 
+  /// By which parameters of the model `gradient` differentiates; none where a gradient is taken by differences.
+  std::vector<int> gradient_by;
+  bool adjoint = false;  // by its adjoint, not by tangents
+  /// The log density per channel, and its derivatives by these parameters: by tangents further sums of the channel
+  /// (program/tangents.hpp), by the adjoint those of all channels together (program/adjoint.hpp). Compiled at the first need.
+  std::shared_ptr<SimulationProgram const> gradient() const;
+
  private:
-  Lazily<std::shared_ptr<SimulationProgram const>> squares_;
+  Lazily<std::shared_ptr<SimulationProgram const>> squares_, gradient_;
 };
 
 /// free_start: the initial state is read from extra parameter rows instead of the model's initial values. method: a solver's name.

@@ -56,7 +56,8 @@ std::vector<ConstLanes> views_of(std::vector<LaneArray> const& arrays) { return 
 }  // namespace
 
 DerivativeSource ModelTarget::derivatives() const {
-  return compiled_->differentiated.empty() ? DerivativeSource::differences : DerivativeSource::exact;
+  if (!compiled_->differentiated.empty()) return DerivativeSource::exact;
+  return compiled_->gradient_by.empty() ? DerivativeSource::differences : DerivativeSource::mixed;
 }
 
 double ModelTarget::derivative_cost() const {
@@ -205,18 +206,30 @@ void ModelTarget::gradient_by_differences(ConstLanes theta, std::span<double> ou
 }
 
 void ModelTarget::log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
-  if (derivatives() != DerivativeSource::exact) return gradient_by_differences(theta, out, gradient, ledger);
-  LaneArray curvature(dimension() * dimension(), theta.width());
+  if (compiled_->gradient_by.empty()) return gradient_by_differences(theta, out, gradient, ledger);
   counted_whole(ledger, [&] {
-    log_likelihood(theta, out, ledger);
-    std::vector<int> const left = squares_by_tangents(theta, gradient, curvature, ledger);  // -J'r is the gradient
-    if (left.empty()) return;
-    LaneArray const others = picked(theta, left);
-    LaneArray slopes(theta.rows(), others.width());
-    std::vector<double> values(left.size());
-    gradient_by_differences(others, values, slopes, ledger);
-    put_back(slopes, left, gradient);
+    std::vector<int> const left = gradient_by_program(theta, out, gradient, ledger);
+    if (!left.empty()) finish_gradients(left, theta, out, gradient, ledger);
   });
+}
+
+void ModelTarget::finish_gradients(std::vector<int> const& lanes, ConstLanes theta, std::span<double> out, Lanes gradient,
+                                   Ledger& ledger) const {
+  LaneArray const others = picked(theta, lanes);
+  std::vector<double> values(lanes.size());
+  log_likelihood(others, values, ledger);
+  std::vector<int> solved;
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    out[static_cast<std::size_t>(lanes[k])] = values[k];
+    for (int p = 0; p < gradient.rows(); ++p) gradient(p, lanes[k]) = 0;
+    if (std::isfinite(values[k])) solved.push_back(lanes[k]);
+  }
+  if (solved.empty()) return;
+  LaneArray const rest = picked(theta, solved);
+  LaneArray slopes(theta.rows(), rest.width());
+  values.resize(solved.size());
+  gradient_by_differences(rest, values, slopes, ledger);
+  put_back(slopes, solved, gradient);
 }
 
 }  // namespace sysid

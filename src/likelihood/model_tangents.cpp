@@ -9,6 +9,9 @@
 namespace sysid {
 namespace {
 
+/// A value with its gradient by the adjoint, in simulations, roughly.
+constexpr std::uint64_t adjoint_simulations = 4;
+
 /// d/d coordinate has the term  d/d parameter * d parameter/d coordinate.
 struct Link {
   Eigen::Index parameter;  // its position among those of the program
@@ -34,6 +37,61 @@ Simulator const& ModelTarget::squares(std::size_t experiment) const {
     std::shared_ptr<SimulationProgram const> const program = compiled_->squares();
     return Simulator(program, Schedule(*program, experiments_[experiment], options_.solver), options_.execution, pool_);
   });
+}
+
+Simulator const& ModelTarget::gradient(std::size_t experiment) const {
+  return parts_[experiment].gradient.get([&] {
+    std::shared_ptr<SimulationProgram const> const program = compiled_->gradient();
+    return Simulator(program, Schedule(*program, experiments_[experiment], options_.solver), options_.execution, pool_);
+  });
+}
+
+std::vector<int> ModelTarget::gradient_by_program(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const {
+  std::vector<Columns> const columns = columns_of(theta);
+  int const count = static_cast<int>(compiled_->gradient_by.size()), channels = static_cast<int>(compiled_->model.channels.size());
+  std::vector<Run> runs(parts_.size());
+  std::vector<Work> work;
+  std::vector<std::vector<Link>> links;
+  for (std::size_t e = 0; e < parts_.size(); ++e) {
+    ConstLanes const parameters = columns[e].parameters;
+    Simulator const& simulator = this->gradient(e);
+    runs[e].sums = LaneArray(simulator.program().sum_count(), parameters.width());
+    runs[e].slopes = LaneArray(count, parameters.width());
+    runs[e].outcome.resize(static_cast<std::size_t>(parameters.width()));
+    work.push_back(compiled_->adjoint ? simulator.gradients_work(parameters, runs[e].sums, runs[e].slopes, runs[e].outcome)
+                                      : simulator.sums_work(parameters, runs[e].sums, runs[e].outcome));
+    links.push_back(links_of(*space_, e, compiled_->gradient_by));
+  }
+  do_work(work, pool_.get());
+  LaneArray slopes(static_cast<int>(space_->slopes().size()), theta.width());
+  space_->slopes(theta, slopes);
+  std::vector<int> left;
+  for (int w = 0; w < theta.width(); ++w) {
+    double total = 0;
+    bool good = true;
+    for (int p = 0; p < dimension(); ++p) gradient(p, w) = 0;
+    for (std::size_t e = 0; e < parts_.size() && good; ++e) {
+      int const column = columns[e].of_lane[static_cast<std::size_t>(w)];
+      good = runs[e].outcome[static_cast<std::size_t>(column)].ok;
+      if (!good) break;
+      SimulationProgram const& program = this->gradient(e).program();
+      for (int c = 0; c < channels; ++c) total += runs[e].sums(program.sum_row(c, 0), column);
+      for (Link const& each : links[e]) {
+        int const k = static_cast<int>(each.parameter);
+        double by = compiled_->adjoint ? runs[e].slopes(k, column) : 0;
+        for (int c = 0; c < channels && !compiled_->adjoint; ++c) by += runs[e].sums(program.sum_row(c, 1 + k), column);
+        gradient(each.coordinate, w) += by * slopes(each.slope, w);
+      }
+    }
+    good = good && std::isfinite(total);
+    for (int p = 0; p < dimension(); ++p) good = good && std::isfinite(gradient(p, w));
+    out[static_cast<std::size_t>(w)] = total;
+    if (!good) left.push_back(w);
+  }
+  std::uint64_t const each = compiled_->adjoint ? adjoint_simulations : 1 + static_cast<std::uint64_t>(count);
+  for (Run const& run : runs)
+    ledger.add_solves(each * static_cast<std::uint64_t>(std::ranges::count_if(run.outcome, &Outcome::ok)));
+  return left;
 }
 
 void ModelTarget::take_squares(Simulator const& simulator, Run const& run, int column, Eigen::VectorXd& gradient,

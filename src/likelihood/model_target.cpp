@@ -45,7 +45,7 @@ ModelTarget::ModelTarget(std::shared_ptr<CompiledModel const> compiled, std::sha
       return Simulator(program, Schedule(*program, experiment, options_.solver), options_.execution, pool_);
     };
     parts_.push_back(
-        {simulator(compiled_->likelihood), simulator(compiled_->residuals), nullptr, read_by(*compiled_, *space_, e), {}});
+        {simulator(compiled_->likelihood), simulator(compiled_->residuals), nullptr, read_by(*compiled_, *space_, e), {}, {}});
     if (options_.start_rows > 0)
       parts_.back().start =
           std::make_unique<StartState>(compiled_, experiment, options_.start_rows, options_.solver, options_.execution, pool_);

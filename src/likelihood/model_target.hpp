@@ -75,8 +75,8 @@ class ModelTarget : public Target {
   };
   /// Of a batch in one experiment: sums of the likelihood, or sums and records of the residuals.
   struct Run {
-    LaneArray sums, records;
-    std::vector<Outcome> outcome;  // [C]
+    LaneArray sums, records, slopes;  // slopes: by an adjoint
+    std::vector<Outcome> outcome;     // [C]
   };
   /// Whether a lane, and its neighbours along each coordinate, have a solution in every experiment that reads what moves.
   struct Usable {
@@ -107,7 +107,13 @@ class ModelTarget : public Target {
   void gradient_by_differences(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const;
   /// By tangents of the program; returned are the lanes that these leave to differences, whose results may be anything.
   std::vector<int> squares_by_tangents(ConstLanes theta, Lanes gradient, Lanes curvature, Ledger& ledger) const;
+  /// The log likelihood and its gradient by tangents or the adjoint; returned are the lanes that these leave to differences, or
+  /// where a solve failed, whose results may be anything.
+  std::vector<int> gradient_by_program(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const;
+  void finish_gradients(std::vector<int> const& lanes, ConstLanes theta, std::span<double> out, Lanes gradient,
+                        Ledger& ledger) const;
   Simulator const& squares(std::size_t experiment) const;
+  Simulator const& gradient(std::size_t experiment) const;
   /// Of one lane in one experiment, by the parameters of the model.
   void take_squares(Simulator const& simulator, Run const& run, int column, Eigen::VectorXd& gradient,
                     Eigen::MatrixXd& curvature) const;

@@ -16,7 +16,7 @@ struct ModelTarget::Part {
   Simulator likelihood, residuals;
   std::unique_ptr<StartState> start;
   ReadByExperiment read;
-  Lazily<Simulator> squares;  // where the compiled model has derivatives
+  Lazily<Simulator> squares, gradient;  // where the compiled model has derivatives
 };
 
 }  // namespace sysid

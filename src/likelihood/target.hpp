@@ -16,7 +16,7 @@ namespace sysid {
 /// How derivatives of a density come about.
 enum class DerivativeSource {
   exact,        // of the numbers that are computed, to rounding: by tangents of the program
-  mixed,        // exact where a value costs most, by differences of the rest
+  mixed,        // exact where a value costs most, by differences of the rest; or exact in the gradient alone
   differences,  // central, in lanes of the same batch
 };
 
