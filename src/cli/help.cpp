@@ -72,7 +72,7 @@ std::string indented(std::string const& lines) {
 }
 
 std::string verbs_page(CLI::App const& app) {
-  std::string out = fmt::format("{}\n\nUsage: sysid VERB [OPTIONS] ...\n", app.get_description());
+  std::string out = fmt::format("{}\n\nUsage: sysid COMMAND [OPTIONS] ...\n", app.get_description());
   std::size_t width = 0;
   for (CLI::App const* verb : app.get_subcommands({})) width = std::max(width, verb->get_name().size());
   std::string group;
@@ -83,7 +83,7 @@ std::string verbs_page(CLI::App const& app) {
   std::vector<Row> options;
   for (CLI::Option const* option : app.get_options()) options.push_back(row_of(*option));
   return out + "\nOptions:\n" + table(options) + "\nExamples:\n" + indented(app.get_footer()) +
-         "\n`sysid VERB --help` describes each verb.\n";
+         "\n`sysid COMMAND --help` describes each command.\n";
 }
 
 std::string verb_page(CLI::App const& verb) {

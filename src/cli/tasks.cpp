@@ -50,7 +50,8 @@ void add_run_options(CLI::App& verb, TaskOptions& options) {
       ->capture_default_str();
   verb.add_option_function<std::string>(
           "--executor", [&options](std::string const& name) { options.run.execution.executor = executor_kind(name); },
-          "how simulations are computed: lanes, native (machine code), scalar, or auto (native if it saves time); results do not "
+          "how simulations are computed: lanes (several at once), scalar (one at a time), native (compiled to machine code), or "
+          "auto (native if it saves time); results do not "
           "depend on it")
       ->type_name("NAME")
       ->check(CLI::IsMember({"auto", "scalar", "lanes", "native"}))

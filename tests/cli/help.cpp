@@ -19,7 +19,7 @@ std::vector<std::string> const verbs = {"run", "simulate", "fit",    "select", "
 TEST_CASE("the page of the program names every verb, in groups") {
   Said const said = Desk().ask("--help");
   CHECK(said.exit == 0);
-  CHECK(said.text.find("Usage: sysid VERB [OPTIONS] ...\n") != std::string::npos);
+  CHECK(said.text.find("Usage: sysid COMMAND [OPTIONS] ...\n") != std::string::npos);
   for (std::string const& verb : verbs) CHECK_MESSAGE(said.text.find("\n  " + verb + " ") != std::string::npos, verb);
   for (char const* group : {"Tasks of a file:", "Files:", "Results:", "Reference:", "Examples:"})
     CHECK_MESSAGE(said.text.find(group) != std::string::npos, group);
@@ -51,5 +51,5 @@ TEST_CASE("a page says what holds without an option, and gives commands that wor
 TEST_CASE("without a verb the program shows its page and says by its exit code that nothing was done") {
   Said const said = Desk().ask("");
   CHECK(said.exit == 2);
-  CHECK(said.text.find("Usage: sysid VERB") != std::string::npos);
+  CHECK(said.text.find("Usage: sysid COMMAND") != std::string::npos);
 }

@@ -13,7 +13,7 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
     CHECK(said.exit == 2);
     CHECK(said.text == message);
   };
-  refused("ftt x.sysid", "sysid: error: there is no verb `ftt`\nhelp: did you mean `fit` or `fmt`?\n");
+  refused("ftt x.sysid", "sysid: error: there is no command `ftt`\nhelp: did you mean `fit` or `fmt`?\n");
   refused("fit x.sysid --ouput y", "sysid: error: `sysid fit` has no option `--ouput`\nhelp: did you mean `--output`?\n");
   refused("fit", "sysid: error: FILE is required\nhelp: `sysid fit --help` lists its arguments and options\n");
   refused("fit x.sysid --threads",
