@@ -9,9 +9,9 @@
 
 namespace sysid::nuts {
 
-/// Iterations of burn-in: the step is learnt in all of them, the metric in windows. As in Stan, the first 15 % (at most 75) lead to
-/// the posterior and the last 10 % (at most 50) settle the step; between them each window has twice the iterations of the one
-/// before, the first 25.
+/// Iterations of burn-in: the step is learnt in all of them, the metric in windows. The first 15 % (at most 75) lead to the
+/// posterior and the last 10 % (at most 50) settle the step; between them each window has twice the iterations of the one before,
+/// the first 25. From 500 iterations on this is Stan's plan; for fewer, Stan takes 75 and 50 as long as they fit.
 struct BurnIn {
   std::uint64_t length = 0, first = 0;  // iterations; the first of the first window
   std::vector<std::uint64_t> ends;      // of the windows, rising
