@@ -197,8 +197,8 @@ class Failure {
 
   Diagnostic unknown_data_statement() const {
     Diagnostic diagnostic = errors::unknown_statement(found(), "a data block", words::data_statements);
-    if (found().is("hold")) diagnostic.help = "the rule stands behind the column of its input: `input x = force [N] hold linear`";
-    if (has("..")) diagnostic.help = fmt::format("a part of the rows is written `split {}`", gap().rest());
+    if (found().is("hold")) diagnostic.help = "the rule comes after the column of its input: `input x = force [N] hold linear`";
+    if (has("..")) diagnostic.help = fmt::format("a range of rows is written `split {}`", gap().rest());
     return diagnostic;
   }
 

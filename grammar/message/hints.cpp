@@ -58,11 +58,11 @@ constexpr std::array<Situation, 35> situations{{
      "a value that depends on a condition is written `if condition then value else value`"},
     {[](Gap const& g) { return found(g, "[") && g.wanted == wanted::value; }, "a list is written in parentheses: `(1, 2)`"},
     {[](Gap const& g) { return found(g, ".") && (g.wanted == "`]`" || g.wanted == "']'"); },
-     "units are multiplied with a blank or `*`: `[N s/m]`"},
+     "units are multiplied with a space or `*`: `[N s/m]`"},
     {[](Gap const& g) { return (g.wanted == "`]`" || g.wanted == "']'") && found(g, ","); },
-     "units are multiplied with a blank or `*`: `[N s/m]`"},
+     "units are multiplied with a space or `*`: `[N s/m]`"},
     {[](Gap const& g) { return (g.wanted == "`]`" || g.wanted == "']'") && found(g, "-"); },
-     "units are multiplied with a blank or `*`, a power is written with `^`: `[N s/m]`, `[m s^-2]`"},
+     "units are multiplied with a space or `*`, a power is written with `^`: `[N s/m]`, `[m s^-2]`"},
     {[](Gap const& g) {
        constexpr std::array<std::string_view, 5> operators{"+", "*", "/", "^", "-"};
        return g.wanted == wanted::value && g.found != nullptr && g.before() != nullptr &&
@@ -179,7 +179,7 @@ std::string repaired_statement(Gap const& gap) {
     return fmt::format("a value is written with `=`: `{} = {}`", so_far, gap.found->text);
   bool const bound = gap.begins_with("measure") || gap.begins_with("input");
   if (bound && gap.wanted == wanted::equals && gap.statement.size() > 1 && gap.at == 2)
-    return fmt::format("the column stands behind `=`: `{} NAME = {}`", gap.statement[0].text, before->text);
+    return fmt::format("the column comes after `=`: `{} NAME = {}`", gap.statement[0].text, before->text);
   bool const settings = gap.begins_with("exclude") || gap.begins_with("terms") || gap.begins_with("target");
   if (settings && gap.wanted == wanted::equals) return fmt::format("write `{} = {}`", so_far, gap.found->text);
   // `y (mm)` of a column or a declared name.

@@ -28,12 +28,12 @@ std::string in_head(Gap const& gap) {
   if (gap.at == 1 && gap.found->is("[") && gap.closing(1) < gap.statement.size()) {
     std::size_t const close = gap.closing(1);
     if (close + 1 < gap.statement.size())
-      return fmt::format("the unit stands last: `{} {} {}`", gap.statement[0].text, gap.text(close + 1, gap.statement.size()),
+      return fmt::format("the unit comes last: `{} {} {}`", gap.statement[0].text, gap.text(close + 1, gap.statement.size()),
                          gap.text(1, close + 1));
     return fmt::format("name the column before its unit: `{} t {}`", gap.statement[0].text, gap.text(1, close + 1));
   }
   if (gap.begins_with("time") && gap.at == 1 && is_number(gap.found))
-    return fmt::format("name the column, in quotes where it is no word: `time \"{}\"`", gap.found->text);
+    return fmt::format("name the column; put it in quotes if it is not a single word: `time \"{}\"`", gap.found->text);
   return {};
 }
 
@@ -52,7 +52,7 @@ std::string in_rule(Gap const& gap, std::string_view column) {
     if (gap.at == hold + 1 && gap.found->kind == TokenKind::text && gap.found->text.size() > 2)
       return fmt::format("write the rule without quotes: `hold {}`", gap.found->text.substr(1, gap.found->text.size() - 2));
     if (gap.found->is("["))
-      return fmt::format("the unit stands behind the column: `{} {} {}`", column, gap.rest(), gap.text(hold, gap.at));
+      return fmt::format("the unit comes after the column: `{} {} {}`", column, gap.rest(), gap.text(hold, gap.at));
     return {};
   }
   if (!is_word(gap.found)) return {};
@@ -74,7 +74,7 @@ std::string in_column(Gap const& gap) {
   if (gap.wanted == wanted::equals) {
     std::size_t const close = gap.closing(gap.at);
     if (gap.found->is("[") && close + 2 < gap.statement.size() && gap.statement[close + 1].is("="))
-      return fmt::format("the unit stands behind the column: `{} {} = {} {}`", word, name, gap.statement[close + 2].text,
+      return fmt::format("the unit comes after the column: `{} {} = {} {}`", word, name, gap.statement[close + 2].text,
                          gap.text(gap.at, close + 1));
     if ((gap.found->is("from") || gap.found->is("~") || gap.found->is("as")) && gap.next() != nullptr)
       return fmt::format("write `=`: `{} {} = {}`", word, name, gap.text(gap.at + 1, gap.statement.size()));
@@ -89,7 +89,7 @@ std::string in_column(Gap const& gap) {
     for (std::size_t i = equals + 1; i < gap.statement.size() && column.empty(); ++i)
       if (gap.statement[i].kind == TokenKind::word && !gap.statement[i].is("hold")) column = gap.statement[i].text;
     return fmt::format(
-        "a column is read as it stands: write `{} {} = {}` with the unit of its numbers, and any factor or offset in "
+        "a column is used as it is: write `{} {} = {}` with the unit of its numbers, and any factor or offset in "
         "the model",
         word, name, column.empty() ? "COLUMN" : column);
   }
@@ -102,7 +102,7 @@ std::string in_column(Gap const& gap) {
   if (input) return in_rule(gap, gap.text(0, std::min(gap.at, gap.find("hold"))));
   if (gap.found->is("hold")) return fmt::format("only inputs have a rule between samples: remove `{}`", gap.rest());
   if (gap.found->is("~") || (is_word(gap.found) && gap.next() != nullptr && gap.next()->is("=")))
-    return fmt::format("the noise stands in the model, behind `observe {} ~`: remove `{}`", name, gap.rest());
+    return fmt::format("the noise is written in the model, after `observe {} ~`: remove `{}`", name, gap.rest());
   return {};
 }
 
@@ -133,7 +133,7 @@ std::string in_use(Gap const& gap) {
 std::string in_part(Gap const& gap) {
   if (!gap.begins_with("part") || gap.found == nullptr) return {};
   if (gap.at == 2 && gap.wanted == wanted::equals && is_word(gap.found))
-    return fmt::format("the name of the part stands first: `part {} = {}{}`", gap.found->text, gap.statement[1].text,
+    return fmt::format("the name of the part comes first: `part {} = {}{}`", gap.found->text, gap.statement[1].text,
                        gap.text(3, gap.statement.size()));
   if (gap.at == 3 && is_word(gap.found) && is_word(gap.next())) return fmt::format("remove `{}`", gap.found->text);
   if (gap.at == 3 && is_word(gap.found) && gap.next() == nullptr)
@@ -181,7 +181,7 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
   if (!ends || gap.before() == nullptr) return {};
   std::size_t const with = std::min(gap.find("with"), gap.statement.size());
   if (gap.wanted == wanted::preposition_or_end && found.is("=") && gap.at == verb + 2 && gap.next() != nullptr)
-    return fmt::format("the name of the task stands first: `{} = {} {}`", gap.before()->text, gap.statement[verb].text,
+    return fmt::format("the name of the task comes first: `{} = {} {}`", gap.before()->text, gap.statement[verb].text,
                        gap.text(gap.at + 1, gap.statement.size()));
   if (gap.wanted == wanted::preposition_or_end && (gap.before()->is("model") || gap.before()->is("data")) && is_word(gap.found))
     return fmt::format("remove `{}`: write `{} {}`", gap.before()->text, gap.statement[verb].text, found.text);
@@ -191,9 +191,9 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
                        found.is(",") ? gap.text(gap.at + 1, with) : gap.text(gap.at - 1, gap.at + 2));
   bool const part = (found.is("[") || found.is("(")) && is_word(gap.next()) && gap.closing(gap.at) == gap.at + 2;
   if (gap.wanted == wanted::with_or_end && part)
-    return fmt::format("a part of the data is written `{}.{}`", gap.before()->text, gap.next()->text);
+    return fmt::format("a range of the data is written `{}.{}`", gap.before()->text, gap.next()->text);
   if (found.is(".") && gap.at + 2 <= gap.statement.size())
-    return fmt::format("data have one level of parts: remove `{}`", gap.text(gap.at, gap.at + 2));
+    return fmt::format("data have one level of ranges: remove `{}`", gap.text(gap.at, gap.at + 2));
   if ((found.is("and") || found.is("&")) && is_word(gap.next()))
     return fmt::format("separate data by commas: `{}, {}`",
                        gap.text(gap.find("to") < gap.at ? gap.find("to") + 1 : gap.at - 1, gap.at), gap.text(gap.at + 1, with));

@@ -56,11 +56,11 @@ std::string behind_distribution(Gap const& gap) {
   if (gap.found->is("[") && gap.closing(gap.at) < gap.statement.size()) {
     std::string_view const written_unit = gap.text(gap.at, gap.closing(gap.at) + 1);
     return unit < tilde ? fmt::format("remove `{}`: numbers here are in the unit of `{}`", written_unit, gap.statement[1].text)
-                        : fmt::format("the unit stands behind the name: `{} {} ~ {}`", head, written_unit, prior);
+                        : fmt::format("the unit comes after the name: `{} {} ~ {}`", head, written_unit, prior);
   }
   if (parameter && gap.found->is("per")) {
     std::size_t const name_end = std::min(unit, tilde);
-    return fmt::format("`per experiment` stands behind the name: `{} per experiment{}{} ~ {}`", gap.text(0, name_end),
+    return fmt::format("`per experiment` comes after the name: `{} per experiment{}{} ~ {}`", gap.text(0, name_end),
                        name_end < tilde ? " " : "", gap.text(name_end, tilde), prior);
   }
   if (!parameter) return fmt::format("remove `{}`", gap.rest());
@@ -113,10 +113,12 @@ std::string behind_declared(Gap const& gap) {
     return fmt::format("what measures a state is an observation: remove `{}` and write `observe {} ~ normal({}, sd = 1)`", rest,
                        gap.next() == nullptr ? "channel" : gap.next()->text, name);
   if (state && gap.found->is("~"))
-    return fmt::format("a start to be found is a parameter: `parameter {0}0 ~ ...` and `initial {0} = {0}0`", name);
-  if (input && gap.found->is("=")) return fmt::format("the column of an input stands in the data block: remove `{}` here", rest);
+    return fmt::format("an initial value that is to be estimated is a parameter: `parameter {0}0 ~ ...` and `initial {0} = {0}0`",
+                       name);
+  if (input && gap.found->is("="))
+    return fmt::format("the column of an input is written in the data block: remove `{}` here", rest);
   if (input && gap.found->is("hold"))
-    return fmt::format("the rule between samples stands in the data block: remove `{}` here", rest);
+    return fmt::format("the rule between samples is written in the data block: remove `{}` here", rest);
   if ((state || input) && gap.found_word() && gap.found->text.ends_with('\'')) {
     std::string_view const bare = gap.found->text.substr(0, gap.found->text.find('\''));
     std::size_t const end = std::min(gap.find(",", gap.at), gap.statement.size());
@@ -126,7 +128,7 @@ std::string behind_declared(Gap const& gap) {
   }
   if (gap.found->is("in") && gap.next() != nullptr && gap.next()->is("[")) return "remove `in`";
   if (parameter && gap.found->is("per") && gap.before()->is("]"))
-    return fmt::format("`per experiment` stands before the unit: `{} per experiment {}`", gap.text(0, gap.find("[")),
+    return fmt::format("`per experiment` comes before the unit: `{} per experiment {}`", gap.text(0, gap.find("[")),
                        gap.text(gap.find("["), gap.at));
   if (gap.found->is("<")) {
     std::size_t const end = gap.find(">", gap.at);
@@ -167,7 +169,7 @@ std::string at_bracket(Gap const& gap) {
   bool const definition = words::contains(definitions, gap.statement[0].text), parameter = gap.begins_with("parameter");
   bool const keyword = words::contains(words::model_statements, gap.statement[0].text);
   if (gap.at == 1 && keyword && close + 1 < gap.statement.size())
-    return fmt::format("the unit stands behind the name: `{} {} {}`", gap.statement[0].text, gap.statement[close + 1].text, unit);
+    return fmt::format("the unit comes after the name: `{} {} {}`", gap.statement[0].text, gap.statement[close + 1].text, unit);
   if (gap.at == 1 && !keyword && equals == close + 1 && equals < gap.statement.size())
     return fmt::format("a definition begins with `let`: `let {}`", gap.text(0, gap.statement.size()));
   if (gap.at == 1 && !keyword && close + 1 == gap.statement.size())
@@ -175,7 +177,7 @@ std::string at_bracket(Gap const& gap) {
                        gap.text(0, close + 1));
   if ((definition || parameter) && equals < gap.at)
     return gap.find("[") < equals ? fmt::format("remove `{}`: the value has the unit of `{}`", unit, gap.statement[1].text)
-                                  : fmt::format("the unit stands behind the name: `{} {} = {}`", gap.text(0, equals), unit,
+                                  : fmt::format("the unit comes after the name: `{} {} = {}`", gap.text(0, equals), unit,
                                                 gap.text(equals + 1, gap.at));
   bool const declares = keyword && gap.wanted == wanted::end_of_statement && gap.at >= 2;
   if (declares && gap.before()->is("]") && gap.at >= 4)

@@ -183,7 +183,7 @@ class LayoutPass {
           i,
           errors::foreign_operator(
               both, written,
-              written == "--" ? "a comment begins with `#` or `//`; a negative number is subtracted with a blank between: `a - -b`"
+              written == "--" ? "a comment begins with `#` or `//`; a negative number is subtracted with a space between: `a - -b`"
               : written == "++" ? "write a single `+`"
               : numbers ? fmt::format("an uncertain value is a prior: `~ normal({}, sd = {})`", before.text, tokens_[i + 2].text)
                         : "an uncertain value is a prior, `~ normal(value, sd = 1)`; else write one sign"));

@@ -23,7 +23,7 @@ std::string_view kind_name(SymbolKind kind) {
                                                           "argument of the function",
                                                           "channel",
                                                           "data block",
-                                                          "part of the data",
+                                                          "range of the data",
                                                           "set of candidates",
                                                           "dictionary",
                                                           "task",

@@ -154,7 +154,7 @@ Diagnostic missing_column(std::string const& file, std::string const& column, st
                  "first line");
   std::string help = did_you_mean(column, known);
   if (help.empty() && known.size() == 1 && known[0].find(' ') != std::string::npos)
-    help = "columns are separated by commas, semicolons or tabs, not by blanks";
+    help = "columns are separated by commas, semicolons or tabs, not by spaces";
   if (!help.empty()) help += help.back() == '?' ? " " : "; ";
   return error("E4008", mention, fmt::format("`{}` has no column `{}`", file, column),
                help + fmt::format("its {} {}", known.size() == 1 ? "only column is" : "columns are", column_names(known)));
@@ -195,7 +195,7 @@ Diagnostic row_of_units(Cell const& cell, std::string_view text, Mention mention
                fmt::format("{} contains words, not numbers: it seems to be a row of units below the header",
                            place(cell.file, cell.row, cell.line)),
                unit.empty()
-                   ? fmt::format("delete this line; units are written in the data block, in brackets behind `{}`", cell.column)
+                   ? fmt::format("delete this line; units are written in the data block, in brackets after `{}`", cell.column)
                    : fmt::format("delete this line; units are written in the data block: `{} [{}]`", cell.column, unit));
 }
 

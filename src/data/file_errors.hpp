@@ -51,7 +51,7 @@ Diagnostic not_a_count(Cell const& cell, double value, Mention mention);
 // the columns as a record
 Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention);
 Diagnostic unequal_steps(int row, double step, double usual, Mention mention);
-/// what: "part `train`".
+/// what: "range `train`".
 Diagnostic rows_outside(std::string const& file, std::string const& what, int first, int last, int rows, Mention mention);
 Diagnostic cycles_against_radians(std::string const& column, std::string const& column_unit, std::string const& declared_unit,
                                   Mention mention);

@@ -57,7 +57,7 @@ struct RowRange {
   int last = 0;
 };
 
-/// What is wrong with asking for these rows, or nothing. what: "part `train`", for the message.
+/// What is wrong with asking for these rows, or nothing. what: "range `train`", for the message.
 std::optional<Diagnostic> check_rows(Record const& record, std::string const& what, RowRange rows,
                                      std::optional<Span> mention = std::nullopt);
 

@@ -61,8 +61,11 @@ Findings leave_out_noise(Model const& model, Prediction& prediction) {
   });
   if (gone.empty()) return {};
   std::string const quoted = fmt::format("`{}`", fmt::join(gone, "`, `"));
-  return {{FindingCode::reads_noise, Severity::note, std::move(gone),
-           fmt::format("{} left out: it depends on the noise, which a selection by distance does not estimate", quoted), ""}};
+  return {
+      {FindingCode::reads_noise, Severity::note, std::move(gone),
+       fmt::format("left out of the bands, because a selection by distance does not estimate the noise on which they depend: {}",
+                   quoted),
+       ""}};
 }
 
 Findings band_findings(Prediction const& prediction, int failed, int failed_elsewhere, bool several) {

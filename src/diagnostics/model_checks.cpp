@@ -44,10 +44,9 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
            fmt::format(
                "the spread of `{}` is estimated: the posterior is narrow where the spread is small, and chains mix slowly there",
                member->name),
-           fmt::format(
-               "write `{}` in terms of standardised members: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
-               "spread*z` (docs/methods/several_experiments.md), or sample it with tempering",
-               member->name, member->name)}};
+           fmt::format("write `{}` in the non-centred form: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
+                       "spread*z` (docs/methods/several_experiments.md), or sample it with tempering",
+                       member->name, member->name)}};
 }
 
 Findings check_use(Model const& model, StartRule const& start) {

@@ -61,13 +61,15 @@ std::optional<Finding> lost_free_run(ValidationReport const& validation) {
   std::optional<double> const far = best.percent(&ValidatedChannel::horizon), free = best.percent(&ValidatedChannel::free_run);
   if (!free || *free < lost_percent) return std::nullopt;
   std::string const size = std::isfinite(*free) && *free <= 1e4 ? significant(*free, 3) : "more than 1e4";
-  std::string message = fmt::format("the error of a free run on {} is {} % of the sd; the run follows the record for {} s",
-                                    validation.held_out, size, significant(best.follows, 3));
+  std::string message = fmt::format(
+      "the rms error of a free run on {} is {} % of the standard deviation of its samples; the run follows the record for {} s",
+      validation.held_out, size, significant(best.follows, 3));
   double noise = 0;
   for (ValidatedChannel const& each : best.channels)
     if (each.sd > 0)
       noise = std::max(noise, 100 * (each.noise > 0 ? std::min(each.noise, each.residual) : each.residual) / each.sd);
-  if (noise > telling_percent) message += fmt::format("; the noise of the record is {} % of that sd", significant(noise, 3));
+  if (noise > telling_percent)
+    message += fmt::format("; the noise of the record is {} % of that standard deviation", significant(noise, 3));
   if (far && *far < foretold_percent)
     return Finding{FindingCode::free_run_lost,
                    Severity::note,

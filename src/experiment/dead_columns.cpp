@@ -112,10 +112,10 @@ Findings find_time_gaps(CheckedFile const& file, ExperimentData const& data, Mod
                        experiment.name, *longest / scale, unit, row, row + 1, others, usual / scale, unit),
            model.inputs.empty()
                ? fmt::format("the simulation continues through the gap; if the recording was restarted there, give the "
-                             "rows after it a part of their own in `split` of `{}`",
+                             "rows after it a range of their own in `split` of `{}`",
                              block.name)
                : fmt::format("the input during the gap is unknown: give the rows before and after the gap "
-                             "parts of their own in `split` of `{}`, and fit both",
+                             "ranges of their own in `split` of `{}`, and fit both",
                              block.name)}};
 }
 

@@ -150,7 +150,7 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
   whole.span = block.span;
   DataPart const& rows = part < 0 ? whole : block.parts[static_cast<std::size_t>(part)];
   RowRange range{rows.first, rows.last == 0 ? record.rows() : rows.last};
-  std::string const what = part < 0 ? "data `" + block.name + "`" : "part `" + rows.name + "`";
+  std::string const what = part < 0 ? "data `" + block.name + "`" : "range `" + rows.name + "`";
   if (auto const wrong = check_rows(record, what, range, rows.span)) throw UserError(*wrong);
   // The first rows that a model only looks back to are neither simulated nor scored.
   int const history = data_lag(model);

@@ -114,8 +114,8 @@ class Finder {
       concern.clause = "no term is left to choose from";
     } else if (!(columns.known.squaredNorm() > 0) || !columns.known.allFinite()) {
       concern.kind = Concern::Kind::nothing_to_explain;
-      concern.clause = columns.known.allFinite() ? "the known side of the equation is zero on the whole record"
-                                                 : "the known side of the equation is not finite at some samples";
+      concern.clause =
+          columns.known.allFinite() ? "the target is zero on the whole record" : "the target is not finite at some samples";
     } else {
       return true;
     }
@@ -236,7 +236,7 @@ class Finder {
     if (found_.noise_ratio < unexplained_above || share < unexplained_share) return;
     Concern concern{.kind = Concern::Kind::unexplained, .value = found_.noise_ratio};
     concern.clause = fmt::format(
-        "the residual is {:.3g} times what the measurement noise explains: a forcing or a term is "
+        "the residual is {:.3g} times what the measurement noise explains: an input or a term is "
         "missing{}",
         found_.noise_ratio, found_.own_noise > 0 ? ", or a recorded input is itself noisy" : "");
     found_.concerns.push_back(std::move(concern));
@@ -257,8 +257,8 @@ class Finder {
     if (portmanteau < far_from_white || worth < correlated_above) return;
     Concern concern{.kind = Concern::Kind::correlated, .value = worth};
     concern.clause =
-        fmt::format("the residual is correlated from window to window: {} windows are worth about {:.0f} independent ones", rows,
-                    static_cast<double>(rows) / worth);
+        fmt::format("the residual is correlated from window to window: {} windows are equivalent to about {:.0f} independent ones",
+                    rows, static_cast<double>(rows) / worth);
     found_.concerns.push_back(std::move(concern));
   }
 
@@ -291,7 +291,7 @@ void check_against_noise(Dictionary const& dictionary, std::span<Experiment cons
     if (!(ratio > unexplained_sampled) || share < unexplained_share_sampled) continue;
     Concern concern{.kind = Concern::Kind::unexplained, .value = ratio};
     concern.clause = fmt::format(
-        "the residual is {:.3g} times what the measurement noise explains: a forcing or a term is missing, or the derivatives are "
+        "the residual is {:.3g} times what the measurement noise explains: an input or a term is missing, or the derivatives are "
         "not accurate",
         ratio);
     found.concerns.push_back(std::move(concern));

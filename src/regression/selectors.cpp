@@ -14,8 +14,8 @@ namespace sysid::regression {
 namespace {
 
 SelectorRow const selector_rows[] = {
-    {"spike_slab", "posterior probabilities of supports and terms", "inclusion probability", spike_slab::settings(), &no_refusal,
-     &spike_slab::choose},
+    {"spike_slab", "posterior probabilities of terms and of sets of terms", "inclusion probability", spike_slab::settings(),
+     &no_refusal, &spike_slab::choose},
     {"ard", "one prior precision per coefficient, evidence maximised", "contribution", ard::settings(), &no_refusal, &ard::choose},
     {"threshold", "removes the term with the smallest contribution, repeatedly", "contribution", threshold::settings(), &no_refusal,
      &threshold::choose},

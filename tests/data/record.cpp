@@ -200,15 +200,15 @@ TEST_CASE("an experiment scores its rows and simulates from the row it is told t
 TEST_CASE("rows outside the record are an error that names how many there are") {
   TemporaryFile const file("t,y\n0,1\n1,2\n2,3\n");
   Record const record = loaded(request(file.path(), {}, {"y"}));
-  CHECK_FALSE(check_rows(record, "part `train`", {1, 3}));
-  CHECK_FALSE(check_rows(record, "part `train`", {}));
-  std::optional<Diagnostic> const wrong = check_rows(record, "part `train`", {1, 4}, Span{1, 2});
+  CHECK_FALSE(check_rows(record, "range `train`", {1, 3}));
+  CHECK_FALSE(check_rows(record, "range `train`", {}));
+  std::optional<Diagnostic> const wrong = check_rows(record, "range `train`", {1, 4}, Span{1, 2});
   REQUIRE(wrong);
   CHECK(wrong->code == "E4016");
-  CHECK(wrong->message == "part `train` selects rows 1..4, but `" + file.path() + "` has 3 rows");
+  CHECK(wrong->message == "range `train` selects rows 1..4, but `" + file.path() + "` has 3 rows");
   CHECK(wrong->primary->span == Span{1, 2});
-  CHECK(check_rows(record, "part `train`", {0, 2}));
-  CHECK(check_rows(record, "part `train`", {3, 2}));
+  CHECK(check_rows(record, "range `train`", {0, 2}));
+  CHECK(check_rows(record, "range `train`", {3, 2}));
   CHECK_THROWS_AS(make_experiment(record, "bench", 1, {2, 4}), UserError);
   CHECK_THROWS_AS(make_experiment(record, "bench", 3, {2, 3}), InternalError);
 }

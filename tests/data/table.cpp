@@ -183,7 +183,7 @@ TEST_CASE("of a row of words under a header only a unit is repeated") {
     Diagnostic const error = error_of(std::string("t,y\ns,") + cell + "\n0,1\n1,2\n", "y");
     CHECK(error.message.find("a row of units") != std::string::npos);
     CHECK((error.message + error.help).find(cell) == std::string::npos);
-    CHECK(error.help.find("in brackets behind `y`") != std::string::npos);
+    CHECK(error.help.find("in brackets after `y`") != std::string::npos);
   }
 }
 

@@ -61,7 +61,7 @@ TEST_CASE("a forcing that was not recorded, and a term that the dictionary lacks
   DiscoveryAnswer const forcing = run(text);
   CHECK(forcing.exit == 0);
   REQUIRE_FALSE(forcing.finding("unexplained_residual").is_null());
-  CHECK(contains(forcing.finding("unexplained_residual").at("message"), "a forcing or a term is missing"));
+  CHECK(contains(forcing.finding("unexplained_residual").at("message"), "an input or a term is missing"));
   DiscoveryAnswer const term = run(file("target = u - 1 [kg]*y''\nterms = y', y, y^2, 1"));
   CHECK_FALSE(term.finding("unexplained_residual").is_null());
 }

@@ -94,7 +94,8 @@ TEST_CASE("a free run that escapes where the record did not go warns, one that a
   json const warning = escaped.finding("free_run_lost");
   REQUIRE_FALSE(warning.is_null());
   CHECK(warning.at("severity") == "warning");
-  CHECK(contains(warning.at("message"), "the error of a free run on bench.b is more than 1e4 % of the sd"));
+  CHECK(contains(warning.at("message"),
+                 "the rms error of a free run on bench.b is more than 1e4 % of the standard deviation of its samples"));
   CHECK(contains(warning.at("help"), "do not extrapolate"));
   CHECK(contains(escaped.said, "> 100 sd"));
 
@@ -106,7 +107,7 @@ TEST_CASE("a free run that escapes where the record did not go warns, one that a
   json const note = chaotic.finding("free_run_lost");
   REQUIRE_FALSE(note.is_null());
   CHECK(note.at("severity") == "note");
-  CHECK(contains(note.at("message"), "the error of a free run on record.late is"));
+  CHECK(contains(note.at("message"), "the rms error of a free run on record.late is"));
   CHECK(contains(note.at("help"), "if the motion is chaotic"));
   CHECK(first(chaotic).at("follows_for").get<double>() > 2);
 }

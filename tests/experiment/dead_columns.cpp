@@ -139,7 +139,7 @@ TEST_CASE("a part of the split that goes beyond the file is an error even if no 
   CheckResult const result = check_of(nothing, beyond);
   REQUIRE(result.diagnostics.all().size() == 1);
   CHECK(result.diagnostics.all().front().code == "E4016");
-  CHECK(result.diagnostics.all().front().message.starts_with("part `test` selects rows 191..400"));
+  CHECK(result.diagnostics.all().front().message.starts_with("range `test` selects rows 191..400"));
   CHECK(check_of(nothing, with(still_text, "rows 101..190", "rows 101..190, test = rows 191..200")).diagnostics.all().empty());
 }
 

@@ -139,8 +139,9 @@ class Fit {
   SolverSettings coarsest(SearchResult const& found) {
     if (found.finer == 0) return what_.solver;
     SolverSettings const finer = refined(preparation_.solver, found.finer);
-    session_.notices << fmt::format("{}: searching with {}: with {}, what fits the first rows is lost on later ones\n", task_.name,
-                                    accuracy(finer), accuracy(preparation_.solver));
+    session_.notices << fmt::format(
+        "{}: the search uses {}, because with {} the parameters that fit the first rows no longer fit the whole record\n",
+        task_.name, accuracy(finer), accuracy(preparation_.solver));
     preparation_.solver = finer;
     return finer;
   }

@@ -87,7 +87,7 @@ class Description {
       std::string const text = direction_words(direction, asked_, channels_);
       if (prior_separates(direction)) {
         page_.information->ridges.push_back(
-            fmt::format("{}: only the standard normal prior in each experiment distinguishes them", text));
+            fmt::format("{}: only their priors separate them, as is usual in a hierarchy `mean + spread*z`", text));
         continue;
       }
       page_.information->null_directions.push_back(text);
@@ -98,7 +98,8 @@ class Description {
       add(FindingCode::not_identifiable, Severity::error, std::move(names),
           fmt::format("{} (at {} of {} prior draws)", text, space.draws, space.draws),
           direction.kind == NullDirection::Kind::no_influence
-              ? "fix it to a value (`=` in place of `~`), measure a quantity that it affects, or excite it"
+              ? "fix it to a value (`=` in place of `~`), measure a quantity that it affects, or use an input that excites the "
+                "motion on which it acts"
               : "fix one of them to a known value (`=` in place of `~`), or measure a quantity that distinguishes them");
     }
     int const size = static_cast<int>(named_);
@@ -139,7 +140,7 @@ class Description {
   }
 
   std::string unasked(AssessedParameter const& coordinate) {
-    if (coordinate.role == ParameterRole::noise) return "from the residuals";
+    if (coordinate.role == ParameterRole::noise) return "from residuals of the fit";
     if (coordinate.role == ParameterRole::prior) return "from parameters whose prior depends on it";
     if (coordinate.role == ParameterRole::none) return "not used";  // the checker has warned of it
     add(FindingCode::not_identifiable, Severity::error, {coordinate.words.name},
@@ -181,7 +182,7 @@ class Description {
                                          *std::max_element(sizes.begin(), sizes.end()), sizes.size(), locals_.size());
     if (standardised_[static_cast<std::size_t>(i)] != standardised_[static_cast<std::size_t>(j)]) {
       page_.information->ridges.push_back(
-          fmt::format("{}, and only the standard normal prior in each experiment distinguishes them: {}", pair, size));
+          fmt::format("{}, and only their priors separate them, as is usual in a hierarchy `mean + spread*z`: {}", pair, size));
       return;
     }
     if (widest < still_unknown) {

@@ -108,9 +108,9 @@ void check_failures(Preflight const& preflight) {
         FindingCode::integration_step, solver.as_model ? Severity::note : Severity::warning, {},
         fmt::format("with {}, {:.0f} % of the prior draws {}", solver.text(), 100 * lost,
                     solver.fixed_step() ? "overflow, but not with adaptive steps" : "need more steps between two samples"),
-        fmt::format("{}: {}",
-                    preflight.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations",
-                    solver.as_model ? "the solver is part of the model" : finer_advice(solver)));
+        fmt::format(
+            "{}: {}", preflight.candidate() ? "failed simulations are never accepted" : "the search ignores failed simulations",
+            solver.as_model ? "remove `as_model`, unless the solver is meant to be a part of the model" : finer_advice(solver)));
 }
 
 // Whether a channel reads a state, so that its prediction is expected to move.

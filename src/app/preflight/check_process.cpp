@@ -201,10 +201,11 @@ class ProcessPreflight {
     if (!far) return;
     std::vector<std::string> names{channel};
     if (process != nullptr) names.push_back(process->name);
-    std::string const what = process != nullptr ? fmt::format("`{}`", process->name) : "the noise of " + channel;
+    std::string const what =
+        process != nullptr ? fmt::format("the prior amplitude of `{}`", process->name) : "the prior sd of the noise of " + channel;
     page_.findings.push_back(prior_far_from_data(
         std::move(names),
-        fmt::format("the median of the prior draws gives {} a width {} than the sd of {}", what, times_apart(ratio), channel)));
+        fmt::format("{} (median of the draws) is {} than the sd of the measured {}", what, times_apart(ratio), channel)));
   }
 
   void add(FindingCode code, Severity severity, std::vector<std::string> names, std::string message, std::string help) {

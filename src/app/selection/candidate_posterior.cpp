@@ -174,7 +174,7 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
     if (posterior.converged) continue;
     std::string const what =
         posterior.modes.empty()
-            ? fmt::format("with a finer solver than {} the likelihood of `{}` is not finite at any mode near its particles",
+            ? fmt::format("the likelihood of `{1}` is not finite at any mode near its particles when the solver is finer than {0}",
                           posterior.solver.text(), candidates[k].what->name)
             : fmt::format("the likelihood of `{}` has not converged even with {}", candidates[k].what->name,
                           posterior.solver.text());

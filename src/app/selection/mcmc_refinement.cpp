@@ -36,7 +36,7 @@ McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const
                                      Severity::warning,
                                      {model.name},
                                      fmt::format("`polish` has no draws of `{}`: {}", model.name, why),
-                                     ""});
+                                     "use the particles of this model, or fit it with `mh`"});
     };
     if (candidates[k].space->dimension() == 0) continue;  // one point, which is known
     if (posteriors[k].modes.empty()) {

@@ -138,7 +138,7 @@ Preconditions check_preconditions(Session& session, std::function<bool(Task cons
         try {
           Record const& record = session.record(use.data, *data.model);
           for (DataPart const& part : block.parts)  // no task need read them for them to be wrong
-            if (auto const wrong = check_rows(record, "part `" + part.name + "`", {part.first, part.last}, part.span))
+            if (auto const wrong = check_rows(record, "range `" + part.name + "`", {part.first, part.last}, part.span))
               add_one(*wrong);
           cut(record, block, *as_predicted, use.part, data.start);
           continue;

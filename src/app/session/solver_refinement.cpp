@@ -89,7 +89,7 @@ std::string settling_advice(SolverSettings const& solver) {
 std::string solver_advice(SolverSettings const& solver, Ledger const& ledger) {
   std::string const other = solver.other_methods();
   if (spent(solver, ledger)) {
-    std::string const more = fmt::format("allow more steps between two samples: `steps` is {}", solver.steps);
+    std::string const more = fmt::format("allow more steps between two samples (`steps`, now {})", solver.steps);
     bool const few = solver.steps < SolverSettings{}.steps;
     return few || other.empty() ? more : fmt::format("{}, or use {}", more, other);
   }

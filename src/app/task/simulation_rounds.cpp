@@ -82,8 +82,9 @@ std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
   throw UserError(
       {Severity::error,
        "E5001",
-       fmt::format("the simulation `{}` does not converge: the samples that the model reads back change with every repetition",
-                   task.name),
+       fmt::format(
+           "the simulation `{}` does not converge: the samples that the model uses as its own input change with every repetition",
+           task.name),
        Label{task.span, {}},
        {},
        "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values"});

@@ -116,7 +116,7 @@ class DataChecker {
   }
   void take(ast::DataSplit const& tree) {
     for (ast::SplitPart const& part : tree.parts) {
-      if (!fresh(parts_, part.name, "part")) continue;
+      if (!fresh(parts_, part.name, "range")) continue;
       auto const first = number(part.first, Unit{}, {"a row"}), last = number(part.last, Unit{}, {"a row"});
       if (!first || !last) continue;
       if (*first != std::floor(*first) || *last != std::floor(*last) || *first < 1 || *last < *first || *last > 2e9) {

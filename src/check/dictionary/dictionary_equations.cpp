@@ -75,7 +75,7 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
                             regression::Equation& numbers, std::vector<Candidate const*>& kept) {
   for (regression::Term const& free : split.free)
     if (factors_of(out_.numbers.graph, free.expression).proportional(term.factors)) {
-      out_.excluded.push_back({ExcludedTerm::Why::same, term.written.text, "what `" + free.name + "` stands before", index});
+      out_.excluded.push_back({ExcludedTerm::Why::same, term.written.text, "the term of `" + free.name + "` in the target", index});
       return;
     }
   std::optional<Unit> coefficient;

@@ -125,7 +125,7 @@ Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& colu
 // tasks (E60)
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known);
 Diagnostic unknown_fit(ast::Name const& name, Names const& known);
-/// A part of something named: "data `bench` has no part `trian`".
+/// A part of something named: "data `bench` has no range `trian`".
 Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::string const& kind, Names const& known);
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known);
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);

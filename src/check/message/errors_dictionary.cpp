@@ -78,13 +78,13 @@ Diagnostic coefficient_inside(Span term, std::string const& text) {
 
 Diagnostic state_without_channel(Span state, std::string const& name) {
   return about({name}, error("E6606", state, fmt::format("no channel measures `{}` or a derivative of it", name),
-                             fmt::format("bind it: `state {} = CHANNEL`; discovery needs measured states", name)));
+                             fmt::format("assign a channel to it: `state {} = CHANNEL`; discovery needs measured states", name)));
 }
 
 Diagnostic derivative_of_nothing(ast::Name const& state, int primes) {
   return about({primed(state.text, primes), state.text},
                error("E6607", state.span,
-                     fmt::format("`{}` is bound to a channel before `{}` is declared", primed(state.text, primes), state.text),
+                     fmt::format("`{}` is assigned to a channel before `{}` is declared", primed(state.text, primes), state.text),
                      fmt::format("declare the state first: `state {}, {} = CHANNEL`", state.text, primed(state.text, primes))));
 }
 
@@ -96,9 +96,9 @@ Diagnostic derivative_without_channel(ast::Name const& state, int primes) {
 }
 
 Diagnostic channel_bound_twice(ast::Name const& channel, Span first) {
-  return about({channel.text},
-               conflict("E6607", channel.span, "and here", first, "here", fmt::format("channel `{}` is bound twice", channel.text),
-                        "a channel measures one state, or one derivative of it"));
+  return about({channel.text}, conflict("E6607", channel.span, "and here", first, "here",
+                                        fmt::format("channel `{}` is assigned twice", channel.text),
+                                        "a channel measures one state, or one derivative of it"));
 }
 
 Diagnostic excludes_nothing(Span span, std::string const& text, Names const& known) {
@@ -129,7 +129,7 @@ Diagnostic channel_not_measured(Span data, std::string const& block, Span state,
   Diagnostic result = about(
       {block, channel}, error("E6612", data, fmt::format("data block `{}` does not measure `{}`", block, channel),
                               guess_or(channel, measured, fmt::format("add `measure {} = COLUMN` to the data block", channel))));
-  result.secondary.push_back({state, "bound here"});
+  result.secondary.push_back({state, "assigned here"});
   return result;
 }
 

@@ -42,7 +42,7 @@ Diagnostic samples_in_differential_equation(ast::Call const& call) {
       {call.function.text},
       error("E3106", call.span,
             fmt::format("`{}` is known at samples only, but a differential equation needs it between them", call.function.text),
-            "bind the column as an input with a rule between its samples, or declare `time discrete`"));
+            "assign the column to an input with a rule between its samples, or declare `time discrete`"));
 }
 Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_states) {
   if (discrete)
@@ -53,7 +53,7 @@ Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_sta
                      no_states ? "`since_last` needs consecutive rows, but this model has no states"
                                : "`since_last` can be used in `observe` and `derive`, but not in an equation",
                      no_states ? "without dynamics the rows are independent: add a column with the change to the data"
-                               : "write the rate itself: `y'`"));
+                               : "write the time derivative itself: `y'`"));
 }
 Diagnostic own_sample(Span span, std::string const& channel) {
   return about({channel}, error("E3108", span, fmt::format("channel `{}` is predicted from its own present sample", channel),

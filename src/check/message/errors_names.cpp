@@ -228,7 +228,7 @@ Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& me
       return about({name.text}, error("E2011", name.span, message, fmt::format("a power is written with `^`: `{}`", whole)));
     case UnitSlip::Kind::product:
       return about({name.text},
-                   error("E2011", name.span, message, fmt::format("a product is written with a blank or `*`: `{}`", whole)));
+                   error("E2011", name.span, message, fmt::format("a product is written with a space or `*`: `{}`", whole)));
     case UnitSlip::Kind::capitals:
       return about({name.text}, error("E2011", name.span, message, fmt::format("units are case-sensitive: write `{}`", whole)));
     case UnitSlip::Kind::key:

@@ -42,7 +42,7 @@ Diagnostic parts_overlap(Span second, Span first, std::string const& later, std:
   std::string const rows = from == to ? fmt::format("row {}", from) : fmt::format("rows {} to {}", from, to);
   return about({later, earlier},
                conflict("E4116", second, "again here", first, "first here",
-                        fmt::format("{} {} in both parts `{}` and `{}`", rows, from == to ? "is" : "are", earlier, later),
+                        fmt::format("{} {} in both ranges `{}` and `{}`", rows, from == to ? "is" : "are", earlier, later),
                         fmt::format("both ends of a range belong to it: let `{}` begin at row {}, or end before row {}", later,
                                     to + 1, from)));
 }

@@ -39,7 +39,7 @@ Diagnostic one_covariance(Span span) {
 }
 Diagnostic not_a_covariance(Span span) {
   return error("E3202", span, "a covariance is a kernel, or a sum or product of kernels",
-               "put a factor into the amplitude: `squared_exponential(amplitude = 2*s, length = l)`");
+               "put a constant factor into the amplitude: `squared_exponential(amplitude = 2*s, length = l)`");
 }
 Diagnostic unknown_kernel(ast::Name const& name, Names const& known) {
   return about({name.text}, error("E3203", name.span, fmt::format("there is no kernel `{}`", name.text),
@@ -180,20 +180,21 @@ Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given,
 }
 Diagnostic process_out_of_place(Span span, std::string const& what) {
   return error("E3209", span, fmt::format("a Gaussian process cannot be {}", what),
-               "add it to the mean of a channel: `observe y ~ normal(F + d(u), sd = s)`; lags are allowed in its arguments");
+               "add it to the mean of a channel: `observe y ~ normal(MEAN + d(u), sd = s)`; lags are allowed in its arguments");
 }
 Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel) {
   return about({name, channel}, error("E3210", span, fmt::format("`{}` must be added to the mean of `{}`", name, channel),
-                                      "put a factor into its amplitude; a nonlinear function of it would not be Gaussian"));
+                                      "put a constant factor into its amplitude; products with other quantities and nonlinear "
+                                      "functions of it are not supported"));
 }
 Diagnostic process_added_twice(Span span, std::string const& name, std::string const& channel) {
   return about({name, channel},
                error("E3210", span, fmt::format("`{}` occurs more than once in the mean of `{}`", name, channel),
-                     "write it once: put a factor into its amplitude, and declare a second function for other arguments"));
+                     "write it once: put a constant factor into its amplitude, and declare a second function for other arguments"));
 }
 Diagnostic process_unobserved(Span span, std::string const& name) {
   return about({name}, error("E3210", span, fmt::format("no channel has `{}` in its mean", name),
-                             fmt::format("add it to one: `observe y ~ normal(F + {}(...), sd = s)`", name)));
+                             fmt::format("add it to one: `observe y ~ normal(MEAN + {}(...), sd = s)`", name)));
 }
 Diagnostic process_with_moving_noise(Span span, std::string const& channel) {
   return about(
@@ -220,7 +221,7 @@ Diagnostic process_of_two_channels(Span span, std::string const& name, std::stri
 Diagnostic process_never_applied(ast::Name const& name) {
   return about({name.text},
                error("E3213", name.span, fmt::format("`{}` is declared but never applied", name.text),
-                     fmt::format("add it to the mean of a channel: `observe y ~ normal(F + {}(...), sd = s)`", name.text)));
+                     fmt::format("add it to the mean of a channel: `observe y ~ normal(MEAN + {}(...), sd = s)`", name.text)));
 }
 Diagnostic process_of_one_experiment(Span span, std::string const& name, std::string const& parameter) {
   return about(

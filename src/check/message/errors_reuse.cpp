@@ -119,14 +119,14 @@ Diagnostic input_of_part_unbound(Span span, std::string const& part, Names const
       inputs,
       about({part}, error("E2806", span,
                           fmt::format("part `{}` has no value for its {} {}", part, plural("input", inputs.size()), quoted(inputs)),
-                          fmt::format("bind it: `{}({} = ...)`", model, inputs.front()))));
+                          fmt::format("assign a value to it: `{}({} = ...)`", model, inputs.front()))));
 }
 Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) {
   return with(
       about({input},
             error("E2807", binding,
                   fmt::format("the part needs the time derivative of its input `{}`, which this expression does not have", input),
-                  "bind a state or an input, or sums, products, quotients and constant powers of these")),
+                  "give a state, an input, or sums, products, quotients and constant powers of these")),
       use, "the derivative is used here");
 }
 Diagnostic candidate_range(Span span, long models, std::size_t most) {

@@ -62,12 +62,13 @@ constexpr Synonym option_synonyms[] = {
     {"metric", "distance"},
 };
 
-constexpr std::string_view of_threads = "threads are an option of the command: `sysid run FILE --threads 4`",
-                           of_folder = "the folder of results is an option of the command: `sysid run FILE -o DIR`",
-                           of_backend = "a back end has no name before it: `with mh`",
-                           of_tolerance = "tolerances are settings of a solver: `solver = dopri5(relative = 1e-8)`",
-                           of_step = "the step of the solver is a part of that between samples: `substeps = 10`",
-                           of_duration = "write the number of rows: `samples` is the duration times the rate";
+constexpr std::string_view
+    of_threads = "threads are an option of the command: `sysid run FILE --threads 4`",
+    of_folder = "the folder of results is an option of the command: `sysid run FILE -o DIR`",
+    of_backend = "write the back end directly after `with`: `with mh`",
+    of_tolerance = "tolerances are settings of a solver: `solver = dopri5(relative = 1e-8)`",
+    of_step = "the solver step is given as a fraction of the sampling interval: `substeps = 10` means ten steps per sample",
+    of_duration = "write the number of rows: `samples` is the duration times the rate";
 /// What is no option of a task, and where it is written.
 constexpr Synonym option_places[] = {
     {"threads", of_threads},
@@ -136,7 +137,7 @@ bool among(std::span<std::string_view const> words, std::string const& word) {
 /// Help about an option that is written elsewhere, or empty.
 std::string place_of_option(std::string const& option) {
   if (among(of_tasks, option))
-    return fmt::format("`{0}` is an option of the task: write `{0} = ...` behind the parentheses", option);
+    return fmt::format("`{0}` is an option of the task: write `{0} = ...` after the parentheses", option);
   if (among(of_backends, option))
     return fmt::format("`{0}` is a setting of the back end: write it in its parentheses, `mh({0} = ...)`", option);
   for (Synonym const& each : option_places)

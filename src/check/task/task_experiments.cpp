@@ -35,7 +35,7 @@ std::optional<ExperimentUse> TaskChecker::experiment(ast::DataReference const& r
     if (place == block.parts.end()) {
       std::vector<std::string> known;
       for (DataPart const& each : block.parts) known.push_back(each.name);
-      diagnostics_.add(errors::unknown_member(*reference.part, errors::named("data", block.name), "part", known));
+      diagnostics_.add(errors::unknown_member(*reference.part, errors::named("data", block.name), "range", known));
       return std::nullopt;
     }
     use.part = static_cast<int>(place - block.parts.begin());

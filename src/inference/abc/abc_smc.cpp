@@ -145,10 +145,8 @@ class Run {
       }
     }
     if (highest == -infinity)
-      return !stop(
-          Stop{fmt::format("the proposals of population {} are too small for double precision: its particles have no weights",
-                           next_.number),
-               true});
+      return !stop(Stop{
+          fmt::format("the proposal densities of population {} underflow, so its particles have no weights", next_.number), true});
     double total = 0;
     for (std::size_t m = 0; m < logs.size(); ++m)
       for (std::size_t j = 0; j < logs[m].size(); ++j) total += next_.models[m].weight[j] = elementary::exp(logs[m][j] - highest);

@@ -27,7 +27,7 @@ constexpr SettingRow rows[] = {
     {"chains", SettingKind::integer, "4", 1, 65536, "", "number of independent chains"},
     {"acceptance", SettingKind::real, "0.8", 0.1, 0.999, "",
      "mean acceptance that the step is tuned to; higher: shorter steps, which follow sharper bends"},
-    {"depth", SettingKind::integer, "10", 1, 15, "", "doublings of a trajectory at most"},
+    {"depth", SettingKind::integer, "10", 1, 15, "", "maximum number of doublings of a trajectory"},
     {"metric", SettingKind::word, "automatic", 0, 0, "automatic dense diagonal",
      "dense: the covariance of the posterior; diagonal: its variances alone; automatic: dense to 100 parameters"},
     {"start", SettingKind::word, "global", 0, 0, "global prior",

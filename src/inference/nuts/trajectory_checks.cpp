@@ -72,7 +72,7 @@ std::string words_of(Place const& place) {
 std::string remedy(double acceptance) {
   std::string const shorter = acceptance < 0.95 ? "acceptance = 0.95" : acceptance < 0.99 ? "acceptance = 0.99" : "";
   return (shorter.empty() ? std::string() : "use " + shorter + ", which takes shorter steps; if that does not help, ") +
-         "write a hierarchy in terms of standardised members, or sample with tempering or mh";
+         "write a hierarchy in the non-centred form (k = mean + spread*z), or sample with tempering or mh";
 }
 
 }  // namespace
@@ -105,9 +105,9 @@ Findings check_trajectories(TrajectoryReport const& report) {
         {FindingCode::trajectories_cut,
          Severity::warning,
          {},
-         fmt::format(
-             "{:.2g} % of the trajectories were still going straight after {} steps, so draws are more correlated than need be",
-             100 * static_cast<double>(sum.cut) / all, (1 << report.depth) - 1),
+         fmt::format("{:.2g} % of the trajectories reached the maximum length of {} steps without a U-turn, so the draws are more "
+                     "correlated than necessary",
+                     100 * static_cast<double>(sum.cut) / all, (1 << report.depth) - 1),
          fmt::format("use a longer burn-in (burn_in), in which the metric is learnt{}; check for parameters that the data cannot "
                      "separate, and for jumps of the density, for which mh is better",
                      report.depth < 15 ? fmt::format(", or depth = {}", std::min(15, report.depth + 2)) : "")});

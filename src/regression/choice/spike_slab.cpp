@@ -15,17 +15,19 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"prior", SettingKind::word, "beta_prime", 0, 0, "beta_prime unit_information zellner",
-     "prior of the coefficients; beta_prime: of unknown width; unit_information: of width g about their estimate; zellner: "
-     "of width g about zero"},
+     "prior of the coefficients; beta_prime: as zellner, with an unknown g; unit_information: normal about their estimate; "
+     "zellner: "
+     "normal about zero (their variance: see g)"},
     {"g", SettingKind::real, "0", 0, 1e300, "",
      "for unit_information and zellner: prior variance divided by that of the estimate; 0: the number of rows"},
     {"sizes", SettingKind::word, "beta_binomial", 0, 0, "beta_binomial uniform",
-     "equal prior probability; beta_binomial: for every number of terms; uniform: for every support (set of terms)"},
+     "equal prior probability; beta_binomial: for every number of terms; uniform: for every set of terms"},
     {"keep", SettingKind::real, "0.5", 0, 1, "", "inclusion probability above which a term is kept"},
-    {"enumerate", SettingKind::integer, "16", 0, 24, "", "largest number of selectable terms for which all supports are evaluated"},
+    {"enumerate", SettingKind::integer, "16", 0, 24, "",
+     "largest number of selectable terms for which all sets of terms are evaluated"},
     {"sweeps", SettingKind::integer, "200", 1, 1e7, "", "iterations of each Gibbs chain over all terms"},
     {"chains", SettingKind::integer, "4", 1, 1000, "", "Gibbs chains"},
-    {"supports", SettingKind::integer, "10", 1, 10000, "", "number of supports that are reported, best first"},
+    {"supports", SettingKind::integer, "10", 1, 10000, "", "number of sets of terms that are reported, best first"},
 };
 
 /// Supports beyond this many, by falling probability, no longer enter averages of coefficients.

@@ -24,7 +24,7 @@ struct Concern {
     // the result stands, but look
     nearly_collinear,  // terms of a group that the data barely tell apart; value: condition index (Belsley et al. 1980)
     interchangeable,   // terms of which one is needed, but not which; value: probability that at least one is in
-    unexplained,       // value: residual sd over that expected of the measurement noise: a forcing or a term is missing
+    unexplained,       // value: residual sd over that expected of the measurement noise: an input or a term is missing
     correlated,        // value: how many rows are worth one independent one
     other_rule,        // input, rule: the residual is far smaller with it; value: by which factor the squares
     smoothed,          // terms that needed a smoothed derivative inside the weak form

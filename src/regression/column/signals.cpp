@@ -190,8 +190,7 @@ Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment cons
       concerns.push_back(std::move(concern));
     } else if (dictionary.channels[c].order == 0 && !dictionary.channels[c].noise_sd && nothing_but_noise(experiments, c)) {
       Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
-      concern.clause =
-          fmt::format("`{}` is noise on the whole record: neighbouring samples differ as much as any two samples", name);
+      concern.clause = fmt::format("`{}` contains only white noise in this record: its spectrum is flat", name);
       concerns.push_back(std::move(concern));
     }
   }

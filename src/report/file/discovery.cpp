@@ -43,7 +43,7 @@ ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation cons
 ReportTable support_table(DiscoveredEquation const& equation) {
   bool const probable = std::any_of(equation.supports.begin(), equation.supports.end(),
                                     [](DiscoveredSupport const& each) { return each.probability > 0 && each.probability < 1; });
-  ReportTable table{"best supports of " + equation.target,
+  ReportTable table{"best sets of terms for " + equation.target,
                     "Log evidence: relative to the model with only the terms that are always kept, with the same prior for all.",
                     {"terms", "log evidence"},
                     {}};

@@ -84,7 +84,8 @@ TEST_CASE("a place that only a coarse solver reaches is no mode: it takes no par
   CHECK_FALSE(answer.model("downward").contains("laplace"));
   CHECK_FALSE(answer.model("downward").contains("polished"));
   CHECK(answer.said("step_not_settled") ==
-        "with a finer solver than rk4(substeps = 1) the likelihood of `downward` is not finite at any mode near its particles\n");
+        "the likelihood of `downward` is not finite at any mode near its particles when the solver is finer than rk4(substeps = "
+        "1)\n");
   CHECK(answer.said("not_polished").find("`polish` has no draws of `downward`") == 0);
 }
 

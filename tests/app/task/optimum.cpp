@@ -117,7 +117,7 @@ TEST_CASE("a solver that has spent its steps is advised more of them, and no oth
   CHECK(spent.run.exit == 1);
   for (json const& finding : spent.fit.at("findings"))
     if (finding.at("code") == "step_not_settled") {
-      CHECK(finding.at("help").get<std::string>().find("`steps` is 1") != std::string::npos);
+      CHECK(finding.at("help").get<std::string>().find("`steps`, now 1") != std::string::npos);
       CHECK(finding.at("help").get<std::string>().find("cvode") == std::string::npos);
     }
   CHECK(found(spent.fit, "step_not_settled"));
