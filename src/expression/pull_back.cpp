@@ -5,8 +5,15 @@
 #include <ranges>
 
 #include "expression/finite_slope.hpp"
+#include "expression/function.hpp"
 
 namespace sysid {
+
+bool knows_derivatives(Graph const& graph, std::span<NodeId const> roots) {
+  return std::ranges::all_of(graph.reachable(roots), [&](NodeId id) {
+    return graph[id].operation != Operation::call || graph[id].function->derivative != nullptr;
+  });
+}
 
 std::vector<NodeId> pull_back(Graph& graph, std::span<NodeId const> roots, std::span<NodeId const> weights,
                               std::span<NodeId const> leaves) {

@@ -8,6 +8,9 @@
 
 namespace sysid {
 
+/// Whether all functions below the roots have derivatives.
+bool knows_derivatives(Graph const& graph, std::span<NodeId const> roots);
+
 /// For each leaf x:  sum_i weights_i * d(roots_i)/dx,  with slopes as `finite_slope` has them.
 ///
 /// Each node of the roots is passed once, whatever the number of leaves: the result has a few times as many operations as the

@@ -39,6 +39,18 @@ Simulator const& ModelTarget::squares(std::size_t experiment) const {
   });
 }
 
+void ModelTarget::log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian) const {
+  if (!jacobian || !space_->log_prior_gradient(theta, out, gradient))
+    return Target::log_prior_gradient(theta, out, gradient, jacobian);
+  for (int w = 0; w < theta.width(); ++w) {
+    bool finite = true;
+    for (int p = 0; p < dimension(); ++p) finite = finite && std::isfinite(gradient(p, w));
+    if (!finite)
+      Target::log_prior_gradient(theta.columns(w, 1), out.subspan(static_cast<std::size_t>(w), 1), gradient.columns(w, 1), true);
+    for (int p = 0; p < dimension() && !std::isfinite(out[static_cast<std::size_t>(w)]); ++p) gradient(p, w) = 0;
+  }
+}
+
 Simulator const& ModelTarget::gradient(std::size_t experiment) const {
   return parts_[experiment].gradient.get([&] {
     std::shared_ptr<SimulationProgram const> const program = compiled_->gradient();

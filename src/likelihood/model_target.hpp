@@ -39,12 +39,14 @@ class ModelTarget : public Target {
   void log_prior(ConstLanes theta, std::span<double> out, bool jacobian = true) const override {
     space_->log_prior(theta, out, jacobian);
   }
+  void log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian = true) const override;
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override;
   int residual_count() const override;
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override;
   double roughness() const override;
-  // Exact where the compiled model says so, but for single lanes where these are not finite: by differences. An experiment is
-  // simulated for the coordinates that it reads; by others its derivatives are 0.
+  // Exact where the compiled model says so, but for single lanes where these are not finite: by differences. The value that comes
+  // with a gradient is that of another program, and equal to rounding. An experiment is simulated for the coordinates that it
+  // reads; by others its derivatives are 0.
   DerivativeSource derivatives() const override;
   double derivative_cost() const override;
   void log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const override;

@@ -10,6 +10,7 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "core/text/diagnostic.hpp"
+#include "expression/pull_back.hpp"
 #include "function/primitive.hpp"
 
 namespace sysid {
@@ -133,6 +134,8 @@ void ParameterSpace::compile() {
   unconstrain_ = compile_kernel(graph, leaves, backward);
   NodeId const densities[] = {with_jacobian, without};
   prior_ = compile_kernel(graph, coordinates, densities);
+  densities_ = graph;
+  density_ = with_jacobian;
   compile_slopes(graph, constrained, coordinates, value);
 }
 
@@ -217,6 +220,27 @@ void ParameterSpace::log_prior(ConstLanes theta, std::span<double> out, bool jac
     double const value = densities(jacobian ? 0 : 1, w);
     out[static_cast<std::size_t>(w)] = std::isnan(value) ? -infinity : value;
   }
+}
+
+bool ParameterSpace::log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient) const {
+  std::optional<Kernel> const& kernel = prior_gradient_.get([&]() -> std::optional<Kernel> {
+    Graph graph = densities_;
+    if (!knows_derivatives(graph, {&density_, 1})) return std::nullopt;
+    std::vector<NodeId> coordinates;
+    for (int k = 0; k < dimension(); ++k) coordinates.push_back(graph.leaf(LeafKind::unconstrained, k));
+    std::vector<NodeId> outputs{density_};
+    NodeId const one = graph.constant(1);
+    for (NodeId const slope : pull_back(graph, outputs, {&one, 1}, coordinates)) outputs.push_back(slope);
+    return compile_kernel(graph, coordinates, outputs);
+  });
+  if (!kernel) return false;
+  LaneArray values(1 + dimension(), theta.width());
+  run(*kernel, theta, values);
+  for (int w = 0; w < theta.width(); ++w) {
+    out[static_cast<std::size_t>(w)] = std::isnan(values(0, w)) ? -infinity : values(0, w);
+    for (int k = 0; k < dimension(); ++k) gradient(k, w) = values(1 + k, w);
+  }
+  return true;
 }
 
 LaneArray ParameterSpace::values(ConstLanes theta) const {

@@ -68,6 +68,9 @@ class ParameterSpace {
   // As Target describes them; theta [D x W].
   void sample_prior(StreamKey key, Lanes theta) const;
   void log_prior(ConstLanes theta, std::span<double> out, bool jacobian) const;
+  /// log prior [W] on R^D and its gradient [D x W], to rounding; false where a prior has a function whose derivative is not known,
+  /// and nothing is written.
+  bool log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient) const;
   void constrain(ConstLanes theta, Lanes declared) const;
   void unconstrain(ConstLanes declared, Lanes theta) const;
 
@@ -113,6 +116,9 @@ class ParameterSpace {
   Kernel slope_;        // u [D] -> slopes
   Kernel unconstrain_;  // values -> u [D]
   Kernel prior_;        // u [D] -> log prior on R^D, log prior of the declared parameters
+  Graph densities_;     // the first of these as an expression of the coordinates
+  NodeId density_ = 0;
+  Lazily<std::optional<Kernel>> prior_gradient_;  // u [D] -> log prior on R^D, its gradient
 };
 
 }  // namespace sysid

@@ -7,7 +7,7 @@
 
 #include "core/text/diagnostic.hpp"
 #include "expression/finite_slope.hpp"
-#include "expression/function.hpp"
+#include "expression/pull_back.hpp"
 #include "solver/solver.hpp"
 
 namespace sysid {
@@ -198,13 +198,6 @@ class Tangents {
   std::vector<std::vector<int>> place_;   // [parameters][states]
   int first_memory_ = 0;
 };
-
-bool knows_derivatives(Graph const& graph, std::vector<NodeId> const& roots) {
-  std::vector<NodeId> const nodes = graph.reachable(roots);
-  return std::all_of(nodes.begin(), nodes.end(), [&](NodeId id) {
-    return graph[id].operation != Operation::call || graph[id].function->derivative != nullptr;
-  });
-}
 
 }  // namespace
 

@@ -196,6 +196,28 @@ TEST_CASE("exact derivatives are near differences, at 0 of every coordinate too"
   }
 }
 
+TEST_CASE("the gradient of the prior is exact, through populations and bounds that are estimated") {
+  auto const target = target_of(text, false, "rk4");
+  LaneArray const theta = draws(*target, 4);
+  LaneArray gradient(theta.rows(), 4), expected(theta.rows(), 4);
+  std::vector<double> value(4), same_value(4), density(4);
+  target->log_prior_gradient(theta, value, gradient);
+  target->Target::log_prior_gradient(theta, same_value, expected);
+  target->log_prior(theta, density);
+  CHECK(value == density);
+  CHECK(furthest(gradient, expected) <= 1e-7 * largest(expected));
+  // Of what stands alone: a normal density.
+  for (int p = 0; p < theta.rows(); ++p)
+    if (target->parameters()[static_cast<std::size_t>(p)].name == "idle")
+      for (int w = 0; w < 4; ++w) CHECK(gradient(p, w) == doctest::Approx(-theta(p, w)).epsilon(1e-14));
+  LaneArray alone(theta.rows(), 1);
+  target->log_prior_gradient(theta.view().columns(2, 1), {value.data(), 1}, alone);
+  for (int p = 0; p < theta.rows(); ++p) CHECK(alone(p, 0) == gradient(p, 2));
+  target->log_prior_gradient(theta, value, gradient, false);
+  target->Target::log_prior_gradient(theta, value, expected, false);
+  CHECK(same(gradient, expected));
+}
+
 TEST_CASE("of more parameters than pay, steps of least squares take differences, and the gradient is that of the adjoint") {
   constexpr int count = 9;  // first-order lags in a row
   std::string lags = "model lags {\n  input x\n";
