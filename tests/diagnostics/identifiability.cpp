@@ -2,12 +2,13 @@
 #include "diagnostics/identifiability.hpp"
 
 #include <doctest/doctest.h>
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 
@@ -33,8 +34,7 @@ LocalSlopes draw_at(Vector const& value, Matrix const& slopes) {
   local.spread = Vector::Ones(value.size());
   local.sensitivity.finite = true;
   Matrix const scaled = slopes * local.scale.asDiagonal();
-  Eigen::HouseholderQR<Matrix> const factored(scaled);
-  local.sensitivity.slopes = Matrix(factored.matrixQR().topRows(value.size()).triangularView<Eigen::Upper>());
+  local.sensitivity.slopes = OrthogonalTriangular(scaled).triangle();
   local.sensitivity.error = 1e-12 * scaled.colwise().norm().transpose();
   local.sensitivity.size = 1;
   return local;
@@ -54,8 +54,7 @@ std::vector<LocalSlopes> draws(int parameters, Directions const& directions) {
   for (std::uint64_t d = 0; d < 5; ++d) {
     Vector const value = positive(parameters, 100 + d);
     Matrix const null = directions(value);
-    Eigen::HouseholderQR<Matrix> const factored(null);
-    Matrix const q = factored.householderQ() * Matrix::Identity(parameters, null.cols());
+    Matrix const q = OrthogonalTriangular(null).basis();
     Matrix const slopes = random_matrix(parameters, d);
     out.push_back(draw_at(value, slopes - slopes * q * q.transpose()));
   }

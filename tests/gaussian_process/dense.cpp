@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include <limits>
 #include <numbers>
@@ -12,6 +12,7 @@
 #include "core/numeric/not_finite.hpp"
 #include "gaussian_process/made.hpp"
 #include "gaussian_process/textbook.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 using namespace sysid::gaussian_process;
@@ -150,7 +151,7 @@ TEST_CASE("constant and linear kernels are Bayesian linear regression, and so ar
   x << Eigen::VectorXd::Ones(60), kernels.inputs;
   Eigen::Matrix3d precision = x.transpose() * x / (noise * noise);
   precision.diagonal() += Eigen::Vector3d(1 / (level * level), 1 / (slope0 * slope0), 1 / (slope1 * slope1));
-  Eigen::Matrix3d const spread = precision.inverse();
+  Eigen::Matrix3d const spread = inverse(precision);
   Eigen::Vector3d const coefficients = spread * x.transpose() * kernels.values / (noise * noise);
 
   Places places{made_inputs(5, 2, 10, 9), {}};

@@ -257,6 +257,20 @@ TEST_CASE("includes point one way, and every folder of sources is a room") {
   }
 }
 
+TEST_CASE("tests leave decompositions of matrices to linear_algebra as well") {
+  std::filesystem::path const root = std::filesystem::path(SYSID_SOURCE_DIR) / "tests";
+  int lines = 0;
+  for (auto const& entry : std::filesystem::recursive_directory_iterator(root)) {
+    std::string const folder = entry.path().parent_path().lexically_relative(root).string();
+    if (entry.path().extension() != ".cpp" || folder == "linear_algebra") continue;
+    CAPTURE(entry.path().string());
+    std::istringstream text(sysid::read_file(entry.path()));
+    for (std::string line; std::getline(text, line); ++lines)
+      if (line.starts_with("#include <Eigen/")) CHECK(wrong("search", line) == "");
+  }
+  CHECK(lines > 10'000);
+}
+
 TEST_CASE("an include that points upwards is found") {
   CHECK(wrong("result", "#include \"report/page/html.hpp\"") == "result includes report/page");
   CHECK(wrong("model", "#include \"syntax/ast.hpp\"") == "model includes syntax");

@@ -1,7 +1,7 @@
 // Autoregressive moves: they leave the posterior as it is, whatever they go about, and yield more than walks in many dimensions.
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>

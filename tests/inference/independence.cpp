@@ -3,11 +3,12 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
 #include "core/numeric/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "search/stored_values.hpp"
 
 using namespace sysid;
@@ -28,8 +29,8 @@ Independence in_the_plane() {
 
 /// The three parts, written out.
 double density(Eigen::VectorXd const& x, Eigen::VectorXd const& mean, Eigen::MatrixXd const& covariance) {
-  double const p = static_cast<double>(x.size()), squares = (x - mean).dot(covariance.ldlt().solve(x - mean));
-  double const root = std::sqrt(covariance.determinant());
+  double const p = static_cast<double>(x.size()), squares = (x - mean).dot(solve_symmetric(covariance, x - mean));
+  double const root = std::exp(log_absolute_determinant(covariance) / 2);
   double const normal = std::exp(-squares / 2) / (std::pow(2 * std::numbers::pi, p / 2) * root);
   double const student = std::exp(std::lgamma((6 + p) / 2) - std::lgamma(3.0)) / (std::pow(6 * std::numbers::pi, p / 2) * root) *
                          std::pow(1 + squares / 6, -(6 + p) / 2);

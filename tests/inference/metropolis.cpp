@@ -173,7 +173,8 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
   for (std::uint64_t i = 0; i < 5000; ++i) {
     Info const info =
         step(target, {std::vector<Proposal const*>(4, &adaptation.proposal())}, {1, Purpose::proposal, 0, i}, state, ledger);
-    for (std::size_t w = 0; w < 4 && i >= 3000; ++w) late += info[w].tunes_scale ? info[w].acceptance_probability / (0.9 * 2000 * 4) : 0;
+    for (std::size_t w = 0; w < 4 && i >= 3000; ++w)
+      late += info[w].tunes_scale ? info[w].acceptance_probability / (0.9 * 2000 * 4) : 0;
     adaptation.learn(state, info, std::vector<char>(4));
   }
   auto const& factor = adaptation.proposal().factor;

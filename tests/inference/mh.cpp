@@ -3,13 +3,14 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "diagnostics/convergence.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/interruptions.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "search/search.hpp"
 
 using namespace sysid;
@@ -65,7 +66,7 @@ Line line() {
   auto const residuals = [=](std::vector<double> const& w, std::vector<double>& rows) {
     for (int i = 0; i < n; ++i) rows[static_cast<std::size_t>(i)] = (y(i) - w[0] - w[1] * design(i, 1)) / sigma;
   };
-  return {precision.ldlt().solve(right), precision.inverse().diagonal().cwiseSqrt(),
+  return {solve_symmetric(precision, right), inverse(precision).diagonal().cwiseSqrt(),
           TestTarget({"a", "b"}, {{Prior::normal, 0, 5}, {Prior::normal, 1, 2}}, n, 0, residuals)};
 }
 
@@ -119,7 +120,7 @@ TEST_CASE("a correlated Gaussian with scales spanning a factor 100 is sampled in
     for (int j = 0; j < dimension; ++j) covariance(i, j) = sd(i) * sd(j) * std::pow(0.9, std::abs(i - j));
   // A prior of sd 1e4 is flat on this scale: it moves the widest sd by 5e-9.
   std::vector<Prior> const priors(dimension, Prior{Prior::normal, 0, 1e4});
-  Eigen::MatrixXd const whiten = Eigen::MatrixXd(covariance.llt().matrixL()).inverse();
+  Eigen::MatrixXd const whiten = inverse(*cholesky(covariance));
   TestTarget const target({"a", "b", "c", "d", "e"}, priors, dimension, 0,
                           [=](std::vector<double> const& w, std::vector<double>& rows) {
                             Eigen::Map<Eigen::VectorXd>(rows.data(), dimension) =

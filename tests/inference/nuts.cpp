@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +11,7 @@
 #include "inference/chain/mh.hpp"
 #include "inference/interruptions.hpp"
 #include "inference/nuts/trajectory_checks.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid::nuts {
 namespace {
@@ -53,12 +54,12 @@ Gaussian gaussian() {
   Eigen::Matrix3d covariance;
   covariance << 1, 0.9 * 0.1, -0.5 * 0.01, 0.9 * 0.1, 0.01, -0.6 * 0.001, -0.5 * 0.01, -0.6 * 0.001, 0.0001;
   Eigen::Vector3d const mean(1, -0.2, 0.03);
-  Eigen::Matrix3d const whitening = Eigen::Matrix3d(covariance.llt().matrixL()).inverse();
-  Eigen::Matrix3d precision = covariance.inverse();
+  Eigen::Matrix3d const whitening = inverse(*cholesky(covariance));
+  Eigen::Matrix3d precision = inverse(covariance);
   Eigen::Vector3d right = precision * mean;
   precision.diagonal().array() += 1.0 / 100;
-  Eigen::VectorXd const posterior_mean = precision.ldlt().solve(right);
-  return {posterior_mean, precision.inverse().diagonal().cwiseSqrt(),
+  Eigen::VectorXd const posterior_mean = solve_symmetric(precision, right);
+  return {posterior_mean, inverse(precision).diagonal().cwiseSqrt(),
           TestTarget({"a", "b", "c"}, {{Prior::normal, 0, 10}, {Prior::normal, 0, 10}, {Prior::normal, 0, 10}}, 3, 0,
                      [=](std::vector<double> const& w, std::vector<double>& rows) {
                        Eigen::Vector3d const r = whitening * (Eigen::Vector3d(w[0], w[1], w[2]) - mean);

@@ -1,7 +1,7 @@
 // Curved ridges: a row of normal distributions follows them, and chains whose moves go about it cross them.
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -3,10 +3,11 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "core/numeric/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 
@@ -48,7 +49,7 @@ Eigen::VectorXd dense(std::vector<SegmentSlopes> const& slopes, double damping) 
     row += n;
   }
   for (Eigen::Index j = 0; j < unknowns; ++j) matrix(rows + j, j) = std::sqrt(damping) * matrix.col(j).head(rows).norm();
-  return matrix.colPivHouseholderQr().solve(-residual);
+  return OrthogonalTriangular(matrix).solve(-residual);
 }
 
 }  // namespace

@@ -4,13 +4,14 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 
 #include "check/checking.hpp"
 #include "core/numeric/random.hpp"
 #include "likelihood/segments/segment_starts.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "simulate/thread_pool.hpp"
 
 using namespace sysid;
@@ -90,8 +91,8 @@ Dense dense_decay(std::vector<Segment> const& segments) {
         ++out.count;
       }
     }
-    out.unknowns += normal.ldlt().solve(right);
-    out.variance_of_rate = normal.inverse()(0, 0) * out.squares / (out.count - static_cast<double>(n) - 1);
+    out.unknowns += solve_symmetric(normal, right);
+    out.variance_of_rate = inverse(normal)(0, 0) * out.squares / (out.count - static_cast<double>(n) - 1);
   }
   return out;
 }

@@ -3,9 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "core/numeric/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 using regression::BandMatrix;
@@ -26,7 +27,7 @@ TEST_CASE("a band matrix factors and solves like the dense one") {
   REQUIRE(matrix.factor());
   Eigen::MatrixXd lower = right;
   matrix.solve_lower(lower);
-  Eigen::MatrixXd const factor = dense.llt().matrixL();
+  Eigen::MatrixXd const factor = *cholesky(dense);
   CHECK((factor * lower - right).norm() < 1e-12);
   matrix.solve_upper(lower);
   CHECK((dense * lower - right).norm() < 1e-12);

@@ -3,12 +3,13 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <map>
 
 #include "core/numeric/random.hpp"
 #include "data/table.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "regression/choice/triangle.hpp"
 
 using namespace sysid;
@@ -54,7 +55,7 @@ TEST_CASE("least squares on a support is that of the normal equations") {
   Support const support = least_squares(p, {0, 2});
   Eigen::MatrixXd a(50, 2);
   a << p.terms.col(0), p.terms.col(2);
-  Eigen::MatrixXd const inverse = (a.transpose() * a).inverse();
+  Eigen::MatrixXd const inverse = sysid::inverse(a.transpose() * a);
   Eigen::VectorXd const w = inverse * a.transpose() * p.known;
   double const variance = (p.known - a * w).squaredNorm() / 48;
   CHECK((support.coefficient - w).norm() < 1e-12);

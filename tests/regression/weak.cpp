@@ -3,9 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <limits>
 
+#include "linear_algebra/decompositions.hpp"
 #include "regression/problems.hpp"
 #include "regression/weak/pieces.hpp"
 #include "regression/weak/test_function.hpp"
@@ -180,7 +181,7 @@ TEST_CASE("whitening is the inverse Cholesky factor of the covariance that singl
   }
   Eigen::MatrixXd covariance = 0.01 * gradient * gradient.transpose();  // noise_sd 0.1
   covariance.diagonal().array() += 1e-10 * covariance.diagonal().mean();
-  Eigen::MatrixXd const factor = covariance.llt().matrixL();
+  Eigen::MatrixXd const factor = *cholesky(covariance);
   Columns const white = projection->whitened(0, coefficients, 0);
   Eigen::VectorXd const back = factor * residual(white);
   CHECK((back - residual(projection->columns(0))).norm() < 1e-8 * back.norm());
@@ -213,7 +214,7 @@ TEST_CASE("the sensitivity of smoothed and nonlinear terms is their slope in eac
   }
   Eigen::MatrixXd covariance = gradient * gradient.transpose();
   covariance.diagonal().array() += 1e-10 * covariance.diagonal().mean();
-  Eigen::MatrixXd const factor = covariance.llt().matrixL();
+  Eigen::MatrixXd const factor = *cholesky(covariance);
   Eigen::VectorXd const back = factor * residual(projection->whitened(0, coefficients, 0));
   CHECK((back - residual(projection->columns(0))).norm() < 1e-5 * back.norm());  // differences are good to 1e-9 / h
 }

@@ -3,9 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "inference/targets.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "search/search.hpp"
 
 using namespace sysid;
@@ -46,11 +47,11 @@ TEST_CASE("sds of many parameters are exact, that of the noise too, which Gauss-
   });
   Bench bench;
   Mode const mode = search(target, ObjectiveKind::likelihood, bench.context).modes.front();
-  Eigen::VectorXd const best = x.colPivHouseholderQr().solve(y);
+  Eigen::VectorXd const best = OrthogonalTriangular(x).solve(y);
   double const sigma = std::sqrt((y - x * best).squaredNorm() / rows);
   CHECK(mode.declared.back() == doctest::Approx(sigma).epsilon(1e-3));
   CHECK(mode.sd.back() == doctest::Approx(sigma / std::sqrt(2.0 * rows)).epsilon(0.01));
-  Eigen::MatrixXd const covariance = sigma * sigma * (x.transpose() * x).inverse();
+  Eigen::MatrixXd const covariance = sigma * sigma * inverse(x.transpose() * x);
   for (int c = 0; c < coefficients; ++c)
     CHECK(mode.sd[static_cast<std::size_t>(c)] == doctest::Approx(std::sqrt(covariance(c, c))).epsilon(0.01));
 }

@@ -3,11 +3,12 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "inference/optimum.hpp"
 #include "inference/targets.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "search/local_searches.hpp"
 #include "search/search.hpp"
 
@@ -70,7 +71,7 @@ double highest() {
     y -= a * x;
     if (!free.empty()) {
       Eigen::MatrixXd const part = a(Eigen::all, free);
-      x(free) = (part.transpose() * part).fullPivLu().solve(part.transpose() * y);
+      x(free) = solve_symmetric(part.transpose() * part, part.transpose() * y);
       if (x.minCoeff() < -1e-12 || x.maxCoeff() > 1.5 + 1e-12) continue;
     }
     best = std::max(best, -0.5 * (measured() - a * x).squaredNorm());

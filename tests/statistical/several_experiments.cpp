@@ -1,13 +1,14 @@
 // Linear-Gaussian models on several experiments: shared, own and hierarchical parameters against closed forms and quadrature.
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <vector>
 
 #include "core/numeric/random.hpp"
 #include "core/text/number.hpp"
 #include "fits.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 
@@ -30,8 +31,8 @@ struct Gaussian {
     precision += regressor * regressor.transpose() / (sd * sd);
     information += regressor * (y / (sd * sd));
   }
-  Eigen::VectorXd mean() const { return precision.ldlt().solve(information); }
-  double sd(int i) const { return std::sqrt(precision.inverse()(i, i)); }
+  Eigen::VectorXd mean() const { return solve_symmetric(precision, information); }
+  double sd(int i) const { return std::sqrt(inverse(precision)(i, i)); }
 };
 
 }  // namespace
@@ -81,7 +82,7 @@ posterior = fit line to one, two with mh(samples = 30000, burn_in = 5000, thin =
   check(fitted, "a[two]", mean(2), exact.sd(2));
   // The sum of b and the first intercept: variance of a linear form.
   Eigen::Vector3d const form(1, 1, 0);
-  check(fitted, "total[one]", form.dot(mean), std::sqrt(form.dot(exact.precision.inverse() * form)));
+  check(fitted, "total[one]", form.dot(mean), std::sqrt(form.dot(inverse(exact.precision) * form)));
   CHECK(!fitted.summary.at("posterior").at("parameters").contains("noise[one]"));
 }
 

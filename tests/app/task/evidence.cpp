@@ -1,7 +1,6 @@
 // The evidence of a fit against closed forms and quadrature, for every kind of likelihood, and what stands where there is none.
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -35,9 +35,10 @@ struct Points {
 
 /// log N(y | 0, covariance).
 double log_normal(Eigen::VectorXd const& y, Eigen::MatrixXd const& covariance) {
-  Eigen::LLT<Eigen::MatrixXd> const factor(covariance);
-  double const log_root = Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum();
-  return -0.5 * y.dot(factor.solve(y)) - log_root - 0.5 * static_cast<double>(y.size()) * std::log(2 * std::numbers::pi);
+  Eigen::MatrixXd const factor = *cholesky(covariance);
+  double const log_root = factor.diagonal().array().log().sum();
+  return -0.5 * y.dot(solve_cholesky(factor, y).col(0)) - log_root -
+         0.5 * static_cast<double>(y.size()) * std::log(2 * std::numbers::pi);
 }
 
 /// Of y = columns * w + noise of `sd`, w normal about 0 with `prior_sd`.

@@ -1,13 +1,14 @@
 // Regression and autoregression end to end against their closed forms; what the reports and made records say of dynamics.
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -22,7 +23,7 @@ struct Posterior {
 Posterior closed_form(Eigen::MatrixXd const& regressors, Eigen::VectorXd const& y, double sd, double prior_sd) {
   Eigen::MatrixXd const precision = regressors.transpose() * regressors / (sd * sd) +
                                     Eigen::MatrixXd::Identity(regressors.cols(), regressors.cols()) / (prior_sd * prior_sd);
-  return {precision.ldlt().solve(regressors.transpose() * y / (sd * sd)), precision.inverse()};
+  return {solve_symmetric(precision, regressors.transpose() * y / (sd * sd)), inverse(precision)};
 }
 
 }  // namespace
