@@ -224,8 +224,3 @@ TEST_CASE("a loop waits for machine code until it has been interpreted for as lo
   CHECK(code.pays(narrow, 0, compilation));
   CHECK_FALSE(code.pays(wide, 0.001, compilation));
 }
-
-TEST_CASE("a compiler that is not there is said, not fatal") {
-  native::Module const* const compiler = native::module();
-  CHECK((compiler == nullptr) == !native::why_unavailable().empty());
-}

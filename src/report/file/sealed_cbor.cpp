@@ -97,7 +97,7 @@ std::string sealed_cbor(json const& content, int form) {
   std::vector<std::uint8_t> const inner = json::to_cbor(content);
   std::vector<std::uint8_t> const bytes = json::to_cbor(
       {{"form", form}, {"crc32", checksum(inner, static_cast<std::uint64_t>(form))}, {"content", json::binary(inner)}});
-  return {bytes.begin(), bytes.end()};
+  return std::string(reinterpret_cast<char const*>(bytes.data()), bytes.size());  // of iterators it would go byte by byte
 }
 
 Seal open_cbor(std::string_view bytes, int form, json& content) {
