@@ -70,9 +70,17 @@ void require_no_result(fs::path const& folder) {
     throw UserError(result_error("", fmt::format("`{}` already contains results", folder.string()), replace_results()));
 }
 
-void remove_result(fs::path const& folder) {
-  // The summary first: where it stands, the result is whole.
+namespace {
+
+/// The summary first: where it stands, the result is whole.
+void remove_summary(fs::path const& folder) {
   if (std::error_code ignored; fs::exists(folder / "summary.json", ignored)) remove_file(folder / "summary.json");
+}
+
+}  // namespace
+
+void remove_result(fs::path const& folder) {
+  remove_summary(folder);
   for (fs::path const& file : files_of_result(folder)) remove_file(file);
 }
 
@@ -97,8 +105,15 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   // What takes long is made while the results of before still stand.
   std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
   std::string const page = report_html(report, drawn), record = record_bytes(report);
-  // What an interrupted run left may have more files than its end: chains of models that died later.
-  remove_result(folder);
+  remove_summary(folder);
+  // Tables are replaced one by one, so that a run that is killed meanwhile has left some of either result, never none.
+  std::vector<fs::path> earlier_tables;
+  for (fs::path const& file : files_of_result(folder)) {
+    if (is_stored_table(file.filename().string()))
+      earlier_tables.push_back(file);
+    else
+      remove_file(file);
+  }
   FileDigests digests;
   auto const write = [&](std::string const& name, std::string const& content) {
     write_file(folder / name, content);
@@ -113,6 +128,9 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p)
     write(prediction_names[p], predict_csv(report, report.predictions[p]));
+  // What an interrupted run left may have more tables than its end: chains of models that died later.
+  for (fs::path const& file : earlier_tables)
+    if (!digests.contains(file.filename().string())) remove_file(file);
   std::vector<std::string> undrawn = write_figures(drawn, folder, pictures);
   write_file(folder / "report.html", page);
   write_file(folder / "report.cbor", record);
