@@ -70,6 +70,12 @@ bool flat_in(Mode const& mode, std::size_t parameter) {
   return false;
 }
 
+/// Sds that a flat direction has made the prior's hide what was gained across it: that is the move of what moves most.
+void show_hidden(std::vector<Move>& moves, double allowed) {
+  auto const most = std::max_element(moves.begin(), moves.end(), [](Move const& a, Move const& b) { return a.value < b.value; });
+  if (most != moves.end() && allowed > 1 && most->value < 0.2 * allowed) most->value = allowed;
+}
+
 }  // namespace
 
 std::vector<Move> moves_between(std::span<ParameterInfo const> parameters, Mode const& before, Mode const& after, double gain) {
@@ -83,14 +89,17 @@ std::vector<Move> moves_between(std::span<ParameterInfo const> parameters, Mode 
       continue;
     }
     bool const was = at_bound(parameters[p], before.declared[p]), is = at_bound(parameters[p], after.declared[p]);
-    double const sd = was ? after.sd[p] : before.sd[p];
+    bool const was_flat = flat_in(before, p), is_flat = flat_in(after, p);
+    bool const before_measures = before.sd[p] > 0 && !was && (!was_flat || is_flat);
+    double const sd = before_measures ? before.sd[p] : after.sd[p];
     if ((was && is) || !(sd > 0)) continue;
     Move move{parameter, std::abs(after.declared[p] - before.declared[p]) / sd, std::abs(after.sd[p] - before.sd[p]) / sd};
     bool const wrong = move.value > 2 * allowed;
     if (wrong) move.value = allowed;
-    if (wrong || was || is || flat_in(before, p) || flat_in(after, p)) move.width = 0;
+    if (wrong || was || is || was_flat || is_flat) move.width = 0;
     moves.push_back(move);
   }
+  if (finite && !(before.flat.empty() && after.flat.empty())) show_hidden(moves, allowed);
   return moves;
 }
 

@@ -2,11 +2,14 @@
 #include "diagnostics/tolerance_check.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "app/running.hpp"
+#include "core/numeric/random.hpp"
 #include "inference/targets.hpp"
 #include "search/journal.hpp"
 #include "search/refit.hpp"
@@ -318,5 +321,31 @@ TEST_CASE("the trials of solvers for a search go on where they were interrupted"
     CHECK(rest.found.failed_as_given == whole.found.failed_as_given);
     CHECK(rest.found.tried == whole.found.tried);
     CHECK(rest.found.followed == whole.found.followed);
+  }
+}
+
+TEST_CASE("a motion that ends between two samples is not tied to the step that follows it worst") {
+  // With two steps per sample RK4 leaves 7 % of what is gone, at one rate alone; any large rate fits with finer ones.
+  for (std::uint64_t record = 1; record <= 8; ++record) {
+    CAPTURE(record);
+    Stream stream({record, Purpose::test, 0, 0});
+    TemporaryFolder folder;
+    std::string table = "t,p,q\n";
+    for (int i = 0; i < 25; ++i)
+      table += fmt::format("{:.3f},{:.6f},{:.6f}\n", 0.134 * i, (i == 0 ? 1 : 0) + 0.01 * stream.normal(),
+                           (i == 0 ? 0 : 0.45) + 0.01 * stream.normal());
+    write_file(folder.path() / "record.csv", table);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    run_text(folder.path() / "split.sysid",
+             "model split {\n state a [-], c [-]\n initial a = 1, c = 0\n parameter k1 [1/s] ~ log_uniform(1e-3, 1e3)\n"
+             " parameter k2 [1/s] ~ log_uniform(1e-3, 1e3)\n parameter sigma [-] ~ log_uniform(1e-5, 1)\n a' = -(k1 + k2)*a\n"
+             " c' = k2*a\n observe p ~ normal(a, sd = sigma)\n observe q ~ normal(c, sd = sigma)\n}\n"
+             "data record { file \"record.csv\"; time t [s]; measure p = p [-]; measure q = q [-] }\n"
+             "best = fit split to record with ml, seed = 1\n",
+             options);
+    auto const summary = nlohmann::json::parse(read_file(options.output / "best/summary.json"));
+    CHECK(summary.at("settings").at("substeps") >= 4);
+    CHECK(summary.at("parameters").at("sigma").at("mean") < 0.013);
   }
 }

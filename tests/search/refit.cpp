@@ -59,6 +59,21 @@ TEST_CASE("a change of width is a move of the limits") {
   CHECK(largest_move(bounded, narrow, wide, 0).size() == 0);
 }
 
+TEST_CASE("where the finer of two modes is flat the sds of the other measure its move") {
+  Mode finer, coarser;
+  finer.declared = {20, 1};
+  finer.sd = {950, 0.1};
+  finer.flat = {90, 0};
+  coarser.declared = {10, 1};
+  coarser.sd = {0.5, 0.1};
+  std::vector<ParameterInfo> const free(2, {"", "", -infinity, infinity});
+  CHECK(largest_move(free, finer, coarser, 300).size() == doctest::Approx(20).epsilon(1e-12));
+  CHECK(largest_move(free, finer, coarser, 12).size() == doctest::Approx(std::sqrt(24)).epsilon(1e-12));  // as the gain allows
+  coarser.flat = finer.flat;
+  CHECK(largest_move(free, finer, coarser, 0.4).size() == doctest::Approx(10.0 / 950).epsilon(1e-12));
+  CHECK(largest_move(free, finer, coarser, 8).size() == doctest::Approx(4).epsilon(1e-12));  // which the flat direction hides
+}
+
 TEST_CASE("a bound is reached within a thousandth of the support, or of a positive lower bound") {
   CHECK(at_bound({"", "", 0, 1}, 0.9995));
   CHECK_FALSE(at_bound({"", "", 0, 1}, 0.998));
