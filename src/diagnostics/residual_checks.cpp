@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "core/numeric/elementary.hpp"
@@ -79,7 +78,6 @@ struct ScoredChannel {
   std::vector<double> observed, predicted;  // where scored, declared unit
   std::vector<std::size_t> places;          // of these along the experiment
   SizedResiduals sized;
-  int together;  // channels of all experiments that are checked
 
   Model const& model() const { return target.compiled()->model; }
   Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }
@@ -154,6 +152,41 @@ double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& excl
   return nmse(observed, predicted);
 }
 
+// What tests of a channel find; not yet what that means, which depends on how many are tested.
+struct Tested {
+  std::vector<std::size_t> far;             // samples far off, left out of the tests
+  std::optional<CorrelationTest> white;     // rows of any order have no past
+  std::vector<CorrelationTest> with_input;  // of each input
+};
+
+Tested test_channel(ScoredChannel const& of) {
+  Tested tested{far_off(of), {}, {}};
+  if (of.model().dynamics == Dynamics::none) return tested;
+  std::vector<double> const residuals = without(of.residuals, tested.far);
+  tested.white = whiteness(residuals);
+  for (std::size_t i = 0; i < of.model().inputs.size(); ++i) {
+    std::vector<double> input;
+    for (std::size_t k = 0; k < of.data().time.size(); ++k) input.push_back(of.data().inputs[i].sample(static_cast<int>(k)));
+    tested.with_input.push_back(input_correlation(residuals, input));
+  }
+  return tested;
+}
+
+// What all channels of all experiments are judged by together.
+struct Limits {
+  int channels;
+  double white, with_input;  // p values
+};
+
+Limits limits_of(std::vector<Tested> const& all) {
+  std::vector<double> white, with_input;
+  for (Tested const& each : all) {
+    if (each.white) white.push_back(each.white->tail_p_value);
+    for (CorrelationTest const& test : each.with_input) with_input.push_back(test.tail_p_value);
+  }
+  return {std::max(1, static_cast<int>(all.size())), limit_together(white), limit_together(with_input)};
+}
+
 // coloured: what the fit leaves is more than noise.
 void check_share(ScoredChannel const& of, bool coloured, Findings& findings) {
   constexpr char const* look = "check units, signs and columns, then the initial values and the priors, then the model";
@@ -185,8 +218,8 @@ void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
                       "tails: `student_t(y, 4, scale = sigma)`"});
 }
 
-void check_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Findings& findings) {
-  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, of.together);
+void check_size(ScoredChannel const& of, bool with_outliers, int together, FitLine& line, Findings& findings) {
+  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, together);
   line.scores.push_back({"chi_squared_per_sample", size.per_sample});
   if (!size.fires()) return;
   char const* help = "the noise is larger than stated, or the model is incomplete: estimate the noise, then check the residuals";
@@ -202,11 +235,11 @@ void check_size(ScoredChannel const& of, bool with_outliers, FitLine& line, Find
        help});
 }
 
-// Of a model that has a past: correlation in time, and with the input's past. residuals: without samples far off.
-void check_memory(ScoredChannel const& of, std::vector<double> const& residuals, CorrelationTest const& white, FitLine& line,
-                  Findings& findings) {
+// Of a model that has a past: correlation in time, and with the input's past.
+void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& limits, FitLine& line, Findings& findings) {
+  CorrelationTest const& white = *tested.white;
   line.scores.push_back({"whiteness_p", white.p_value});
-  if (white.fires())
+  if (white.fires(limits.white))
     findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
                         fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
                                     white.outside, white.correlation.size()),
@@ -214,12 +247,10 @@ void check_memory(ScoredChannel const& of, std::vector<double> const& residuals,
                         "be several times their sds"});
   std::vector<Quantity> const& inputs = of.model().inputs;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    std::vector<double> input;
-    for (std::size_t k = 0; k < of.data().time.size(); ++k) input.push_back(of.data().inputs[i].sample(static_cast<int>(k)));
-    CorrelationTest const crossed = input_correlation(residuals, input);
+    CorrelationTest const& crossed = tested.with_input[i];
     line.scores.push_back(
         {"input_correlation_p" + (inputs.size() > 1 ? "(" + inputs[i].name + ")" : std::string()), crossed.p_value});
-    if (crossed.fires())
+    if (crossed.fires(limits.with_input))
       findings.push_back(
           {FindingCode::input_in_residuals,
            Severity::warning,
@@ -230,33 +261,23 @@ void check_memory(ScoredChannel const& of, std::vector<double> const& residuals,
   }
 }
 
-FitLine check_channel(ScoredChannel const& of, Findings& findings) {
+FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits const& limits, Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
   line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
-  std::vector<std::size_t> const far = far_off(of);
-  std::vector<double> const residuals = without(of.residuals, far);
-  std::optional<CorrelationTest> white;  // rows of any order have no past
-  if (of.model().dynamics != Dynamics::none) white = whiteness(residuals);
   Findings shape;
-  check_size(of, !far.empty(), line, shape);
-  check_outliers(of, far, shape);
-  if (white) check_memory(of, residuals, *white, line, shape);
+  check_size(of, !tested.far.empty(), limits.channels, line, shape);
+  check_outliers(of, tested.far, shape);
+  if (tested.white) check_memory(of, tested, limits, line, shape);
   // Deviances of small counts are neither centred nor alike.
-  check_share(of, white && white->fires() && !of.described().noise.row->discrete, findings);
+  bool const coloured = tested.white && tested.white->fires(limits.white) && !of.described().noise.row->discrete;
+  check_share(of, coloured, findings);
   findings.insert(findings.end(), shape.begin(), shape.end());
   return line;
 }
 
-int scored_channels(ModelTarget const& target) {
-  std::set<std::pair<int, int>> channels;
-  for (auto const& [experiment, channel, sample] : target.residual_places())
-    if (sample >= 0) channels.emplace(experiment, channel);
-  return std::max(1, static_cast<int>(channels.size()));
-}
-
-// values: [D x 1] declared; residuals: all rows of the target; together: channels that are checked.
-void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneArray const& residuals, int together,
-                      FitCheck& check) {
+// values: [D x 1] declared; residuals: all rows of the target.
+void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneArray const& residuals,
+                      std::vector<ScoredChannel>& scored) {
   Model const& model = target.compiled()->model;
   Experiment const& experiment = target.experiments()[static_cast<std::size_t>(e)];
   Trajectory const trajectory(target.compiled(), experiment, target.options().solver, target.options().start_rows,
@@ -267,7 +288,7 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
   for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) {
     auto const channel = static_cast<std::size_t>(c);
     if (experiment.measured[channel].empty()) continue;
-    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}, together};
+    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}};
     for (std::size_t r = 0; r < target.residual_places().size(); ++r) {
       auto const [of_experiment, at_channel, sample] = target.residual_places()[r];
       if (of_experiment != e || at_channel != c || sample < 0) continue;
@@ -282,7 +303,7 @@ void check_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
     std::vector<std::vector<double>> const arguments = trajectory.noise_arguments(parameters, c);
     of.sized = noise.discrete ? pearson(noise, experiment.measured[channel], arguments, of.residuals)
                               : scaled(noise, arguments, of.residuals);
-    check.lines.push_back(check_channel(of, check.findings));
+    scored.push_back(std::move(of));
   }
 }
 
@@ -328,8 +349,13 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
   target.unconstrain(values, theta);
   Ledger ledger;
   target.residuals(theta, residuals, ledger);
-  for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e)
-    check_experiment(target, e, values, residuals, scored_channels(target), check);
+  std::vector<ScoredChannel> scored;
+  for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) score_experiment(target, e, values, residuals, scored);
+  std::vector<Tested> tested;
+  for (ScoredChannel const& each : scored) tested.push_back(test_channel(each));
+  Limits const limits = limits_of(tested);
+  for (std::size_t k = 0; k < scored.size(); ++k)
+    check.lines.push_back(check_channel(scored[k], tested[k], limits, check.findings));
   return check;
 }
 

@@ -2,6 +2,7 @@
 #include "diagnostics/residual_tests.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
@@ -42,9 +43,25 @@ Products products(std::span<double const> a, double mean_a, std::span<double con
   return result;
 }
 
+/// Of Q in `whiteness`, for normal noise; bulk: by chi-squared.
+double tail_of(double q, double lags, double samples, double bulk) {
+  constexpr double tail = 0.01;
+  if (bulk >= tail) return bulk;
+  double const share = lags / samples, variance = 2 * lags * (1 + 2 * share), skewness = std::sqrt(8 / lags) * (1 + 8 * share);
+  double const shape = 4 / (skewness * skewness), x = shape + std::sqrt(shape / variance) * (q - lags);
+  return std::max(bulk, std::min(tail, boost::math::gamma_q(shape, std::max(x, 0.0))));
+}
+
 int usable_lags(double samples, int lags) { return std::min(lags, static_cast<int>(samples / 4)); }
 
 }  // namespace
+
+double limit_together(std::span<double const> p_values) {
+  auto const n = static_cast<double>(p_values.size());
+  auto const k = static_cast<double>(std::count_if(p_values.begin(), p_values.end(), [](double p) { return p < rare; }));
+  if (k == 0) return rare;
+  return k > 1 && boost::math::ibeta(k, n - k + 1, rare) < rare ? rare : rare / n;
+}
 
 CorrelationTest whiteness(std::span<double const> residuals, int lags) {
   CorrelationTest test;
@@ -64,7 +81,9 @@ CorrelationTest whiteness(std::span<double const> residuals, int lags) {
     ++used;
     if (std::fabs(r) > test.bound.back()) ++test.outside;
   }
-  if (used > 0) test.p_value = boost::math::gamma_q(0.5 * used, 0.5 * q);
+  if (used == 0) return test;
+  test.p_value = boost::math::gamma_q(0.5 * used, 0.5 * q);
+  test.tail_p_value = tail_of(q, used, samples, test.p_value);
   return test;
 }
 
@@ -96,7 +115,7 @@ CorrelationTest input_correlation(std::span<double const> residuals, std::span<d
     if (std::fabs(r) > test.bound.back()) ++test.outside;
   }
   double const one_lag = elementary::erfc(largest / std::sqrt(2.0));
-  test.p_value = -elementary::expm1(used * elementary::log1p(-one_lag));
+  test.p_value = test.tail_p_value = -elementary::expm1(used * elementary::log1p(-one_lag));
   return test;
 }
 

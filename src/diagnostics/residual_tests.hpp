@@ -9,6 +9,15 @@ namespace sysid {
 /// A p value below this is no chance.
 inline constexpr double rare = 1e-3;
 
+/// The p value below which series of a run are found wrong, so that chance finds one in two runs of a thousand at most, however
+/// many series it has. p_values: of all series that are tested, n of them. `rare` where so many lie below it that chance has as
+/// many in fewer than one run of a thousand,
+///
+///   P(K >= k) < rare,   K ~ binomial(n, rare),   k = number of p_values < rare
+///
+/// since what is a little wrong everywhere shows in many series rather than in one; else rare / n.
+double limit_together(std::span<double const> p_values);
+
 /// Correlations lag by lag, and one answer over all of them.
 struct CorrelationTest {
   int first_lag = 0;
@@ -16,7 +25,8 @@ struct CorrelationTest {
   std::vector<double> bound;        // 99 % of noise has |correlation| below this, lag by lag
   int outside = 0;                  // lags beyond their bound; 1 % of them is expected
   double p_value = 1;               // of what is seen, or worse, were the residuals noise; 1 when there are too few samples
-  bool fires() const { return p_value < rare; }
+  double tail_p_value = 1;          // the same by a tail that holds for short records too: what decides
+  bool fires(double limit = rare) const { return tail_p_value < limit; }
 };
 
 /// Whether residuals are uncorrelated in time, lags 1 .. lags (at most a quarter of the samples). The mean is not removed: an
@@ -24,6 +34,10 @@ struct CorrelationTest {
 ///
 ///   r_k = sum e_t e_(t+k) / sum e_t^2,   Q = n (n + 2) sum r_k^2 / n_k ~ chi^2(lags),   n_k the pairs at lag k          Ljung and
 ///   Box 1978
+///
+/// The tail of Q is heavier than that of chi^2 in short records: eight white ones of 100 samples in a thousand have p < 1e-3. So
+/// below a hundredth `tail_p_value` is of a gamma distribution with the mean of Q, L for L lags, its variance 2 L (1 + 2 L/n) and
+/// its skewness sqrt(8/L) (1 + 8 L/n); the two terms in L/n are fitted to simulations of 8 to 1000 samples.
 CorrelationTest whiteness(std::span<double const> residuals, int lags = 25);
 
 /// Whether past input (lags 0 .. lags) still shows in the residuals; both without their means.

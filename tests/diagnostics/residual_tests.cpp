@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -133,4 +134,35 @@ TEST_CASE("of the sizes of many series one is found wrong in a thousand runs, no
   }
   CHECK(wrong <= 5);  // one is expected, and 20 of series that know nothing of each other
   CHECK(chi_squared(noise(500, 70, 1.3), 0, together).fires());
+}
+
+TEST_CASE("of many white series one is found correlated in a thousand runs, weak correlation of many is seen") {
+  constexpr int runs = 400, together = 50;
+  auto const found = [](unsigned run, double coefficient) {
+    std::vector<CorrelationTest> tests;
+    std::vector<double> p_values;
+    for (unsigned k = 0; k < together; ++k) {
+      tests.push_back(whiteness(coloured(100, 50000 + together * run + k, coefficient)));
+      p_values.push_back(tests.back().tail_p_value);
+    }
+    double const limit = limit_together(p_values);
+    return std::count_if(tests.begin(), tests.end(), [&](CorrelationTest const& each) { return each.fires(limit); });
+  };
+  int wrong = 0;
+  for (unsigned run = 0; run < runs; ++run) wrong += found(run, 0) > 0 ? 1 : 0;
+  CHECK(wrong <= 4);          // 0.4 expected of exact p values, 20 of series that know nothing of each other
+  CHECK(found(0, 0.5) > 10);  // half of them below 0.001, few below a fiftieth of that
+}
+
+TEST_CASE("the limit of series that are tested together") {
+  CHECK(limit_together({}) == rare);
+  CHECK(limit_together(std::vector{0.5, 0.2}) == rare);
+  CHECK(limit_together(std::vector{1e-4}) == rare);
+  std::vector<double> p_values(50, 0.5);
+  p_values[7] = 1e-4;
+  CHECK(limit_together(p_values) == rare / 50);
+  p_values[8] = 1e-4;  // two of 50: 1.2 runs of a thousand
+  CHECK(limit_together(p_values) == rare / 50);
+  p_values[9] = 1e-4;
+  CHECK(limit_together(p_values) == rare);
 }
