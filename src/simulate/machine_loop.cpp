@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/instruction_set.hpp"
 #include "program/embedded.hpp"
 
 namespace sysid {
@@ -28,13 +29,16 @@ double forwards(SimulationProgram const& program) {
 
 double backwards(SimulationProgram const& program) { return body(program.reverse.step.code.size(), program.reverse.observe); }
 
+/// Whether machine code may use AVX-512: blocks of four lanes too, as it has twice as many registers for their vectors of 256 bits.
+bool uses_avx512() { return instruction_set() == InstructionSet::avx512; }
+
 int vector_lanes(Executor executor) { return executor.width == 1 ? 1 : executor.set == InstructionSet::avx512 ? 8 : 4; }
 int vectors(Executor executor) { return executor.width / vector_lanes(executor); }
 
 native::Loop write_loop(SimulationProgram const& program, SolverSettings const& solver, Executor executor, native::LoopKind kind) {
   native::Loop loop;
   loop.kind = kind;
-  loop.wide = executor.set == InstructionSet::avx512;
+  loop.wide = uses_avx512();
   loop.vector_lanes = vector_lanes(executor);
   loop.vectors = vectors(executor);
   loop.vector_form = &elementary::vector_form;
@@ -63,7 +67,7 @@ native::Loop write_loop(SimulationProgram const& program, SolverSettings const& 
 }  // namespace
 
 native::LoopName machine_loop_name(SolverSettings const& solver, Executor executor, native::LoopKind kind) {
-  return {kind, executor.set == InstructionSet::avx512, executor.width, solver.substeps == 1};
+  return {kind, uses_avx512(), executor.width, solver.substeps == 1};
 }
 
 native::Function machine_loop(SimulationProgram const& program, SolverSettings const& solver, Executor executor,

@@ -46,7 +46,8 @@ std::unique_ptr<Stepper> make_stepper(LaneFile const& file) {
 }
 
 double work_per_sample(SimulationProgram const& program, SolverSettings const& solver) {
-  if (solver.fixed_step()) return static_cast<double>(program.step.code.size()) * solver.substeps;
+  if (solver.fixed_step())
+    return static_cast<double>(program.step.code.size() + program.reverse.step.code.size()) * solver.substeps;
   if (solver.row().in_program) return 2 * static_cast<double>(program.step.code.size());  // attempts, roughly
   // Some twenty steps of two evaluations each, and what the solver does itself.
   EquationKernels const& equations = program.equations;

@@ -24,7 +24,8 @@ bool LoopWriter::write(char const* name) {
   llvm::FunctionType* const type = llvm::FunctionType::get(builder_.getVoidTy(), {builder_.getInt8PtrTy()}, false);
   function_ = llvm::Function::Create(type, llvm::Function::ExternalLinkage, name, module_);
   function_->addFnAttr(llvm::Attribute::NoUnwind);
-  char const* const bits = loop_.wide ? "512" : "256";  // else a vector may be split in two where the processor is not known
+  char const* const bits =
+      loop_.vector_lanes == 8 ? "512" : "256";  // else a vector may be split in two where the processor is not known
   function_->addFnAttr("min-legal-vector-width", bits);
   function_->addFnAttr("prefer-vector-width", bits);
   call_ = function_->getArg(0);

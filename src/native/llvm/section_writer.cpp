@@ -57,7 +57,7 @@ void const* LoopWriter::form_in_registers(Instruction const& instruction) const 
   if (loop_.vector_form == nullptr) return nullptr;
   return loop_.vector_form(
       binary ? reinterpret_cast<void const*>(function.binary_lanes) : reinterpret_cast<void const*>(function.unary_lanes),
-      loop_.wide);
+      loop_.vector_lanes == 8);
 }
 
 void LoopWriter::write_call_in_registers(Instruction const& instruction, llvm::Value* row, void const* function) {
