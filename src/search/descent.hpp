@@ -30,7 +30,10 @@ std::size_t climbers_per_block(Objective const& objective);
 Climber climber_at(Eigen::VectorXd theta, double log_density);
 
 /// Gradient of the log density at theta, and the Gauss-Newton curvature with the prior's: J'J + P as below.
-std::pair<Eigen::VectorXd, Eigen::MatrixXd> slope_at(Objective const& objective, Eigen::VectorXd const& theta, Ledger& ledger);
+using Slope = std::pair<Eigen::VectorXd, Eigen::MatrixXd>;
+Slope slope_at(Objective const& objective, Eigen::VectorXd const& theta, Ledger& ledger);
+/// Of several places in one batch, each as if alone.
+std::vector<Slope> slopes_at(Objective const& objective, std::vector<Eigen::VectorXd> const& places, Ledger& ledger);
 
 /// Up to `rounds` steps of every climber that is not done; stops early when `stop` says so. A `journal` keeps it, as a step of
 /// its own; none costs nothing.

@@ -28,6 +28,11 @@ constexpr int most_of_ridge = 24;
 /// Windows in which other mixtures can show what they are worth.
 constexpr std::uint64_t windows_before_ridge = 5;
 
+/// Independence moves that a chain spends in one place, and windows in which there was such a place, that tell of mass which the
+/// mixture hardly reaches; a single one is met by chance.
+constexpr double too_long = 500;
+constexpr std::uint64_t enough_windows = 2;
+
 constexpr int most_moves = 15;
 /// Independence moves that a chain spends in one place at most, between two moves of the random walk that lead out of it.
 constexpr double longest_wait = 30;
@@ -100,14 +105,21 @@ int IndependenceLearning::worth() const {
 bool IndependenceLearning::too_few() const { return active() && windows_ > 0 && acceptance_ < enough_acceptance; }
 
 bool IndependenceLearning::wants_ridge() const {
-  return too_few() && windows_ >= windows_before_ridge && !ridge_seen_ && weights_.size() == 1 &&
-         mixture().dimension() <= most_of_ridge;
+  return active() && (too_few() || long_stays_ >= enough_windows) && windows_ >= windows_before_ridge && !ridge_seen_ &&
+         weights_.size() == 1 && mixture().dimension() <= most_of_ridge;
+}
+
+bool IndependenceLearning::wants_ridge_moves() const {
+  int const dimension = mixture().dimension();
+  return long_stays_ >= enough_windows && windows_ > windows_before_ridge && !wants_ridge() && dimension > 1 &&
+         dimension <= most_of_ridge;
 }
 
 void IndependenceLearning::see_ridge(Independence const& mixture, double worth) {
   ridge_seen_ = true;
   if (worth <= acceptance_) return;
   on_ridge_ = true;
+  long_stays_ = 0;  // they were those of another mixture
   mixtures_ = {mixture, {}, {}, {}};
 }
 
@@ -211,6 +223,7 @@ bool IndependenceLearning::end_cycle(Target const& target, std::span<Adaptation 
     // E w over q is 1 / E(1 / w) over p, of which the states are.
     Fit const& fit = window_.fits[best];
     longest_stay_ = elementary::exp(fit.log_highest + fit.log_inverse) / static_cast<double>(window_.states);
+    if (windows_ + 1 >= windows_before_ridge && longest_stay_ > too_long) ++long_stays_;
   }
   if (window_.moves > 0) acceptance_ = window_.acceptance / static_cast<double>(window_.moves);
   ++windows_;
@@ -248,6 +261,7 @@ nlohmann::json IndependenceLearning::store() const {
           {"mixtures", mixtures},
           {"archives", archives},
           {"ridge", {ridge_seen_, on_ridge_}},
+          {"long_stays", long_stays_},
           {"counts", {window_.iterations, window_.states, window_.moves, iterations_, cycles_, windows_}},
           {"sums", checkpoint::encode(std::span<double const>(sums))}};
 }
@@ -283,6 +297,7 @@ IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored,
   all.iterations_ = counts[3];
   all.cycles_ = counts[4];
   all.windows_ = counts[5];
+  all.long_stays_ = stored.at("long_stays").get<std::uint64_t>();
   all.acceptance_ = sums[1];
   all.longest_stay_ = sums[2];
   return all;

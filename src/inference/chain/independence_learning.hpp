@@ -44,12 +44,16 @@ class IndependenceLearning {
   bool end_cycle(Target const& target, std::span<Adaptation const> groups);
 
   /// Whether the ridge through the mode is to be followed now: once, with one mode and not too many parameters, where too few
-  /// moves were accepted.
+  /// moves were accepted, or chains stayed in one place for long.
   bool wants_ridge() const;
   /// A mixture along it, and the share of independent draws that its draws are worth: if that is more than the share of accepted
   /// moves, it is used from now on and no other is compared with it, since states of chains tell nothing of where they have not
   /// been.
   void see_ridge(Independence const& mixture, double worth);
+
+  /// Whether chains need moves along ridges: where the mixture in use, that along a ridge if there is one, has again and again left
+  /// a chain in one place for long.
+  bool wants_ridge_moves() const;
 
   /// Share of accepted independence moves in the last window; 0 before its end.
   double acceptance() const { return acceptance_; }
@@ -98,6 +102,7 @@ class IndependenceLearning {
   std::vector<Archive> archives_;  // of the components
   Window window_;
   std::uint64_t iterations_ = 0, cycles_ = 0, windows_ = 0;
+  std::uint64_t long_stays_ = 0;                // windows with a place from which independence moves hardly lead
   double acceptance_ = 0, longest_stay_ = 1;    // of the last window
   bool ridge_seen_ = false, on_ridge_ = false;  // whether the mixture in use is one along a ridge
 };

@@ -49,7 +49,7 @@ struct State {
   std::vector<double> log_likelihood;  // [W]
 };
 
-enum class MoveKind { walk, autoregressive, independent };
+enum class MoveKind { walk, autoregressive, independent, ridge };
 
 /// What one chain did in one iteration: what only adaptation and diagnostics need.
 struct Move {

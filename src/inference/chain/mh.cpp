@@ -17,6 +17,7 @@
 #include "inference/chain/local_learning.hpp"
 #include "inference/chain/metropolis.hpp"
 #include "inference/chain/ridge.hpp"
+#include "inference/chain/ridge_moves.hpp"
 #include "inference/chain/watch.hpp"
 #include "search/laplace.hpp"
 
@@ -43,6 +44,9 @@ constexpr double most_recorded = 2e7;
 /// A batch of 16 lanes takes half as long again as one of 4 on the machines we know, and a chain rejects three moves in four.
 constexpr int lanes_worth_filling = 16, most_ahead = 8;
 
+/// Iterations from one move along ridges to the next, where such moves are made: they cost a hundred times as much as others.
+constexpr std::uint64_t ridge_interval = 3;
+
 /// All that a run is between two iterations.
 struct State : ChainRun {
   std::vector<std::uint64_t> next;  // [W] iterations each chain has finished: all the same in burn-in
@@ -50,6 +54,7 @@ struct State : ChainRun {
   std::vector<metropolis::Adaptation> groups;  // empty for a spherical proposal
   metropolis::IndependenceLearning independence;
   metropolis::LocalLearning local;
+  metropolis::RidgeMoves ridge;
 };
 
 struct Plan {
@@ -87,6 +92,7 @@ nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json co
   stored["groups"] = groups;
   stored["independence"] = state.independence.store();
   stored["local"] = state.local.store();
+  stored["ridge"] = state.ridge.store();
   return stored;
 }
 
@@ -102,6 +108,7 @@ void restore(nlohmann::json const& stored, Target const& target, Plan const& pla
     state.groups.push_back(metropolis::Adaptation::restore(group, target.dimension(), plan.chains));
   state.independence = metropolis::IndependenceLearning::restore(stored.at("independence"), target.dimension(), plan.chains);
   state.local = metropolis::LocalLearning::restore(stored.at("local"));
+  state.ridge = metropolis::RidgeMoves::restore(stored.at("ridge"), target.dimension());
 }
 
 /// Chains of one mode learn together.
@@ -156,6 +163,15 @@ void follow_ridge(Target const& target, std::uint64_t seed, Ledger& ledger, Stat
   ledger.merge(spent);
 }
 
+/// Whether the next iteration is a move along ridges.
+bool at_ridge(State const& state) { return state.ridge.active() && state.next.front() % ridge_interval == 0; }
+
+/// Where a cycle of other moves ends at the latest.
+std::uint64_t end_of_cycle(State const& state, std::uint64_t end) {
+  if (!state.ridge.active()) return end;
+  return std::min(end, (state.next.front() / ridge_interval + 1) * ridge_interval);
+}
+
 /// One batch of burn-in: an iteration of every chain, or a cycle of them with independence moves.
 void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Proposal const* const> walks, StreamKey key,
              Ledger& ledger, State& state) {
@@ -174,10 +190,19 @@ void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Propo
     for (auto& group : state.groups) group.learn(state.chains, info, away);
     state.record.count_burn_in(info);
   };
-  metropolis::cycle(target, local_moves(walks, state), state.independence.mixture(), state.independence.moves_in_burn_in(),
-                    key.with_step(state.next.front()), plan.burn_in, state.chains, ledger, learn);
-  if (state.independence.active() && state.independence.end_cycle(target, state.groups))
-    state.local.end_window(state.independence.too_few());
+  StreamKey const now = key.with_step(state.next.front());
+  if (at_ridge(state)) {
+    metropolis::Info const moves = state.ridge.step(target, now, state.chains, ledger);
+    state.ridge.learn(moves);
+    for (int chain = 0; chain < plan.chains; ++chain) learn(chain, moves[static_cast<std::size_t>(chain)]);
+  } else {
+    metropolis::cycle(target, local_moves(walks, state), state.independence.mixture(), state.independence.moves_in_burn_in(), now,
+                      end_of_cycle(state, plan.burn_in), state.chains, ledger, learn);
+  }
+  if (!state.independence.active() || !state.independence.end_cycle(target, state.groups)) return;
+  state.local.end_window(state.independence.too_few());
+  if (!state.ridge.active() && state.independence.wants_ridge_moves() && !target.is_expensive())
+    state.ridge = metropolis::RidgeMoves(make_objective(target, ObjectiveKind::posterior, key.seed, 0).scale);
 }
 
 /// Iterates to the end, or until asked to stop or a batch is given up, of which nothing is kept; returns whether it was.
@@ -221,9 +246,13 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
   };
   while (!stopped && !all_lags(plan.samples) && !(stopped = context.stop_requested())) {
     auto const batch = [&] {
-      if (moves > 0)
-        metropolis::cycle(target, local, state.independence.mixture(), moves, key.with_step(state.next.front()), plan.samples,
-                          state.chains, context.ledger, counted);
+      StreamKey const now = key.with_step(state.next.front());
+      if (at_ridge(state)) {
+        metropolis::Info const made = state.ridge.step(target, now, state.chains, context.ledger);
+        for (int chain = 0; chain < plan.chains; ++chain) counted(chain, made[static_cast<std::size_t>(chain)]);
+      } else if (moves > 0 || state.ridge.active())
+        metropolis::cycle(target, local, state.independence.mixture(), moves, now, end_of_cycle(state, plan.samples), state.chains,
+                          context.ledger, counted);
       else
         metropolis::advance(target, local, key, ahead, plan.samples, state.next, state.chains, context.ledger, record);
     };
