@@ -124,15 +124,8 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& w
                                   coefficient ? coefficient->name : "", other);
     }
   }
-  // A unit of no kind of its own, such as 1/m^2, is a slip in the declaration of the one coefficient: a name by that unit, such as
-  // a noise precision, would be a factor by accident.
-  bool const divides = is_plain_kind(inverse(missing)) && !named(inverse(missing), but).empty();
-  if (odd != nullptr && !pure && !is_plain_kind(missing) && !divides)
-    if (auto const coefficient = only_coefficient(*odd, declared_)) {
-      Unit factor;
-      factor.dimension = missing;
-      return errors::declare_in(coefficient->name, words(multiply(plain(coefficient->unit), factor)));
-    }
+  if (odd != nullptr && !pure)
+    if (auto const declared = declared_otherwise(*odd, missing)) return errors::declare_in(declared->name, words(declared->unit));
   if (std::string const names = named(missing, but); !names.empty())
     return errors::multiply_by(kind_words(missing, names_in_use_), names);
   if (std::string const names = named(inverse(missing), but); !names.empty())
@@ -140,6 +133,23 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& w
   if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing, names_in_use_), "");
   if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing), names_in_use_), "");
   return errors::should_be_in(wanted);
+}
+
+// Of a unit that is no kind of its own, such as 1/m^2, a name would be a factor by accident: a noise precision has that one. The
+// slip is then in the declaration of the coefficient, as that of a cubic stiffness in N/m.
+std::optional<DeclaredUnit> DeclaredUnits::declared_otherwise(ast::Expression const& odd, Dimension const& missing) const {
+  std::vector<std::string> const used = names_in(odd);
+  bool const moves = std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
+    return each.moves && std::find(used.begin(), used.end(), each.name) != used.end();
+  });
+  if (!moves || is_plain_kind(missing) || !named(inverse(missing), {}).empty()) return std::nullopt;
+  std::optional<DeclaredUnit> coefficient = only_coefficient(odd, declared_);
+  if (!coefficient) return std::nullopt;
+  Unit factor;
+  factor.dimension = missing;
+  coefficient->unit = multiply(plain(coefficient->unit), factor);
+  if (coefficient->unit.dimensionless()) return std::nullopt;
+  return coefficient;
 }
 
 bool DeclaredUnits::used_as_angular(ast::Expression const* cycles, Unit const& ours, ast::Expression const* other,

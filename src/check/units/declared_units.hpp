@@ -1,5 +1,6 @@
 // The units that a file declares, and units written with the file's own names.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ class DeclaredUnits {
   std::string frequency_in(ast::Expression const& tree) const;
 
  private:
+  // The one coefficient of a term, in the unit that it should have been declared in; nothing where something else is likelier.
+  std::optional<DeclaredUnit> declared_otherwise(ast::Expression const& odd, Dimension const& missing) const;
   // "`y`", "`y` or `l`": declared names of this dimension.
   std::string named(Dimension const& dimension, std::vector<std::string> const& but) const;
 
