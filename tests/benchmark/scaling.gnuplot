@@ -10,12 +10,12 @@ set style line 3 lc rgb "#888888" lw 1 dt 2
 set logscale xy
 set xlabel "lanes"; set ylabel "µs a trajectory"
 set xtics (4, 8, 16, 32, 64)
-set yrange [0.1:30]
+set xrange [3.5:75]; set yrange [0.1:30]
 plot data index 0 using 1:2 with linespoints ls 1 title "interpreter", "" index 0 using 1:3 with linespoints ls 2 title "machine code"
-set xlabel "samples"; set xtics auto; set yrange [*:*]; set format x "10^{%L}"
+set xlabel "samples"; set xrange [80:130000]; set xtics auto; set yrange [*:*]; set format x "10^{%L}"
 plot data index 1 using 1:2 with linespoints ls 1 notitle, "" index 1 using 1:3 with linespoints ls 2 notitle
-set xlabel "states (chain of masses, 500 samples)"; set format x "%g"; set xtics (2, 4, 8, 16, 32, 64)
+set xlabel "states (chain of masses, 500 samples)"; set format x "%g"; set xtics (2, 4, 8, 16, 32, 64); set xrange [1.8:75]
 plot data index 2 using 1:2 with linespoints ls 1 notitle, "" index 2 using 1:3 with linespoints ls 2 notitle
-unset logscale y; set xlabel "threads"; set ylabel "times as fast as one"; set xtics (1, 2, 4, 8, 16); set yrange [0:*]
+unset logscale y; set xlabel "threads"; set ylabel "times as fast as one"; set xtics (1, 2, 4, 8, 16); set xrange [0.9:18]; set yrange [0:*]
 plot data index 3 using 1:2 with linespoints ls 1 notitle
 unset multiplot
