@@ -1,40 +1,64 @@
-// fuzz_stored [COUNT [SEED [FOLDER...]]]: so many changes of each file of a stored result, of one made here or of those of the
-// folders, which are copied. Built with sanitizers; ends with 1 and the bytes where a change was read as something else.
+// fuzz_stored [COUNT [SEED [WHAT...]]]: so many changes of each stored file. WHAT: `example` (a result made here), a case of
+// tests/fuzz/checkpoints.cpp (`mh`), or a folder of results, which is copied; example and all cases unless given. Built with
+// sanitizers; ends with 1 and the bytes where a change was read as something else.
 #include "fuzz/stored.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
+#include "fuzz/checkpoints.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
 
-bool changes_of(std::filesystem::path const& folder, std::vector<sysid::fuzz::StoredFile> const& files, std::uint64_t count,
+using namespace sysid;
+
+/// Whether it was without a fault.
+bool print(std::string const& name, fuzz::Outcome const& outcome) {
+  std::printf("%-24s %8llu refused, %llu read as written\n", name.c_str(), static_cast<unsigned long long>(outcome.refused),
+              static_cast<unsigned long long>(outcome.same));
+  std::fflush(stdout);
+  std::fwrite(outcome.fault.data(), 1, outcome.fault.size(), stderr);
+  return outcome.fault.empty();
+}
+
+bool changes_of(std::filesystem::path const& folder, std::vector<fuzz::StoredFile> const& files, std::uint64_t count,
                 std::uint64_t seed) {
-  for (auto const& file : files) {
-    auto const outcome = sysid::fuzz::mutate(folder, file, count, seed);
-    std::printf("%-24s %8llu refused, %llu read as written\n", file.name.c_str(), static_cast<unsigned long long>(outcome.refused),
-                static_cast<unsigned long long>(outcome.same));
-    std::fflush(stdout);
-    if (outcome.fault.empty()) continue;
-    std::fwrite(outcome.fault.data(), 1, outcome.fault.size(), stderr);
-    return false;
-  }
+  for (fuzz::StoredFile const& file : files)
+    if (!print(file.name, fuzz::mutate(folder, file, count, seed))) return false;
   return true;
 }
 
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  std::uint64_t const count = argument_count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 100000;
-  std::uint64_t const seed = argument_count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1;
-  sysid::TemporaryFolder const work;
-  if (argument_count < 4) return changes_of(work.path(), sysid::fuzz::write_example(work.path()), count, seed) ? 0 : 1;
-  for (int i = 3; i < argument_count; ++i) {
-    std::filesystem::path const copy = work.path() / std::to_string(i);
-    std::filesystem::copy(arguments[i], copy);
-    std::printf("%s\n", arguments[i]);
-    if (!changes_of(copy, sysid::fuzz::stored_files(copy), count, seed)) return 1;
+  std::vector<std::string> const words(arguments + 1, arguments + argument_count);
+  std::uint64_t const count = !words.empty() ? std::strtoull(words[0].c_str(), nullptr, 10) : 100000;
+  std::uint64_t const seed = words.size() > 1 ? std::strtoull(words[1].c_str(), nullptr, 10) : 1;
+  std::vector<std::string> asked(words.begin() + std::min<std::ptrdiff_t>(std::ssize(words), 2), words.end());
+  auto const cases = fuzz::checkpoint_cases();
+  if (asked.empty()) {
+    asked.push_back("example");
+    for (fuzz::CheckpointCase const& each : cases) asked.push_back(each.name);
+  }
+  TemporaryFolder const work;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    std::string const& what = asked[i];
+    std::filesystem::path const folder = work.path() / std::to_string(i);
+    auto const found =
+        std::find_if(cases.begin(), cases.end(), [&](fuzz::CheckpointCase const& each) { return each.name == what; });
+    bool clean = true;
+    if (what == "example") {
+      clean = changes_of(folder, fuzz::write_example(folder), count, seed);
+    } else if (found != cases.end()) {
+      clean = print("checkpoint of " + what, fuzz::mutate_checkpoint(folder, *found, count, seed));
+    } else {
+      std::filesystem::copy(what, folder);
+      std::printf("%s\n", what.c_str());
+      clean = changes_of(folder, fuzz::stored_files(folder), count, seed);
+    }
+    if (!clean) return 1;
   }
   return 0;
 }

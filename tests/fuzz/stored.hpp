@@ -10,11 +10,11 @@ namespace sysid::fuzz {
 
 /// A file of a stored result, and what reading it gives.
 struct StoredFile {
-  std::string name;   // summary.json, draws_1.csv, predict.csv, report.cbor, checkpoint.cbor
+  std::string name;   // summary.json, draws_1.csv, predict.csv, report.cbor
   std::string bytes;  // as written
 };
 
-/// A result, written into `folder`, with a checkpoint beside it.
+/// A result, written into `folder`.
 std::vector<StoredFile> write_example(std::filesystem::path const& folder);
 
 /// Those of a folder that a run has left.

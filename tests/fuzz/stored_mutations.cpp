@@ -1,12 +1,12 @@
-// Mutations as disks, networks and editors make them: bits and bytes, cuts, repeated and moved parts, other numbers.
+// Reads what was changed as the program does, once with the digests that were written and once with those of the change.
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/numeric/random.hpp"
 #include "core/system/digest.hpp"
 #include "core/text/diagnostic.hpp"
+#include "fuzz/files.hpp"
+#include "fuzz/mutator.hpp"
 #include "fuzz/stored.hpp"
 #include "report/example.hpp"
 #include "report/file/number_table.hpp"
@@ -21,66 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using json = nlohmann::json;
-
-constexpr int checkpoint_form = 3;
-
-/// Without flushing to the disk, which would take all of the time.
-void put(fs::path const& path, std::string const& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
-
-std::string checkpoint() {
-  std::vector<std::uint8_t> const numbers(800, 0x3f);
-  json const content = {{"preparation", {{"moves", {0.5, 0.25}}, {"modes", json::array()}}},
-                        {"state", {{"next", 120}, {"chains", json::binary(numbers)}, {"widths", {1.5, 2.5}}}}};
-  return sealed_cbor({{"who", {{"task", "posterior"}, {"seed", 7}, {"model", std::string(300, 'm')}}}, {"content", content}},
-                     checkpoint_form);
-}
-
-class Mutator {
- public:
-  explicit Mutator(StreamKey key) : stream_(key) {}
-
-  std::string operator()(std::string bytes) {
-    for (std::uint64_t changes = 1 + below(3); changes > 0; --changes) change(bytes);
-    return bytes;
-  }
-
- private:
-  std::uint64_t below(std::uint64_t count) { return count == 0 ? 0 : stream_.below(count); }
-
-  void change(std::string& bytes) {
-    std::uint64_t const at = below(bytes.size()), length = below(std::min<std::uint64_t>(bytes.size() - at, 1 + below(200)) + 1);
-    switch (below(8)) {
-      case 0:
-        if (!bytes.empty()) bytes[at] = static_cast<char>(bytes[at] ^ static_cast<char>(1U << below(8)));
-        break;
-      case 1:
-        if (!bytes.empty()) bytes[at] = static_cast<char>(below(256));
-        break;
-      case 2:
-        bytes.resize(at);
-        break;
-      case 3:
-        bytes.erase(at, length);
-        break;
-      case 4:
-        bytes.insert(below(bytes.size() + 1), bytes.substr(at, length));
-        break;
-      case 5:
-        bytes.insert(at, 1 + below(3), static_cast<char>(below(256)));
-        break;
-      case 6: {  // another digit
-        auto const digit = bytes.find_first_of("0123456789", at);
-        if (digit != std::string::npos) bytes[digit] = static_cast<char>('0' + below(10));
-        break;
-      }
-      default:  // deep nesting
-        bytes.insert(at, 1 + below(5000), "\x81[{\x9f\x7f\xd8"[below(6)]);
-        break;
-    }
-  }
-
-  Stream stream_;
-};
 
 template <class Rows>
 void append_rows(std::string& all, Rows const& rows) {
@@ -121,12 +61,7 @@ std::string all_of(Report const& report) {
 }
 
 /// What the file gives, as text; throws where it is refused.
-std::string read_back(fs::path const& folder, StoredFile const& file, std::string const& bytes) {
-  if (file.name == "checkpoint.cbor") {
-    json content;
-    if (open_cbor(bytes, checkpoint_form, content) != Seal::whole) throw unusable_result("damaged");
-    return sealed_cbor(content, checkpoint_form);
-  }
+std::string read_back(fs::path const& folder, StoredFile const& file) {
   if (file.name == "summary.json") return read_whole_summary(folder);
   return all_of(read_result(folder));
 }
@@ -175,19 +110,13 @@ void read_forged(fs::path const& folder, StoredFile const& file, std::string con
       if (!is_plain_cbor(other)) return;
       json const content = json::from_cbor(other, true, false);
       if (content.is_discarded() || !moderate(content)) return;
-      std::string const sealed = sealed_cbor(content, outer.at("form").get<int>());
-      put(folder / file.name, sealed);
-      (void)read_back(folder, file, sealed);
+      put(folder / file.name, sealed_cbor(content, outer.at("form").get<int>()));
+      (void)read_back(folder, file);
     }
   } catch (UserError const&) {
   } catch (IoError const&) {
   } catch (std::bad_alloc const&) {
   }
-}
-
-std::string bytes_of(fs::path const& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -200,7 +129,6 @@ std::vector<StoredFile> write_example(fs::path const& folder) {
   for (PredictedQuantity& each : prediction.quantities)
     for (Band* band : {&each.response, &each.noisy}) shorten(band->mean, band->sd, band->lower, band->upper, each.measured);
   write_result(report, folder, {});
-  put(folder / "checkpoint.cbor", checkpoint());
   return stored_files(folder);
 }
 
@@ -208,7 +136,7 @@ std::vector<StoredFile> stored_files(fs::path const& folder) {
   std::vector<StoredFile> files;
   for (fs::directory_entry const& entry : fs::directory_iterator(folder)) {
     std::string const name = entry.path().filename();
-    if (name != "summary.json" && name != "report.cbor" && name != "checkpoint.cbor" && !is_stored_table(name)) continue;
+    if (name != "summary.json" && name != "report.cbor" && !is_stored_table(name)) continue;
     files.push_back({name, bytes_of(entry.path())});
   }
   std::sort(files.begin(), files.end(), [](StoredFile const& a, StoredFile const& b) { return a.name < b.name; });
@@ -218,16 +146,16 @@ std::vector<StoredFile> stored_files(fs::path const& folder) {
 Outcome mutate(fs::path const& folder, StoredFile const& file, std::uint64_t count, std::uint64_t seed) {
   Outcome outcome;
   Mutator mutator({seed, Purpose::test, std::hash<std::string>()(file.name), 0});
-  std::string const meant = read_back(folder, file, file.bytes);
+  std::string const meant = read_back(folder, file);
   std::string const summary = fs::exists(folder / "summary.json") ? bytes_of(folder / "summary.json") : "";
   for (std::uint64_t i = 0; i < count && outcome.fault.empty(); ++i) {
     std::string const changed = mutator(file.bytes);
     put(folder / file.name, changed);
     try {
-      bool const same = read_back(folder, file, changed) == meant;
+      bool const same = read_back(folder, file) == meant;
       ++(same ? outcome.same : outcome.refused);
       if (!same) outcome.fault = file.name + ": read as something else: " + changed;
-      if (same && changed != file.bytes && file.name != "checkpoint.cbor" && file.name != "report.cbor")
+      if (same && changed != file.bytes && file.name != "report.cbor")
         outcome.fault = file.name + ": a change was not seen: " + changed;
     } catch (UserError const&) {
       ++outcome.refused;

@@ -118,16 +118,13 @@ TEST_CASE("map fails where the posterior is far wider than its normal distributi
   CHECK(widths_finding(optimum::run_map(sample_of(few_rows(200), 0.01, 10), Settings{}, many.context)) == nullptr);
 }
 
-TEST_CASE("a mode close to a bound has an evidence, one at the bound has none") {
+TEST_CASE("a mode close to a bound has an evidence") {
   // ln a ~ N(-16, 0.3) under a uniform prior on (0, 1): a ten-millionth of the interval from its end.
-  auto const target = [](bool inside) {
-    return TestTarget({"alpha"}, {{Prior::uniform, 0, 1}}, 1, 0, [=](std::vector<double> const& a, std::vector<double>& r) {
-      r[0] = inside ? (std::log(a[0]) + 16) / 0.3 : 1 / (1 - std::log(a[0] / (1 + a[0])));
-    });
-  };
+  TestTarget const target({"alpha"}, {{Prior::uniform, 0, 1}}, 1, 0,
+                          [](std::vector<double> const& a, std::vector<double>& r) { r[0] = (std::log(a[0]) + 16) / 0.3; });
   Bench bench;
-  std::vector<Mode> const modes = search(target(true), ObjectiveKind::declared_posterior, bench.context).modes;
-  Evidence const found = laplace_evidence(target(true), ObjectiveKind::declared_posterior, modes, 1, bench.ledger);
+  std::vector<Mode> const modes = search(target, ObjectiveKind::declared_posterior, bench.context).modes;
+  Evidence const found = laplace_evidence(target, ObjectiveKind::declared_posterior, modes, 1, bench.ledger);
   CAPTURE(found.reason);
   REQUIRE(found.log_evidence);
   CHECK(*found.log_evidence == doctest::Approx(std::log(0.3 * std::sqrt(2 * std::numbers::pi)) - 16 + 0.045).epsilon(0.002));

@@ -4,6 +4,14 @@
 #include <nlohmann/json.hpp>
 
 namespace sysid {
+namespace {
+
+/// As of any value that is not what it should be, so that whoever reads the file says that it is damaged.
+nlohmann::json::other_error no_solver(nlohmann::json const& settings) {
+  return nlohmann::json::other_error::create(501, "not the settings of a solver", &settings);
+}
+
+}  // namespace
 
 void add_solver(SolverSettings const& solver, Facts& facts) {
   facts.emplace_back("solver", solver.method);
@@ -16,7 +24,7 @@ void add_solver(SolverSettings const& solver, Facts& facts) {
 SolverSettings read_solver(nlohmann::json const& settings) {
   SolverSettings solver;
   SolverRow const* row = find_solver(settings.value("solver", solver.method));
-  if (row == nullptr) return solver;
+  if (row == nullptr) throw no_solver(settings);
   Settings values(row->settings);
   for (SettingRow const& each : row->settings) {
     std::string const name(each.name);
@@ -28,7 +36,9 @@ SolverSettings read_solver(nlohmann::json const& settings) {
     else
       values.set(name, settings.at(name).get<double>());
   }
-  return make_solver(*row, values);
+  solver = make_solver(*row, values);
+  if (solver.substeps < 1 || solver.steps < 1 || !(solver.relative > 0) || !(solver.absolute >= 0)) throw no_solver(settings);
+  return solver;
 }
 
 nlohmann::json write_solver(SolverSettings const& solver) {

@@ -10,7 +10,8 @@ namespace sysid {
 /// Adds `solver` and the settings of its method; `as_model` where it is set.
 void add_solver(SolverSettings const& solver, Facts& facts);
 
-/// From an object with the names that `add_solver` writes; what is not there has its default.
+/// From an object with the names that `add_solver` writes; what is not there has its default. nlohmann::json::exception where
+/// nothing can be integrated with it.
 SolverSettings read_solver(nlohmann::json const& settings);
 /// The same names as an object.
 nlohmann::json write_solver(SolverSettings const& solver);

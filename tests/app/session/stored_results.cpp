@@ -204,6 +204,7 @@ TEST_CASE("a checkpoint with a whole seal and other content than is written is d
   for (json const& forged :
        {json(3), json::array(), json{{"who", 1}}, with("/content", 7), with("/content/preparation", "none"),
         with("/content/preparation/moves", "many"), with("/content/preparation/solver/solver", 4),
+        with("/content/preparation/solver/solver", "none"), with("/content/preparation/solver/substeps", 0),
         with("/content/preparation/findings", {{"no finding", 1, json::array(), "", ""}}),
         with("/content/preparation/modes/0/numbers", short_numbers),
         with("/content/preparation/ledger/failures",
@@ -237,9 +238,10 @@ TEST_CASE("a summary with a whole seal and other content than is written is dama
     char const* pointer;
     json value;
   };
-  for (Forged const& each : {Forged{"/settings", 3}, Forged{"/settings/solver", 3}, Forged{"/findings", json::array({4})},
-                             Forged{"/task", 9}, Forged{"/data", json::array({1})}, Forged{"/data/0/name", 1},
-                             Forged{"/versions/model_sha256", 1}, Forged{"/versions/files", 1}}) {
+  for (Forged const& each :
+       {Forged{"/settings", 3}, Forged{"/settings/solver", 3}, Forged{"/settings/solver", "none"}, Forged{"/settings/substeps", -1},
+        Forged{"/findings", json::array({4})}, Forged{"/task", 9}, Forged{"/data", json::array({1})}, Forged{"/data/0/name", 1},
+        Forged{"/versions/model_sha256", 1}, Forged{"/versions/files", 1}}) {
     CAPTURE(each.pointer);
     Answer const refused = predicted(each.pointer, each.value);
     CHECK(refused.exit == ExitCode::user_error);

@@ -1,0 +1,17 @@
+// Checkpoints as disks and editors leave them.
+#include <doctest/doctest.h>
+
+#include "fuzz/checkpoints.hpp"
+#include "temporary_folder.hpp"
+
+using namespace sysid;
+
+TEST_CASE("no change of a checkpoint is resumed to another result") {
+  TemporaryFolder const folder;
+  for (fuzz::CheckpointCase const& each : fuzz::checkpoint_cases()) {
+    CAPTURE(each.name);
+    fuzz::Outcome const outcome = fuzz::mutate_checkpoint(folder.path() / each.name, each, 60, 20);
+    CHECK(outcome.fault == "");
+    CHECK(outcome.refused > 50);
+  }
+}
