@@ -17,12 +17,7 @@ constexpr double worth_taking = 1e-8;  // predicted gain in log density below wh
 constexpr double dampings[] = {0.1, 1, 10, 100};
 constexpr int damping_count = 4;
 
-struct LocalSlope {
-  Eigen::VectorXd gradient;  // of the log density
-  Eigen::MatrixXd curvature;
-};
-
-void add_prior(Objective const& objective, std::vector<Climber*> const& block, std::vector<LocalSlope>& slopes) {
+void add_prior(Objective const& objective, std::vector<Climber*> const& block, std::vector<Slope>& slopes) {
   if (objective.objective_kind == ObjectiveKind::likelihood) return;
   int const dimension = objective.dimension();
   int const columns = 2 * dimension + 1;
@@ -49,16 +44,16 @@ void add_prior(Objective const& objective, std::vector<Climber*> const& block, s
 }
 
 /// Gradient and Gauss-Newton curvature of every climber of the block.
-std::vector<LocalSlope> slopes_of(Objective const& objective, std::vector<Climber*> const& block, Ledger& ledger) {
+std::vector<Slope> slopes_of(Objective const& objective, std::vector<Climber*> const& block, Ledger& ledger) {
   int const dimension = objective.dimension(), width = static_cast<int>(block.size());
   LaneArray theta(dimension, width), gradient(dimension, width), curvature(dimension * dimension, width);
   for (int k = 0; k < width; ++k)
     for (int p = 0; p < dimension; ++p) theta(p, k) = block[static_cast<std::size_t>(k)]->theta(p);
   Eigen::VectorXd const steps = difference_width(objective.target) * objective.scale;
   objective.target.gauss_newton(theta, {steps.data(), static_cast<std::size_t>(dimension)}, gradient, curvature, ledger);
-  std::vector<LocalSlope> slopes;
+  std::vector<Slope> slopes;
   for (int k = 0; k < width; ++k) {
-    LocalSlope slope{Eigen::VectorXd(dimension), Eigen::MatrixXd(dimension, dimension)};
+    Slope slope{Eigen::VectorXd(dimension), Eigen::MatrixXd(dimension, dimension)};
     for (int p = 0; p < dimension; ++p) {
       slope.gradient(p) = gradient(p, k);
       for (int q = 0; q < dimension; ++q) slope.curvature(p, q) = curvature(p * dimension + q, k);
@@ -69,7 +64,7 @@ std::vector<LocalSlope> slopes_of(Objective const& objective, std::vector<Climbe
   return slopes;
 }
 
-Eigen::VectorXd damped_step(Objective const& objective, LocalSlope const& slope, double damping) {
+Eigen::VectorXd damped_step(Objective const& objective, Slope const& slope, double damping) {
   // In prior widths, so that a weak direction of one unit is not rounded away by a stiff one of another.
   Eigen::VectorXd const& s = objective.scale;
   Eigen::MatrixXd system = s.asDiagonal() * slope.curvature * s.asDiagonal();
@@ -85,7 +80,7 @@ Eigen::VectorXd damped_step(Objective const& objective, LocalSlope const& slope,
 
 /// One round of one block of climbers.
 void climb_once(Objective const& objective, std::vector<Climber*> const& block, Ledger& ledger) {
-  std::vector<LocalSlope> const slopes = slopes_of(objective, block, ledger);
+  std::vector<Slope> const slopes = slopes_of(objective, block, ledger);
   std::vector<Eigen::VectorXd> trials;
   std::vector<double> promised;
   for (std::size_t k = 0; k < block.size(); ++k) {
@@ -146,8 +141,7 @@ std::vector<Slope> slopes_at(Objective const& objective, std::vector<Eigen::Vect
       climbers[k].theta = places[first + k];
       block.push_back(&climbers[k]);
     }
-    for (LocalSlope& slope : slopes_of(objective, block, ledger))
-      slopes.emplace_back(std::move(slope.gradient), std::move(slope.curvature));
+    for (Slope& slope : slopes_of(objective, block, ledger)) slopes.push_back(std::move(slope));
   }
   return slopes;
 }

@@ -2,7 +2,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
-#include <utility>
 #include <vector>
 
 #include "core/numeric/not_finite.hpp"
@@ -29,8 +28,11 @@ std::size_t climbers_per_block(Objective const& objective);
 
 Climber climber_at(Eigen::VectorXd theta, double log_density);
 
-/// Gradient of the log density at theta, and the Gauss-Newton curvature with the prior's: J'J + P as below.
-using Slope = std::pair<Eigen::VectorXd, Eigen::MatrixXd>;
+/// Of the log density at a place.
+struct Slope {
+  Eigen::VectorXd gradient;   // [P]
+  Eigen::MatrixXd curvature;  // of Gauss and Newton, with the prior's: J'J + P as below
+};
 Slope slope_at(Objective const& objective, Eigen::VectorXd const& theta, Ledger& ledger);
 /// Of several places in one batch, each as if alone.
 std::vector<Slope> slopes_at(Objective const& objective, std::vector<Eigen::VectorXd> const& places, Ledger& ledger);

@@ -31,7 +31,7 @@ std::vector<Independence::Component> ridge_from(Target const& target, std::vecto
   target.unconstrain(values, theta);
   Ledger ledger;
   Eigen::VectorXd const start = column(theta, 0);
-  Mode const mode = laplace_mode(objective, start, slope_at(objective, start, ledger).second, ledger);
+  Mode const mode = laplace_mode(objective, start, slope_at(objective, start, ledger).curvature, ledger);
   return along_ridge(objective, mode, ledger);
 }
 

@@ -47,8 +47,8 @@ class Landscape {
     for (Eigen::VectorXd& point : points) point = point.cwiseProduct(s);
     std::vector<Slope> slopes;
     for (auto& [gradient, curvature] : slopes_at(objective_, points, ledger_)) {
-      slopes.emplace_back(gradient.cwiseProduct(s), s.asDiagonal() * curvature * s.asDiagonal());
-      slopes.back().second.diagonal().array() += 1 / (longest_along * longest_along);
+      slopes.push_back({gradient.cwiseProduct(s), s.asDiagonal() * curvature * s.asDiagonal()});
+      slopes.back().curvature.diagonal().array() += 1 / (longest_along * longest_along);
     }
     return slopes;
   }
@@ -72,15 +72,15 @@ struct Frame {
 };
 
 Frame frame_of(Slope const& slope) {
-  if (!slope.first.allFinite() || !slope.second.allFinite()) return {};
-  auto const [values, vectors] = symmetric_eigen(slope.second);
+  if (!slope.gradient.allFinite() || !slope.curvature.allFinite()) return {};
+  auto const [values, vectors] = symmetric_eigen(slope.curvature);
   if (!values.allFinite() || !(values(0) > 0)) return {};
   Eigen::VectorXd const lengths = values.cwiseSqrt().cwiseInverse();
   Eigen::Index const dimension = lengths.size();
   Eigen::Index count = 1;
   while (count < std::min(most_long, dimension - 1) && lengths(count) > shortest_long * lengths(0)) ++count;
   Frame frame{vectors.leftCols(count), vectors.rightCols(dimension - count), lengths.head(count), {}, true};
-  frame.to_top = (frame.along.transpose() * slope.first).cwiseProduct(frame.lengths.cwiseAbs2());
+  frame.to_top = (frame.along.transpose() * slope.gradient).cwiseProduct(frame.lengths.cwiseAbs2());
   frame.to_top = frame.to_top.cwiseMin(most_pull * frame.lengths).cwiseMax(-most_pull * frame.lengths);
   return frame;
 }
@@ -97,8 +97,8 @@ struct Plane {
 /// A Newton step of a plane, and whether there is more to gain.
 Eigen::VectorXd newton_step(Slope const& slope, Plane& plane) {
   Eigen::MatrixXd const& across = *plane.across;
-  Eigen::VectorXd const gradient = across.transpose() * slope.first;
-  auto const factor = cholesky(across.transpose() * slope.second * across);
+  Eigen::VectorXd const gradient = across.transpose() * slope.gradient;
+  auto const factor = cholesky(across.transpose() * slope.curvature * across);
   if (!factor || !gradient.allFinite()) {
     plane.usable = false;
     plane.done = true;
