@@ -132,6 +132,15 @@ int IndependenceLearning::moves_in_burn_in() const {
 
 int IndependenceLearning::moves() const { return active() && windows_ > 0 ? worth() : 0; }
 
+std::vector<double> IndependenceLearning::log_weights(Target const& target, State const& state) const {
+  Framed const states = framed(target, mixture().declared(), state.theta);
+  std::vector<double> log_q(states.log_slope.size());
+  mixture().log_density(states.x, log_q);
+  for (std::size_t w = 0; w < log_q.size(); ++w)
+    log_q[w] = state.log_prior[w] + state.log_likelihood[w] - log_q[w] - states.log_slope[w];
+  return log_q;
+}
+
 std::vector<char> IndependenceLearning::away(Target const& target, State const& state) const {
   std::vector<char> is_away(component_of_chain_.size(), 0);
   if (weights_.size() < 2) return is_away;

@@ -35,6 +35,8 @@ class IndependenceLearning {
   /// The same after burn-in; 0 where they are not worth their simulations.
   int moves() const;
 
+  /// [W]: log p/q of the states, q the mixture in use, up to a constant that lasts as long as the mixture.
+  std::vector<double> log_weights(Target const& target, State const& state) const;
   /// [W]: the chains that stand nearer to another mode than to their own.
   std::vector<char> away(Target const& target, State const& state) const;
   /// After every iteration of burn-in; away [W] as above.

@@ -18,6 +18,7 @@
 #include "inference/chain/metropolis.hpp"
 #include "inference/chain/ridge.hpp"
 #include "inference/chain/ridge_moves.hpp"
+#include "inference/chain/ridge_worth.hpp"
 #include "inference/chain/watch.hpp"
 #include "search/laplace.hpp"
 
@@ -55,6 +56,7 @@ struct State : ChainRun {
   metropolis::IndependenceLearning independence;
   metropolis::LocalLearning local;
   metropolis::RidgeMoves ridge;
+  metropolis::RidgeWorth ridge_worth;
 };
 
 struct Plan {
@@ -93,6 +95,7 @@ nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json co
   stored["independence"] = state.independence.store();
   stored["local"] = state.local.store();
   stored["ridge"] = state.ridge.store();
+  stored["ridge_worth"] = state.ridge_worth.store();
   return stored;
 }
 
@@ -109,6 +112,7 @@ void restore(nlohmann::json const& stored, Target const& target, Plan const& pla
   state.independence = metropolis::IndependenceLearning::restore(stored.at("independence"), target.dimension(), plan.chains);
   state.local = metropolis::LocalLearning::restore(stored.at("local"));
   state.ridge = metropolis::RidgeMoves::restore(stored.at("ridge"), target.dimension());
+  state.ridge_worth = metropolis::RidgeWorth::restore(stored.at("ridge_worth"), target.dimension());
 }
 
 /// Chains of one mode learn together.
@@ -172,14 +176,29 @@ std::uint64_t end_of_cycle(State const& state, std::uint64_t end) {
   return std::min(end, (state.next.front() / ridge_interval + 1) * ridge_interval);
 }
 
+/// Between windows of burn-in: begins moves along ridges where they may be needed, and ends them where they are not worth it.
+void choose_ridge_moves(Target const& target, std::uint64_t seed, State& state) {
+  if (state.ridge.active()) state.ridge_worth.end_window();
+  if (!state.ridge_worth.worth())
+    state.ridge = {};
+  else if (!state.ridge.active() && state.independence.wants_ridge_moves() && !target.is_expensive())
+    state.ridge = metropolis::RidgeMoves(make_objective(target, ObjectiveKind::posterior, seed, 0).scale);
+}
+
 /// One batch of burn-in: an iteration of every chain, or a cycle of them with independence moves.
 void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Proposal const* const> walks, StreamKey key,
              Ledger& ledger, State& state) {
   if (state.independence.wants_ridge()) follow_ridge(target, key.seed, ledger, state);
   metropolis::Info info(static_cast<std::size_t>(plan.chains));
+  bool const ridge = state.ridge.active(), along_ridge = at_ridge(state);
+  metropolis::State before = ridge ? state.chains : metropolis::State();
   auto const learn = [&](int chain, metropolis::Move const& move) {
     info[static_cast<std::size_t>(chain)] = move;
     if (chain + 1 < plan.chains) return;
+    if (ridge) {
+      state.ridge_worth.learn(before.theta, state.independence.log_weights(target, before), state.chains.theta, info);
+      before = state.chains;
+    }
     for (std::uint64_t& n : state.next) ++n;
     std::vector<char> away(info.size(), 0);
     if (state.independence.active()) {
@@ -191,18 +210,20 @@ void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Propo
     state.record.count_burn_in(info);
   };
   StreamKey const now = key.with_step(state.next.front());
-  if (at_ridge(state)) {
-    metropolis::Info const moves = state.ridge.step(target, now, state.chains, ledger);
+  Ledger spent;
+  if (along_ridge) {
+    metropolis::Info const moves = state.ridge.step(target, now, state.chains, spent);
     state.ridge.learn(moves);
     for (int chain = 0; chain < plan.chains; ++chain) learn(chain, moves[static_cast<std::size_t>(chain)]);
   } else {
     metropolis::cycle(target, local_moves(walks, state), state.independence.mixture(), state.independence.moves_in_burn_in(), now,
-                      end_of_cycle(state, plan.burn_in), state.chains, ledger, learn);
+                      end_of_cycle(state, plan.burn_in), state.chains, spent, learn);
   }
+  if (ridge) state.ridge_worth.spend(along_ridge, spent.solves());
+  ledger.merge(spent);
   if (!state.independence.active() || !state.independence.end_cycle(target, state.groups)) return;
   state.local.end_window(state.independence.too_few());
-  if (!state.ridge.active() && state.independence.wants_ridge_moves() && !target.is_expensive())
-    state.ridge = metropolis::RidgeMoves(make_objective(target, ObjectiveKind::posterior, key.seed, 0).scale);
+  choose_ridge_moves(target, key.seed, state);
 }
 
 /// Iterates to the end, or until asked to stop or a batch is given up, of which nothing is kept; returns whether it was.
