@@ -294,9 +294,11 @@ class LayoutPass {
   }
 
   void report(Diagnostics& diagnostics, std::size_t limit) {
-    std::stable_sort(scan_.mistakes.begin(), scan_.mistakes.end(),
-                     [](Mistake const& a, Mistake const& b) { return a.token < b.token; });
-    for (Mistake& mistake : scan_.mistakes) {
+    std::vector<Mistake*> in_order;  // places, which move at less cost than messages
+    for (Mistake& mistake : scan_.mistakes) in_order.push_back(&mistake);
+    std::stable_sort(in_order.begin(), in_order.end(), [](Mistake const* a, Mistake const* b) { return a->token < b->token; });
+    for (Mistake* const each : in_order) {
+      Mistake& mistake = *each;
       int const statement = tokens_.at(mistake.token).statement;
       if (out_.reported.insert(statement).second && diagnostics.all().size() < limit)
         diagnostics.add(std::move(mistake.diagnostic));

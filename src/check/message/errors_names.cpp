@@ -84,11 +84,13 @@ Diagnostic unknown_name(ast::Name const& name, Names const& known) {
       return about({name.text},
                    error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text), std::string(each.ours)));
   // ydot, dydt, dy of a y that there is.
-  for (std::string const& each : known)
+  for (std::string const& each : known) {
+    if (name.text.find(each) == std::string::npos) continue;
     for (char const* pattern : {"{}dot", "{}_dot", "d{}", "d{}dt", "{}ddot", "{}_ddot", "d2{}", "{}dotdot", "{}_dotdot"})
       if (name.text == fmt::format(fmt::runtime(pattern), each))
         return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
                                         fmt::format("a derivative is written with primes: `{0}'`, `{0}''`", each)));
+  }
   std::string const plain = typed(name.text);
   if (plain != name.text && std::find(known.begin(), known.end(), plain) != known.end())
     return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),

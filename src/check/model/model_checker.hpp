@@ -105,7 +105,8 @@ class ModelChecker {
   void order_priors();
   void channels();
   // The unit of what the noise is centred on, when it is known; a failing expression is reported by the caller's second look.
-  std::optional<Unit> location_unit(ast::Call const& noise);
+  // quiet: the model's names, reporting to nobody.
+  std::optional<Unit> location_unit(ast::Call const& noise, Scope& quiet);
   void derived();
 
   ast::Model const& tree_;

@@ -88,6 +88,8 @@ void ModelChecker::order_priors() {
 
 void ModelChecker::channels() {
   std::map<std::string, Span> seen;
+  Diagnostics ignored;
+  std::optional<Scope> quiet;  // one for all channels: it is a copy of all names
   each<ast::Observation>([&](ast::Observation const& observation) {
     ast::Name const& name = observation.channel.name;
     if (auto const [place, fresh] = seen.emplace(name.text, name.span); !fresh) {
@@ -100,7 +102,8 @@ void ModelChecker::channels() {
     channel.unit = scope_.unit(observation.channel.unit);
     Quantity variate = channel;
     if (!channel.unit) {
-      channel.unit = variate.unit = location_unit(observation.noise);
+      if (!quiet) quiet.emplace(scope_.with(ignored));
+      channel.unit = variate.unit = location_unit(observation.noise, *quiet);
       if (channel.unit) variate.span = location_argument(observation.noise)->span;
     }
     auto use = check_distribution(scope_, observation.noise, variate);
@@ -122,11 +125,9 @@ void ModelChecker::channels() {
   });
 }
 
-std::optional<Unit> ModelChecker::location_unit(ast::Call const& noise) {
+std::optional<Unit> ModelChecker::location_unit(ast::Call const& noise, Scope& quiet) {
   ast::Expression const* location = location_argument(noise);
   if (location == nullptr) return std::nullopt;
-  Diagnostics ignored;
-  Scope quiet = scope_.with(ignored);
   auto const value = quiet.expression(*location);
   if (!value || value->kind != Typed::Kind::known) return std::nullopt;
   return with_own_unit(*value).unit;
