@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "expression/pull_back.hpp"
 #include "gaussian_process/covariance.hpp"
 #include "gaussian_process/made.hpp"
 
@@ -11,7 +12,8 @@ using namespace sysid::gaussian_process;
 
 namespace {
 
-/// What multiplies each standard normal coefficient at points [N x D]: [N x size].
+/// What multiplies each standard normal coefficient at points [N x D]: [N x size]. The expansion is linear in the coefficients, so
+/// these are its derivatives by them.
 Eigen::MatrixXd functions(KernelRow const& row, Numbers parameters, Box const& box, Eigen::MatrixXd const& points) {
   Graph graph;
   std::vector<NodeId> constants, inputs, coefficients;
@@ -20,13 +22,13 @@ Eigen::MatrixXd functions(KernelRow const& row, Numbers parameters, Box const& b
   int const size = expansion_size(row, box.counts);
   for (int j = 0; j < size; ++j) coefficients.push_back(graph.leaf(LeafKind::parameter, j));
   NodeId const value = expansion(row, graph, constants, inputs, coefficients, box);
+  NodeId const one = graph.constant(1);
+  std::vector<NodeId> const derivatives = pull_back(graph, {&value, 1}, {&one, 1}, coefficients);
   Eigen::MatrixXd result(points.rows(), size);
-  for (int j = 0; j < size; ++j)
-    for (Eigen::Index i = 0; i < points.rows(); ++i)
-      result(i, j) = graph.evaluate(value, [&](NodeId leaf) {
-        Node const node = graph[leaf];
-        return node.leaf_kind == LeafKind::input ? points(i, node.index) : node.index == j ? 1.0 : 0.0;
-      });
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    std::vector<double> const row_of_point = graph.evaluate(derivatives, [&](NodeId leaf) { return points(i, graph[leaf].index); });
+    result.row(i) = Eigen::Map<Eigen::RowVectorXd const>(row_of_point.data(), size);
+  }
   return result;
 }
 

@@ -27,9 +27,18 @@ struct Problem {
   double (*log_likelihood)(std::vector<double> const& parameters, std::vector<double> const& data);
 };
 
-double log_normal_density(double x, double mean, double sd) {
-  return -0.5 * (x - mean) * (x - mean) / (sd * sd) - elementary::log(sd) - 0.5 * elementary::log(2 * std::numbers::pi);
+/// A standard deviation with its logarithm, which is not taken again for each of millions of densities.
+struct Width {
+  explicit Width(double width) : sd(width), log_sd(elementary::log(width)) {}
+  double sd, log_sd;
+};
+
+double log_normal_density(double x, double mean, Width const& width) {
+  static double const half_log_two_pi = 0.5 * elementary::log(2 * std::numbers::pi);
+  return -0.5 * (x - mean) * (x - mean) / (width.sd * width.sd) - width.log_sd - half_log_two_pi;
 }
+
+Width const unit_width(1), measured_width(0.7), valley_width(0.2), modes_width(0.15), half_width(0.5), funnel_width(1.5);
 
 class ProblemTarget : public Target {
  public:
@@ -71,8 +80,8 @@ class ProblemTarget : public Target {
       for (int w = 0; w < from.width(); ++w) to(p, w) = from(p, w);
   }
   static std::vector<double> column_of(ConstLanes theta, int lane) {
-    std::vector<double> x;
-    for (int p = 0; p < theta.rows(); ++p) x.push_back(theta(p, lane));
+    std::vector<double> x(static_cast<std::size_t>(theta.rows()));
+    for (int p = 0; p < theta.rows(); ++p) x[static_cast<std::size_t>(p)] = theta(p, lane);
     return x;
   }
   Problem const& problem_;
@@ -85,7 +94,7 @@ void standard_normals(Stream& stream, std::vector<double>& x) {
 }
 double log_standard_normals(std::vector<double> const& x) {
   double sum = 0;
-  for (double const v : x) sum += log_normal_density(v, 0, 1);
+  for (double const v : x) sum += log_normal_density(v, 0, unit_width);
   return sum;
 }
 
@@ -102,8 +111,8 @@ constexpr Problem correlated_problem{"three correlated parameters",
                                      [](std::vector<double> const& x, std::vector<double> const& y) {
                                        double sum = 0;
                                        for (std::size_t i = 0; i < 4; ++i)
-                                         sum +=
-                                             log_normal_density(y[i], x[0] + 0.5 * static_cast<double>(i) * x[1] + 0.9 * x[2], 0.5);
+                                         sum += log_normal_density(y[i], x[0] + 0.5 * static_cast<double>(i) * x[1] + 0.9 * x[2],
+                                                                   half_width);
                                        return sum;
                                      }};
 
@@ -117,7 +126,7 @@ constexpr Problem valley_problem{"a curved valley",
                                    y[0] = x[1] + 2 * x[0] * x[0] + 0.2 * stream.normal();
                                  },
                                  [](std::vector<double> const& x, std::vector<double> const& y) {
-                                   return log_normal_density(y[0], x[1] + 2 * x[0] * x[0], 0.2);
+                                   return log_normal_density(y[0], x[1] + 2 * x[0] * x[0], valley_width);
                                  }};
 
 constexpr Problem two_modes_problem{"two modes",
@@ -131,7 +140,7 @@ constexpr Problem two_modes_problem{"two modes",
                                       y[0] = std::fabs(x[0]) + 0.05 * x[0] + 0.15 * stream.normal();
                                     },
                                     [](std::vector<double> const& x, std::vector<double> const& y) {
-                                      return log_normal_density(y[0], std::fabs(x[0]) + 0.05 * x[0], 0.15);
+                                      return log_normal_density(y[0], std::fabs(x[0]) + 0.05 * x[0], modes_width);
                                     }};
 
 /// Parameters: log sd, mean, and eight effects around it; one measurement of each effect.
@@ -145,9 +154,10 @@ constexpr Problem hierarchy_problem{"a hierarchy of eight",
                                       for (std::size_t i = 2; i < 10; ++i) x[i] = x[1] + elementary::exp(x[0]) * stream.normal();
                                     },
                                     [](std::vector<double> const& x) {
-                                      double sum = log_normal_density(x[0], 0, 0.5) + log_normal_density(x[1], 0, 1);
-                                      for (std::size_t i = 2; i < 10; ++i)
-                                        sum += log_normal_density(x[i], x[1], elementary::exp(x[0]));
+                                      double sum =
+                                          log_normal_density(x[0], 0, half_width) + log_normal_density(x[1], 0, unit_width);
+                                      Width const spread(elementary::exp(x[0]));
+                                      for (std::size_t i = 2; i < 10; ++i) sum += log_normal_density(x[i], x[1], spread);
                                       return sum;
                                     },
                                     [](Stream& stream, std::vector<double> const& x, std::vector<double>& y) {
@@ -155,7 +165,7 @@ constexpr Problem hierarchy_problem{"a hierarchy of eight",
                                     },
                                     [](std::vector<double> const& x, std::vector<double> const& y) {
                                       double sum = 0;
-                                      for (std::size_t i = 0; i < 8; ++i) sum += log_normal_density(y[i], x[i + 2], 0.7);
+                                      for (std::size_t i = 0; i < 8; ++i) sum += log_normal_density(y[i], x[i + 2], measured_width);
                                       return sum;
                                     }};
 
@@ -169,16 +179,16 @@ constexpr Problem funnel_problem{"a funnel",
                                    for (std::size_t i = 1; i < 3; ++i) x[i] = elementary::exp(x[0] / 2) * stream.normal();
                                  },
                                  [](std::vector<double> const& x) {
-                                   double sum = log_normal_density(x[0], 0, 1.5);
-                                   for (std::size_t i = 1; i < 3; ++i)
-                                     sum += log_normal_density(x[i], 0, elementary::exp(x[0] / 2));
+                                   double sum = log_normal_density(x[0], 0, funnel_width);
+                                   Width const spread(elementary::exp(x[0] / 2));
+                                   for (std::size_t i = 1; i < 3; ++i) sum += log_normal_density(x[i], 0, spread);
                                    return sum;
                                  },
                                  [](Stream& stream, std::vector<double> const& x, std::vector<double>& y) {
                                    for (std::size_t i = 0; i < 2; ++i) y[i] = x[i + 1] + stream.normal();
                                  },
                                  [](std::vector<double> const& x, std::vector<double> const& y) {
-                                   return log_normal_density(y[0], x[1], 1) + log_normal_density(y[1], x[2], 1);
+                                   return log_normal_density(y[0], x[1], unit_width) + log_normal_density(y[1], x[2], unit_width);
                                  }};
 
 using Run = FitResult (*)(Target const&, Settings const&, RunContext&);
