@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "house/markdown.hpp"
+#include "sanitized.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;
@@ -33,8 +34,9 @@ class Desk {
 
   int run(std::string const& commands) {
     write_file(folder_.path() / "commands.sh", commands);
-    int const status = std::system(
-        ("cd '" + folder_.path().string() + "' && timeout 60 bash -e commands.sh > printed.txt 2> messages.txt").c_str());
+    int const status = std::system(("cd '" + folder_.path().string() + "' && timeout " + std::to_string(60 * slower) +
+                                    " bash -e commands.sh > printed.txt 2> messages.txt")
+                                       .c_str());
     fs::remove(folder_.path() / "commands.sh");
     printed_ = read_file(folder_.path() / "printed.txt") + read_file(folder_.path() / "messages.txt");
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;

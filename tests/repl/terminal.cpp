@@ -3,6 +3,7 @@
 
 #include "dialogue.hpp"
 #include "pseudo_terminal.hpp"
+#include "sanitized.hpp"
 
 using namespace sysid;
 
@@ -117,7 +118,7 @@ TEST_CASE("Ctrl-C stops a run and keeps its draws; what is not saved is kept, to
   terminal.type("post = fit oscillator to bench with mh(samples = 20000000, thin = 100), seed = 1\r");
   terminal.until("sampling", 60);
   terminal.until("%", 60);
-  usleep(1500000);
+  usleep(static_cast<useconds_t>(1500000 * testing::slower));
   terminal.type("\x03");
   CHECK(shows(terminal.until(terminal.prompt, 60), "continue with `resume`"));
   CHECK(shows(terminal.enter("mean(k)"), "[N/m]"));
