@@ -145,10 +145,10 @@ class LayoutPass {
     };
     std::size_t first = i;
     while (!begins(first)) --first;
+    if (first == i) return false;  // it may be the last token
     bool const in_block = std::any_of(open_.begin(), open_.end(), [&](std::size_t each) { return tokens_[each].is("{"); });
     bool const task = words::contains(words::verbs, tokens_[first].text) || tokens_[first + 1].is("=");
-    return first < i && (in_block || task) && !words::contains(words::blocks, tokens_[first].text) &&
-           closing_brace(i) < tokens_.size();
+    return (in_block || task) && !words::contains(words::blocks, tokens_[first].text) && closing_brace(i) < tokens_.size();
   }
 
   std::string instead_of_brace(std::size_t i) const {

@@ -42,6 +42,11 @@ constexpr char const* fragments[] = {
 
 }  // namespace
 
+TEST_CASE("a bracket at the end of a text, or alone, is answered") {
+  for (std::string const bracket : {"{", "}", "[", "]", "(", ")"})
+    for (std::string const before : {"", "model m\n", "fit =\n", "model m {\n  y^"}) check_any(before + bracket);
+}
+
 TEST_CASE("random bytes are answered") {
   test::Random random(3);
   for (int i = 0; i < 2000; ++i) {
