@@ -310,7 +310,11 @@ TEST_CASE("an interrupted run goes on to the same bytes, within populations and 
     CHECK(resumed.models[1].distance == whole.models[1].distance);
     CHECK(ledger.solves() == whole_ledger.solves());
   }
-  // A checkpoint of another seed is refused.
+}
+
+TEST_CASE("a checkpoint of another seed, or one whose populations do not follow each other, is refused") {
+  Toy const toy = two_widths();
+  Settings const settings = with({{"particles", std::int64_t{300}}, {"target", 0.01}, {"quantile", 0.1}});
   SilentProgress silent;
   Ledger ledger;
   nlohmann::json stored;
@@ -318,6 +322,27 @@ TEST_CASE("an interrupted run goes on to the same bytes, within populations and 
   abc::run(toy, settings, first);
   RunContext other{6, silent, ledger, {}, {}, 60, kept(stored), {}, {}};
   CHECK(abc::run(toy, settings, other).failure);
+
+  int left = 10;
+  RunContext later{5,  silent, ledger, [&] { return left-- <= 0; }, [&](nlohmann::json const& state) { stored = state; }, 1e9,
+                   {}, {},     {}};
+  abc::run(toy, settings, later);
+  REQUIRE(stored.at("records").size() > 1);
+  auto const fails = [&](nlohmann::json const& state) {
+    RunContext context{5, silent, ledger, {}, {}, 60, kept(state), {}, {}};
+    return abc::run(toy, settings, context).failure.has_value();
+  };
+  CHECK_FALSE(fails(stored));
+  for (auto const& [pointer, value] : {std::pair<char const*, nlohmann::json>{"/records", nlohmann::json::array()},
+                                       {"/records/0/models", nlohmann::json::array()},
+                                       {"/record/models", nlohmann::json::array()},
+                                       {"/last/number", -1},
+                                       {"/next/number", 1}}) {
+    CAPTURE(pointer);
+    nlohmann::json forged = stored;
+    forged[nlohmann::json::json_pointer(pointer)] = value;
+    CHECK(fails(forged));
+  }
 }
 
 namespace {

@@ -1,6 +1,8 @@
 // States to JSON and back.
 #include "inference/abc/state.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <variant>
 
 #include "inference/backend/checkpoint.hpp"
@@ -65,7 +67,7 @@ json store(PopulationRecord const& record) {
           {"models", std::move(models)}};
 }
 
-PopulationRecord restore_record(json const& stored) {
+PopulationRecord restore_record(json const& stored, int models) {
   PopulationRecord record;
   std::vector<double> const pair = checkpoint::decode(stored.at("numbers"), 2);
   record.threshold = pair.at(0);
@@ -80,7 +82,16 @@ PopulationRecord restore_record(json const& stored) {
     record.models.push_back(
         {model.at(0).get<std::uint64_t>(), model.at(1).get<std::uint64_t>(), model.at(2).get<int>(), two.at(0), two.at(1)});
   }
+  if (std::ssize(record.models) != models) throw checkpoint::Mismatch("its populations differ in models");
   return record;
+}
+
+/// Whether populations follow each other as a run makes them: each whole one has a record, and particles.
+bool in_order(State const& state) {
+  Population const& last = state.last;
+  return last.number >= 0 && state.next.number == last.number + 1 && std::ssize(state.records) == last.number &&
+         (last.number == 0 ||
+          std::any_of(last.models.begin(), last.models.end(), [](Particles const& each) { return each.count() > 0; }));
 }
 
 }  // namespace
@@ -120,8 +131,9 @@ State restore(json const& stored, SelectionTarget const& candidates, Ledger& led
   State state;
   state.last = restore_population(stored.at("last"), candidates);
   state.next = restore_population(stored.at("next"), candidates);
-  state.record = restore_record(stored.at("record"));
-  for (json const& each : stored.at("records")) state.records.push_back(restore_record(each));
+  state.record = restore_record(stored.at("record"), candidates.size());
+  for (json const& each : stored.at("records")) state.records.push_back(restore_record(each, candidates.size()));
+  if (!in_order(state)) throw checkpoint::Mismatch("its populations do not follow each other");
   for (int m = 0; m < candidates.size(); ++m) {
     json const& departure = stored.at("departures").at(static_cast<std::size_t>(m));
     state.departures.push_back(
