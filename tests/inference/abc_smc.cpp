@@ -337,7 +337,9 @@ TEST_CASE("a checkpoint of another seed, or one whose populations do not follow 
                                        {"/records/0/models", nlohmann::json::array()},
                                        {"/record/models", nlohmann::json::array()},
                                        {"/last/number", -1},
-                                       {"/next/number", 1}}) {
+                                       {"/next/number", 1},
+                                       {"/departures/0/0", 99},
+                                       {"/departures/0/1", true}}) {
     CAPTURE(pointer);
     nlohmann::json forged = stored;
     forged[nlohmann::json::json_pointer(pointer)] = value;

@@ -138,6 +138,9 @@ State restore(json const& stored, SelectionTarget const& candidates, Ledger& led
     json const& departure = stored.at("departures").at(static_cast<std::size_t>(m));
     state.departures.push_back(
         {departure.at(0).get<int>(), departure.at(1).get<bool>(), restore_particles(departure.at(2), candidates.dimension(m))});
+    State::Departure const& last = state.departures.back();
+    if (last.population < (last.by_chance ? 1 : 0) || last.population > state.last.number)
+      throw checkpoint::Mismatch("a model has left in a population that was not");
   }
   ledger = checkpoint::decode_ledger(stored.at("ledger"));
   return state;
