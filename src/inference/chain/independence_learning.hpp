@@ -57,8 +57,6 @@ class IndependenceLearning {
   /// a chain in one place for long.
   bool wants_ridge_moves() const;
 
-  /// Share of accepted independence moves in the last window; 0 before its end.
-  double acceptance() const { return acceptance_; }
   /// Whether a window has ended, and too few of its moves were accepted to do without others.
   bool too_few() const;
 

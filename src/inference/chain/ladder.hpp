@@ -13,7 +13,6 @@ class Ladder {
   /// K = rungs >= 2. The first powers lie closer towards 0, where a likelihood of many samples changes most.
   explicit Ladder(int rungs);
 
-  int rungs() const { return static_cast<int>(powers_.size()); }
   double power(int rung) const { return powers_[static_cast<std::size_t>(rung)]; }
   /// The probability above, for neighbours `rung` and `rung` + 1.
   double probability(int rung, double log_likelihood, double log_likelihood_above) const;

@@ -66,7 +66,6 @@ void Chain::learn(BurnIn const& burn_in) {
 
 void Chain::count() {
   ++tally_.trajectories;
-  tally_.leapfrogs += static_cast<std::uint64_t>(last_.leapfrogs);
   tally_.cut += last_.cut ? 1 : 0;
   if (!last_.diverged) return;
   ++tally_.diverged;

@@ -20,12 +20,12 @@ BurnIn plan_burn_in(std::uint64_t length);
 
 /// What the trajectories after burn-in were like.
 struct Tally {
-  std::uint64_t trajectories = 0, leapfrogs = 0, diverged = 0, unsolved = 0, cut = 0;
+  std::uint64_t trajectories = 0, diverged = 0, unsolved = 0, cut = 0;
   std::vector<double> places;  // [P] each, of the first `most_places` that diverged
 
   template <class Visitor>
   void visit(Visitor& visitor) {
-    visitor(trajectories), visitor(leapfrogs), visitor(diverged), visitor(unsolved), visitor(cut), visitor(places);
+    visitor(trajectories), visitor(diverged), visitor(unsolved), visitor(cut), visitor(places);
   }
 };
 
