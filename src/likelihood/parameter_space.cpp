@@ -18,6 +18,16 @@ namespace {
 
 bool is_parameter(Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter; }
 
+/// The coordinates of the sampled rows that the scale of a prior reads, as an expression of rows.
+std::vector<int> population_of(Graph const& graph, Distribution const& prior, std::vector<int> const& coordinate_of) {
+  std::vector<int> read;
+  std::optional<NodeId> const scale = scale_argument(prior);
+  if (!scale) return read;
+  for (NodeId const node : graph.reachable({&*scale, 1}))
+    if (is_parameter(graph[node])) read.push_back(coordinate_of[static_cast<std::size_t>(graph[node].index)]);
+  return read;
+}
+
 /// The prior with every parameter of the model replaced.
 Distribution substituted(Graph& graph, Distribution use, std::function<std::optional<NodeId>(NodeId)> const& replacement) {
   for (NodeId& argument : use.arguments) argument = graph.substitute(argument, replacement);
@@ -40,8 +50,8 @@ bool reads_own_parameters(Model const& model, NodeId root) {
   });
 }
 
-ParameterSpace::ParameterSpace(Model model, std::vector<ExperimentMember> experiments)
-    : model_(std::move(model)), experiments_(std::move(experiments)) {
+ParameterSpace::ParameterSpace(Model model, std::vector<ExperimentMember> experiments, std::vector<MemberCoordinate> standardised)
+    : model_(std::move(model)), experiments_(std::move(experiments)), standardised_(std::move(standardised)) {
   lay_out();
   compile();
 }
@@ -74,6 +84,12 @@ void ParameterSpace::lay_out() {
   }
 }
 
+MemberCoordinate const* ParameterSpace::standardised(int coordinate) const {
+  auto const found = std::find_if(standardised_.begin(), standardised_.end(),
+                                  [&](MemberCoordinate const& each) { return each.coordinate == coordinate; });
+  return found == standardised_.end() ? nullptr : &*found;
+}
+
 void ParameterSpace::compile() {
   Graph graph = model_.graph;
   std::vector<NodeId> value, leaves, coordinates, backward(sampled_.size());
@@ -96,6 +112,7 @@ void ParameterSpace::compile() {
   };
   NodeId with_jacobian = graph.constant(0), without = graph.constant(0);
   std::vector<Constrained> constrained;
+  std::vector<NodeId> scales;
   infos_.resize(sampled_.size());
   auto const add = [&](int r) {
     FittedParameter const& row = rows_[static_cast<std::size_t>(r)];
@@ -103,7 +120,11 @@ void ParameterSpace::compile() {
     auto const k = static_cast<std::size_t>(coordinate_of[static_cast<std::size_t>(r)]);
     Distribution const& prior = *model_.parameters[static_cast<std::size_t>(row.parameter)].prior;
     Distribution const use = substituted(graph, prior, read_from(value, row));
-    Coordinate const moved = sysid::constrain(graph, support(graph, use), coordinates[k]);
+    MemberCoordinate const* const member = standardised(static_cast<int>(k));
+    Support const allowed = support(graph, use);
+    Coordinate const moved = member != nullptr
+                                 ? constrain_member(graph, allowed, location_scale(graph, use), *member, coordinates[k])
+                                 : sysid::constrain(graph, allowed, coordinates[k]);
     value[static_cast<std::size_t>(r)] = moved.value;
     // The declared density is per declared unit; d(declared)/du = d(SI)/du / scale.
     NodeId const scale = graph.constant(elementary::log(row.to_si(1)));
@@ -114,13 +135,22 @@ void ParameterSpace::compile() {
     std::vector<NodeId> known = leaves;
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (rows_[i].value) known[i] = value[i];
-    Support const bounds = support(graph, substituted(graph, prior, read_from(known, row)));
-    backward[k] = sysid::unconstrain(graph, bounds, leaves[static_cast<std::size_t>(r)]);
+    Distribution const by_rows = substituted(graph, prior, read_from(known, row));
+    Support const bounds = support(graph, by_rows);
+    NodeId const leaf = leaves[static_cast<std::size_t>(r)];
+    std::optional<LocationScale> population;
+    if (member != nullptr) population = location_scale(graph, by_rows);
+    backward[k] =
+        member != nullptr ? unconstrain_member(graph, bounds, *population, *member, leaf) : sysid::unconstrain(graph, bounds, leaf);
+    if (std::vector<int> of = population_of(graph, by_rows, coordinate_of); !of.empty()) {
+      members_.push_back({static_cast<int>(k), row.parameter, std::move(of)});
+      scales.push_back(*scale_argument(use));
+    }
     auto const number = [&](std::optional<NodeId> const& bound, double fallback) {
       auto const constant = bound ? graph.constant_value(*bound) : std::nullopt;
       return constant ? row.from_si(*constant) : fallback;
     };
-    constrained.push_back({r, static_cast<int>(k), bounds, moved.log_jacobian});
+    constrained.push_back({r, static_cast<int>(k), bounds, moved.log_jacobian, member, population});
     infos_[k] = {row.name, row.unit_text(), number(bounds.lower, -infinity), number(bounds.upper, infinity),
                  model_.parameters[static_cast<std::size_t>(row.parameter)].coefficient};
   };
@@ -132,6 +162,7 @@ void ParameterSpace::compile() {
   }
   constrain_ = compile_kernel(graph, coordinates, value);
   unconstrain_ = compile_kernel(graph, leaves, backward);
+  scales_ = compile_kernel(graph, coordinates, scales);
   NodeId const densities[] = {with_jacobian, without};
   prior_ = compile_kernel(graph, coordinates, densities);
   densities_ = graph;
@@ -140,15 +171,17 @@ void ParameterSpace::compile() {
 }
 
 /// By its own coordinate a value's derivative is what the log Jacobian is the logarithm of, smooth at 0; by others it has one
-/// through its bounds.
+/// through its bounds, or through its population.
 void ParameterSpace::compile_slopes(Graph& graph, std::span<Constrained const> constrained, std::span<NodeId const> coordinates,
                                     std::span<NodeId const> value) {
   std::vector<std::map<int, NodeId>> slopes(rows_.size());  // by coordinate
-  for (auto const& [r, coordinate, bounds, log_jacobian] : constrained) {
+  for (auto const& [r, coordinate, bounds, log_jacobian, member, population] : constrained) {
     std::map<int, NodeId>& here = slopes[static_cast<std::size_t>(r)];
     NodeId const size = graph.call(exp_function, log_jacobian);
     here.emplace(coordinate, bounds.upper && !bounds.lower ? graph.negate(size) : size);
-    NodeId const moved = sysid::constrain(graph, bounds, coordinates[static_cast<std::size_t>(coordinate)]).value;
+    NodeId const own = coordinates[static_cast<std::size_t>(coordinate)];
+    NodeId const moved = member != nullptr ? constrain_member(graph, bounds, *population, *member, own).value
+                                           : sysid::constrain(graph, bounds, own).value;
     for (NodeId const leaf : graph.reachable({&moved, 1})) {
       if (!is_parameter(graph[leaf])) continue;
       NodeId const by_bound = graph.substitute(graph.differentiate(moved, leaf), [&](NodeId other) -> std::optional<NodeId> {
@@ -271,6 +304,8 @@ void ParameterSpace::constrain(ConstLanes theta, Lanes declared) const {
 void ParameterSpace::unconstrain(ConstLanes declared, Lanes theta) const { run(unconstrain_, values_of_declared(declared), theta); }
 
 void ParameterSpace::slopes(ConstLanes theta, Lanes out) const { run(slope_, theta, out); }
+
+void ParameterSpace::member_scales(ConstLanes theta, Lanes out) const { run(scales_, theta, out); }
 
 void ParameterSpace::select(ConstLanes values, int experiment, Lanes parameters) const {
   for (int p = 0; p < static_cast<int>(model_.parameters.size()); ++p) {

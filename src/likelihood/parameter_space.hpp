@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/numeric/random.hpp"
+#include "likelihood/member_coordinate.hpp"
 #include "likelihood/target.hpp"
 #include "model/model.hpp"
 #include "program/kernel.hpp"
@@ -38,8 +39,9 @@ bool reads_own_parameters(Model const& model, NodeId root);
 class ParameterSpace {
  public:
   /// A per-experiment parameter without prior and value must be among the constants of every experiment (the checker has seen to
-  /// it); where it is not, as when a model is only looked at, it is NaN.
-  ParameterSpace(Model model, std::vector<ExperimentMember> experiments);
+  /// it); where it is not, as when a model is only looked at, it is NaN. standardised: members of hierarchies, by rising
+  /// coordinate, that have coordinates of their own; others are moved on the unbounded scale of their prior.
+  ParameterSpace(Model model, std::vector<ExperimentMember> experiments, std::vector<MemberCoordinate> standardised = {});
 
   Model const& model() const { return model_; }
   std::vector<ExperimentMember> const& experiments() const { return experiments_; }
@@ -55,6 +57,17 @@ class ParameterSpace {
   /// The coordinates that the value of a row reads, ascending: its own, and those of the parameters that its bounds read; none of a
   /// fixed row.
   std::vector<int> const& coordinates_of(int row) const { return coordinates_of_[static_cast<std::size_t>(row)]; }
+
+  /// A sampled row whose prior is moved and widened by sampled ones, the width at least.
+  struct Member {
+    int coordinate;
+    int parameter;                // of the model: members of one have one population
+    std::vector<int> population;  // coordinates that its prior's scale reads
+  };
+  std::vector<Member> const& members() const { return members_; }
+  /// The scales of their priors [members x W] at theta [D x W], on the unbounded scale of each, SI.
+  void member_scales(ConstLanes theta, Lanes out) const;
+  std::vector<MemberCoordinate> const& standardised() const { return standardised_; }
 
   /// Of the value of a row, SI, by a coordinate.
   struct Slope {
@@ -91,11 +104,14 @@ class ParameterSpace {
  private:
   void lay_out();
   void compile();
+  MemberCoordinate const* standardised(int coordinate) const;
   /// A value between its bounds, expressions of the rows that they read.
   struct Constrained {
     int row, coordinate;
     Support bounds;
     NodeId log_jacobian;
+    MemberCoordinate const* member;  // null: moved on the unbounded scale
+    std::optional<LocationScale> population;
   };
   /// constrained: in the order in which they read one another. value: of the rows, from the coordinates.
   void compile_slopes(Graph& graph, std::span<Constrained const> constrained, std::span<NodeId const> coordinates,
@@ -112,9 +128,12 @@ class ParameterSpace {
   std::vector<std::vector<int>> coordinates_of_;  // [rows]
   std::vector<ParameterInfo> infos_;
   std::vector<Slope> slopes_;
+  std::vector<Member> members_;
+  std::vector<MemberCoordinate> standardised_;
   Kernel constrain_;    // u [D] -> values
   Kernel slope_;        // u [D] -> slopes
   Kernel unconstrain_;  // values -> u [D]
+  Kernel scales_;       // u [D] -> scales of the members' priors
   Kernel prior_;        // u [D] -> log prior on R^D, log prior of the declared parameters
   Graph densities_;     // the first of these as an expression of the coordinates
   NodeId density_ = 0;

@@ -130,10 +130,10 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
   return result;
 }
 
-SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context) {
+SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context,
+                         std::string const& progress) {
   SearchResult result;
-  WorkLeft work(context, "searching near an earlier fit",
-                static_cast<std::uint64_t>(starts.width()) * simulations_per_round(target) * usual_rounds);
+  WorkLeft work(context, progress, static_cast<std::uint64_t>(starts.width()) * simulations_per_round(target) * usual_rounds);
   auto const stop = work.stop();
   result.modes = modes_from(target, objective_kind, starts, -std::numeric_limits<double>::infinity(), context.seed, context.ledger,
                             stop, context.journal)

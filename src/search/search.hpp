@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "likelihood/target.hpp"
@@ -34,7 +35,8 @@ SearchResult search(Target const& target, ObjectiveKind objective_kind, RunConte
 
 /// Local searches from `starts` [P x N] alone, which need not have a finite density: a search that somebody has aimed. What lies
 /// elsewhere is not looked for, and a note says so.
-SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context);
+SearchResult search_from(Target const& target, ObjectiveKind objective_kind, ConstLanes starts, RunContext& context,
+                         std::string const& progress = "searching near an earlier fit");
 
 /// Spreads `chains` over modes by their shares: every mode above 1 % gets one while chains last, the rest go where the share is
 /// most under-represented. Returns the mode of each chain; modes in order.

@@ -174,3 +174,102 @@ TEST_CASE("the slopes of values by coordinates are those of differences, also at
       }
   }
 }
+
+namespace {
+
+std::string const members =
+    "parameter mu [N/mm] ~ normal(10, sd = 2)\n"
+    "parameter tau [N/mm] ~ half_normal(3)\n"
+    "parameter spread ~ half_normal(1)\n"
+    "parameter k per experiment [N/mm] ~ normal(mu, sd = tau)\n"
+    "parameter c per experiment [N/mm] ~ log_normal(median = 2 [N/mm], log_sd = spread)\n"
+    "parameter t per experiment [N/mm] ~ student_t(mu, 4, scale = tau)\n"
+    "parameter bounded per experiment [N/mm] ~ normal(mu, sd = tau, lower = 0)\n"
+    "parameter known per experiment [N/mm] ~ normal(mu, sd = 3 [N/mm])\n";
+
+/// What the data say of the first six of them: much of one, little of another, nothing of a third.
+std::vector<MemberCoordinate> const standardised = {{3, 1e-4, 1.1}, {4, 1e-8, 1e-4}, {5, 40, 35},
+                                                    {6, 0, 0},      {7, 1e-6, 0},    {8, 1e-7, -1e-3}};
+
+}  // namespace
+
+TEST_CASE("members of a hierarchy are those whose prior is moved and widened by sampled parameters") {
+  ParameterSpace const space(model_with(members), {{"a", {}}, {"b", {}}});
+  std::vector<std::string> names;
+  for (ParameterSpace::Member const& member : space.members()) {
+    names.push_back(space.infos()[static_cast<std::size_t>(member.coordinate)].name);
+    CHECK(member.population == std::vector<int>{names.back().starts_with('c') ? 2 : 1});
+  }
+  CHECK(names == std::vector<std::string>{"k[a]", "k[b]", "c[a]", "c[b]", "t[a]", "t[b]"});
+  LaneArray declared(space.dimension(), 1), theta(space.dimension(), 1), scales(6, 1);
+  double const values[] = {9, 2, 0.5, 11, 7, 3, 2, 8, 10, 6, 5, 4, 3};
+  for (int p = 0; p < space.dimension(); ++p) declared(p, 0) = values[p];
+  space.unconstrain(declared, theta);
+  space.member_scales(theta, scales);
+  CHECK(scales(0, 0) == doctest::Approx(2000));
+  CHECK(scales(3, 0) == doctest::Approx(0.5));
+}
+
+TEST_CASE("coordinates of members given their population change the density by their Jacobian alone") {
+  std::vector<ExperimentMember> const experiments = {{"a", {}}, {"b", {}}};
+  ParameterSpace const plain(model_with(members), experiments), space(model_with(members), experiments, standardised);
+  int const dimension = space.dimension(), width = 3;
+  LaneArray theta(dimension, width), declared(dimension, width), back(dimension, width), there(dimension, width);
+  plain.sample_prior({3, Purpose::prior, 0, 0}, there);
+  plain.constrain(there, declared);
+  space.unconstrain(declared, theta);
+  space.constrain(theta, back);
+  for (int p = 0; p < dimension; ++p)
+    for (int w = 0; w < width; ++w) CHECK(back(p, w) == doctest::Approx(declared(p, w)).epsilon(1e-9));
+
+  std::vector<double> density(width), with(width), plain_density(width), plain_with(width);
+  space.log_prior(theta, density, false);
+  space.log_prior(theta, with, true);
+  plain.log_prior(there, plain_density, false);
+  plain.log_prior(there, plain_with, true);
+  // Coordinates of members read those of the populations, which are the same in both: the Jacobian is triangular.
+  LaneArray slopes(static_cast<int>(space.slopes().size()), width), plain_slopes(static_cast<int>(plain.slopes().size()), width);
+  space.slopes(theta, slopes);
+  plain.slopes(there, plain_slopes);
+  auto const log_own = [](ParameterSpace const& of, LaneArray const& values, int w) {
+    double sum = 0;
+    for (std::size_t s = 0; s < of.slopes().size(); ++s)
+      if (of.sampled()[static_cast<std::size_t>(of.slopes()[s].coordinate)] == of.slopes()[s].row)
+        sum += std::log(values(static_cast<int>(s), w));
+    return sum;
+  };
+  for (int w = 0; w < width; ++w) {
+    auto const at = static_cast<std::size_t>(w);
+    CHECK(density[at] == doctest::Approx(plain_density[at]).epsilon(1e-9));
+    CHECK(with[at] - plain_with[at] == doctest::Approx(log_own(space, slopes, w) - log_own(plain, plain_slopes, w)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("slopes of members and the gradient of their prior are those of differences") {
+  ParameterSpace const space(model_with(members), {{"a", {}}, {"b", {}}}, standardised);
+  int const rows = static_cast<int>(space.rows().size()), dimension = space.dimension(), width = 2;
+  LaneArray theta(dimension, width), slopes(static_cast<int>(space.slopes().size()), width), gradient(dimension, width);
+  space.sample_prior({3, Purpose::prior, 0, 0}, theta);
+  space.slopes(theta, slopes);
+  std::vector<double> density(width), ahead_density(width), behind_density(width);
+  REQUIRE(space.log_prior_gradient(theta, density, gradient));
+  for (int c = 0; c < dimension; ++c) {
+    LaneArray ahead = theta, behind = theta;
+    double const h = 1e-6 * std::max(1.0, std::abs(theta(c, 0)));
+    for (int w = 0; w < width; ++w) ahead(c, w) += h, behind(c, w) -= h;
+    LaneArray const up = space.values(ahead), down = space.values(behind);
+    space.log_prior(ahead, ahead_density, true);
+    space.log_prior(behind, behind_density, true);
+    for (int w = 0; w < width; ++w) {
+      auto const at = static_cast<std::size_t>(w);
+      CHECK(gradient(c, w) == doctest::Approx((ahead_density[at] - behind_density[at]) / (2 * h)).epsilon(1e-5).scale(1));
+      for (int r = 0; r < rows; ++r) {
+        double found = 0;
+        for (std::size_t s = 0; s < space.slopes().size(); ++s)
+          if (space.slopes()[s].row == r && space.slopes()[s].coordinate == c) found = slopes(static_cast<int>(s), w);
+        double const expected = (up(r, w) - down(r, w)) / (2 * h);
+        CHECK(found == doctest::Approx(expected).epsilon(1e-6).scale(std::abs(up(r, w))));
+      }
+    }
+  }
+}

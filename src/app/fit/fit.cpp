@@ -8,6 +8,7 @@
 
 #include "app/fit/advice.hpp"
 #include "app/fit/fit_checks.hpp"
+#include "app/fit/hierarchies.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
@@ -28,6 +29,7 @@
 #include "inference/evidence.hpp"
 #include "inference/table.hpp"
 #include "likelihood/first_rows.hpp"
+#include "search/hierarchy/standardised.hpp"
 #include "search/journal.hpp"
 #include "search/search.hpp"
 
@@ -63,6 +65,7 @@ class Fit {
     if (stored) session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);
     if (stored && stored->contains("preparation")) {
       preparation_ = checkpoint_.preparation(*stored);
+      checkpoint_.reading([&] { likelihood_->standardise(preparation_.standardised); });
       if (stored->contains("state")) context.resume = std::make_shared<json const>(stored->at("state"));
       if (stored->contains("again") && !go_on_choosing(stored->at("again")))
         return stop_late(session_, task_, checkpoint_, preparation_);
@@ -229,6 +232,7 @@ class Fit {
       solver = choose_search_solver(make, context);
       if (!solver) return false;
     }
+    if (ParameterSpace const* const space = hierarchies()) likelihood_->standardise(non_centred(*space));
     auto const target = make(preparation_.solver);
     SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_.objective_kind, context)
                                     : search(*target, backend_.objective_kind, context, shorter_records());
@@ -239,6 +243,7 @@ class Fit {
       throw UserError(no_result(task_, *found.failure));
     }
     SolverSettings const from = coarsest(found);
+    if (!follow_members(found, context)) return false;
     preparation_.modes = std::move(found.modes);
     preparation_.findings = std::move(found.findings);
     preparation_.findings.insert(preparation_.findings.end(), ahead.begin(), ahead.end());
@@ -248,6 +253,29 @@ class Fit {
     if (what_.refine_solver && !refine_solver(session_, task_, make, backend_.objective_kind, from, preparation_, context))
       return false;
     for (Finding& each : preparation_.findings) advise(situation(solver), each);
+    return true;
+  }
+
+  // Where members of hierarchies may have other coordinates than declared; else null.
+  ParameterSpace const* hierarchies() const {
+    return backend_.objective_kind == ObjectiveKind::posterior ? likelihood_->with_hierarchies() : nullptr;
+  }
+
+  // From the coordinates of members that the search has begun with to those that suit the data. False: interrupted.
+  bool follow_members(SearchResult& found, RunContext& context) {
+    ParameterSpace const* const space = hierarchies();
+    if (space == nullptr) return true;
+    auto const make = [&](std::vector<MemberCoordinate> const& members) {
+      likelihood_->standardise(members);
+      return interruptible_target(preparation_.solver);
+    };
+    StandardisedSearch again = sysid::follow_members(*space, std::move(found), make, context);
+    found = std::move(again.found);
+    if (found.interrupted || context.stop_requested()) return false;
+    preparation_.standardised = std::move(again.coordinates);
+    likelihood_->standardise(preparation_.standardised);
+    if (!preparation_.standardised.empty())
+      session_.notices << task_.name << ": " << standardised_notice(*space, preparation_.standardised);
     return true;
   }
 
@@ -316,6 +344,8 @@ class Fit {
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("start_state", start_text(what_.start));
+    if (!preparation_.standardised.empty())
+      report.settings.emplace_back("non_centred", names_of(*likelihood_->with_hierarchies(), preparation_.standardised));
     if (what_.near) report.settings.emplace_back("search", search_text(session_.file, what_));
     if (model_.integrated()) add_solver(preparation_.solver, report.settings);
     if (model_.dynamics == Dynamics::discrete)

@@ -30,6 +30,11 @@ class FitLikelihood {
   virtual Model const& sampled_model() const = 0;
   /// All parameters of `model` that have a prior, those that are integrated out too.
   virtual ParameterSpace const& space() const = 0;
+  /// Of the sampled parameters, as declared, where members of hierarchies may have other coordinates; else null.
+  virtual ParameterSpace const* with_hierarchies() const = 0;
+  /// The coordinates of these members in all targets that are made from here on. Throws checkpoint::Mismatch where there are no
+  /// such members.
+  virtual void standardise(std::vector<MemberCoordinate> const& members) = 0;
   /// solver: of the task's method, or of any other to try.
   virtual std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution) const = 0;

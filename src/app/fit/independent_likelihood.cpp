@@ -1,5 +1,6 @@
 // Fits whose samples are independent given the trajectory.
 #include <algorithm>
+#include <cmath>
 
 #include "app/fit/fit_likelihood.hpp"
 #include "app/process/unknown_functions.hpp"
@@ -9,6 +10,7 @@
 #include "diagnostics/bands.hpp"
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
+#include "inference/backend/checkpoint.hpp"
 #include "inference/table.hpp"
 #include "likelihood/pointwise.hpp"
 #include "likelihood/trajectory.hpp"
@@ -25,11 +27,22 @@ class IndependentLikelihood : public FitLikelihood {
         data_(data),
         seed_(seed),
         compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
-        space_(parameter_space(compiled_->model, what.experiments)) {}
+        declared_(parameter_space(compiled_->model, what.experiments)),
+        space_(declared_) {}
 
   Model const& model() const override { return compiled_->model; }
   Model const& sampled_model() const override { return compiled_->model; }
   ParameterSpace const& space() const override { return *space_; }
+  ParameterSpace const* with_hierarchies() const override { return declared_->members().empty() ? nullptr : declared_.get(); }
+  void standardise(std::vector<MemberCoordinate> const& members) override {
+    for (MemberCoordinate const& each : members)
+      if (std::none_of(declared_->members().begin(), declared_->members().end(),
+                       [&](ParameterSpace::Member const& member) { return member.coordinate == each.coordinate; }) ||
+          !(each.precision >= 0 && std::isfinite(each.precision) && std::isfinite(each.pull)))
+        throw checkpoint::Mismatch("its hierarchies differ");
+    space_ =
+        members.empty() ? declared_ : std::make_shared<ParameterSpace const>(declared_->model(), declared_->experiments(), members);
+  }
 
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {
@@ -135,7 +148,7 @@ class IndependentLikelihood : public FitLikelihood {
   std::vector<ExperimentData> const& data_;
   std::uint64_t seed_;
   std::shared_ptr<CompiledModel const> compiled_;
-  std::shared_ptr<ParameterSpace const> space_;
+  std::shared_ptr<ParameterSpace const> declared_, space_;
   SolverSettings solver_;
   std::unique_ptr<ModelTarget> target_;
 };

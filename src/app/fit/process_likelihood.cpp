@@ -39,6 +39,9 @@ class ProcessLikelihood : public FitLikelihood {
   Model const& model() const override { return model_->model(); }
   Model const& sampled_model() const override { return model_->reduced(); }
   ParameterSpace const& space() const override { return *space_; }
+  // What the data say of a member alone is not known: its likelihood is no sum of squares.
+  ParameterSpace const* with_hierarchies() const override { return nullptr; }
+  void standardise(std::vector<MemberCoordinate> const&) override {}
 
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {

@@ -11,10 +11,14 @@ namespace sysid {
 nlohmann::json store(Preparation const& preparation) {
   nlohmann::json modes = nlohmann::json::array();
   for (Mode const& mode : preparation.modes) modes.push_back(checkpoint::encode(mode));
+  std::vector<double> standardised;
+  for (MemberCoordinate const& each : preparation.standardised)
+    standardised.insert(standardised.end(), {static_cast<double>(each.coordinate), each.precision, each.pull});
   return {{"solver", write_solver(preparation.solver)},
           {"modes", modes},
           {"findings", checkpoint::encode(preparation.findings)},
           {"ledger", checkpoint::encode(preparation.ledger)},
+          {"standardised", checkpoint::encode(std::span<double const>(standardised))},
           {"moves", preparation.moves}};
 }
 
@@ -24,6 +28,9 @@ Preparation restore_preparation(nlohmann::json const& stored) {
   for (auto const& mode : stored.at("modes")) preparation.modes.push_back(checkpoint::decode_mode(mode));
   preparation.findings = checkpoint::decode_findings(stored.at("findings"));
   preparation.ledger = checkpoint::decode_ledger(stored.at("ledger"));
+  std::vector<double> const standardised = checkpoint::decode(stored.at("standardised"));
+  for (std::size_t i = 0; i + 2 < standardised.size(); i += 3)
+    preparation.standardised.push_back({static_cast<int>(standardised[i]), standardised[i + 1], standardised[i + 2]});
   preparation.moves = stored.at("moves").get<std::vector<double>>();
   return preparation;
 }

@@ -5,6 +5,7 @@
 
 #include "core/system/ledger.hpp"
 #include "inference/backend/backend.hpp"
+#include "likelihood/member_coordinate.hpp"
 #include "solver/solver.hpp"
 
 namespace sysid {
@@ -14,7 +15,8 @@ struct Preparation {
   std::vector<Mode> modes;
   Findings findings;
   Ledger ledger;
-  std::vector<double> moves;  // of each solver tried: largest move to the next finer one [sd]
+  std::vector<MemberCoordinate> standardised;  // members of hierarchies, in whose coordinates the modes are
+  std::vector<double> moves;                   // of each solver tried: largest move to the next finer one [sd]
 };
 
 nlohmann::json store(Preparation const& preparation);

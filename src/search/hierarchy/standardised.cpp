@@ -1,0 +1,142 @@
+// The information of each member, and the way of the modes.
+#include "search/hierarchy/standardised.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "linear_algebra/decompositions.hpp"
+#include "search/descent.hpp"
+#include "search/laplace.hpp"
+#include "search/mode_findings.hpp"
+
+namespace sysid {
+namespace {
+
+/// h tau^2 from which on the population adds so little to a member that its own coordinate is as good.
+constexpr double well_informed = 25;
+/// Relative change of what is known of the members that leaves their coordinates good.
+constexpr double as_good_as_known = 0.1;
+constexpr int most_rounds_of_coordinates = 3;
+constexpr std::size_t most_followed = 12;                // modes
+constexpr std::uint64_t standardising_step = 5'000'000;  // a stream of its own among those of Purpose::start
+
+LaneArray unconstrained(Target const& target, std::vector<double> const& declared) {
+  LaneArray values(target.dimension(), 1), theta(target.dimension(), 1);
+  for (int p = 0; p < target.dimension(); ++p) values(p, 0) = declared[static_cast<std::size_t>(p)];
+  target.unconstrain(values, theta);
+  return theta;
+}
+
+bool by_coordinate(MemberCoordinate const& a, MemberCoordinate const& b) { return a.coordinate < b.coordinate; }
+
+/// The first modes in the coordinates of a target [P x N].
+LaneArray modes_in(Target const& target, std::vector<Mode> const& modes) {
+  std::vector<Eigen::VectorXd> places;
+  for (std::size_t m = 0; m < std::min(modes.size(), most_followed); ++m)
+    places.push_back(column(unconstrained(target, modes[m].declared), 0));
+  return to_lanes(places);
+}
+
+std::vector<double> scales_at(Target const& declared, ParameterSpace const& space, std::vector<double> const& mode) {
+  LaneArray scales(static_cast<int>(space.members().size()), 1);
+  space.member_scales(unconstrained(declared, mode), scales);
+  return {scales.view().data(), scales.view().data() + scales.rows()};
+}
+
+/// Coordinates of members with the same population as one that is little known.
+std::set<int> little_known(ParameterSpace const& space, std::vector<MemberCoordinate> const& members,
+                           std::vector<double> const& scales) {
+  std::set<std::vector<int>> populations;
+  for (std::size_t m = 0; m < members.size(); ++m)
+    if (!(members[m].precision * scales[m] * scales[m] >= well_informed)) populations.insert(space.members()[m].population);
+  std::set<int> coordinates;
+  for (ParameterSpace::Member const& member : space.members())
+    if (populations.contains(member.population)) coordinates.insert(member.coordinate);
+  return coordinates;
+}
+
+bool alike(std::vector<MemberCoordinate> const& a, std::vector<MemberCoordinate> const& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](MemberCoordinate const& x, MemberCoordinate const& y) {
+    // The place of the likelihood in its own sds.
+    double const root = std::sqrt(std::max(x.precision, y.precision));
+    return x.coordinate == y.coordinate &&
+           std::fabs(x.precision - y.precision) <= as_good_as_known * std::max(x.precision, y.precision) &&
+           std::fabs(x.pull - y.pull) <= as_good_as_known * root;
+  });
+}
+
+/// The findings of a search with those about its modes replaced.
+Findings with_modes_of(Findings findings, Target const& target, std::vector<Mode> const& modes) {
+  std::erase_if(findings, [](Finding const& each) {
+    return each.code == FindingCode::second_mode || each.code == FindingCode::flat_direction;
+  });
+  for (Finding& each : mode_findings(target, ObjectiveKind::posterior, modes)) findings.push_back(std::move(each));
+  return findings;
+}
+
+}  // namespace
+
+std::vector<MemberCoordinate> member_coordinates(Target const& declared, ParameterSpace const& space,
+                                                 std::vector<double> const& mode, std::uint64_t seed) {
+  Objective const objective = make_objective(declared, ObjectiveKind::posterior, seed, standardising_step);
+  int const dimension = declared.dimension();
+  LaneArray const theta = unconstrained(declared, mode);
+  LaneArray gradient(dimension, 1), curvature(dimension * dimension, 1);
+  Eigen::VectorXd const steps = difference_width(declared) * objective.scale;
+  Ledger looked;
+  declared.gauss_newton(theta, {steps.data(), static_cast<std::size_t>(dimension)}, gradient, curvature, looked);
+  Eigen::MatrixXd precision(dimension, dimension);
+  for (int p = 0; p < dimension; ++p)
+    for (int q = 0; q < dimension; ++q) precision(p, q) = curvature(p * dimension + q, 0);
+  Eigen::VectorXd const of_prior = objective.scale.cwiseAbs2().cwiseInverse();
+  precision.diagonal() += of_prior;
+  Eigen::MatrixXd const covariance = inverse(precision);
+  Eigen::VectorXd const step = covariance * column(gradient, 0);
+
+  std::vector<MemberCoordinate> members;
+  for (ParameterSpace::Member const& member : space.members()) {
+    int const p = member.coordinate;
+    // That of the member alone is what remains when its prior is taken out: 1/covariance - 1/width^2.
+    double const own = std::max(0.0, 1 / covariance(p, p) - of_prior(p));
+    double const pull = own * theta(p, 0) + step(p) / covariance(p, p);
+    bool const usable = std::isfinite(own) && std::isfinite(pull);
+    members.push_back({p, usable ? own : 0, usable ? pull : 0});
+  }
+  return members;
+}
+
+std::vector<MemberCoordinate> non_centred(ParameterSpace const& space) {
+  std::vector<MemberCoordinate> members;
+  for (ParameterSpace::Member const& member : space.members()) members.push_back({member.coordinate, 0, 0});
+  std::sort(members.begin(), members.end(), by_coordinate);
+  return members;
+}
+
+StandardisedSearch follow_members(ParameterSpace const& space, SearchResult found, MakeStandardised const& make,
+                                  RunContext& context) {
+  std::unique_ptr<Target> const declared = make({});
+  StandardisedSearch result{non_centred(space), std::move(found)};
+  std::set<int> standardised;
+  for (int pass = 0; pass < most_rounds_of_coordinates; ++pass) {
+    std::vector<double> const& mode = result.found.modes.front().declared;
+    std::vector<MemberCoordinate> chosen = member_coordinates(*declared, space, mode, context.seed);
+    if (pass == 0) standardised = little_known(space, chosen, scales_at(*declared, space, mode));
+    std::erase_if(chosen, [&](MemberCoordinate const& each) { return !standardised.contains(each.coordinate); });
+    std::sort(chosen.begin(), chosen.end(), by_coordinate);
+    if (alike(chosen, result.coordinates) || context.stop_requested()) break;
+    std::unique_ptr<Target> const target = chosen.empty() ? nullptr : make(chosen);
+    Target const& next = target ? *target : *declared;
+    LaneArray const starts = modes_in(next, result.found.modes);
+    SearchResult again =
+        search_from(next, ObjectiveKind::posterior, starts, context, "searching in coordinates of the members of hierarchies");
+    result.found.interrupted = again.interrupted;
+    if (again.interrupted || again.failure) break;
+    result.coordinates = std::move(chosen);
+    result.found.findings = with_modes_of(std::move(result.found.findings), next, again.modes);
+    result.found.modes = std::move(again.modes);
+  }
+  return result;
+}
+
+}  // namespace sysid

@@ -1,0 +1,40 @@
+// Coordinates for the members of hierarchies, from what the data say of each.
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "likelihood/parameter_space.hpp"
+#include "search/search.hpp"
+
+namespace sysid {
+
+/// What the data say of each member of `space`, in its order, at a place of declared values: precision and pull of its likelihood
+/// after integration over all other parameters, in the approximation
+///
+///   2 log p(y | u) = 2 g'(u - u0) - (u - u0)' H (u - u0),   H = J'J,   other parameters normal with the widths of their priors
+///
+/// about the place u0, with J the slopes of the residuals and g the gradient there. declared: a target of `space`, whose members
+/// all have the coordinates of their priors.
+std::vector<MemberCoordinate> member_coordinates(Target const& declared, ParameterSpace const& space,
+                                                 std::vector<double> const& place, std::uint64_t seed);
+
+/// The coordinates of all members that a search begins with, when nothing is known of the data: (w - location)/scale.
+std::vector<MemberCoordinate> non_centred(ParameterSpace const& space);
+
+/// A target with such coordinates; with none, those that were declared.
+using MakeStandardised = std::function<std::unique_ptr<Target>(std::vector<MemberCoordinate> const&)>;
+
+struct StandardisedSearch {
+  std::vector<MemberCoordinate> coordinates;  // none: those that were declared
+  SearchResult found;
+};
+
+/// Follows the modes of the posterior that a search in `non_centred` coordinates has `found` to those that suit the data: the
+/// declared ones for members that the data determine much better than their population does, h tau^2 >= 25 at the best mode for all
+/// of one population; for others those of a member given its population and what the data say. That is asked again at the new
+/// modes. space: with declared coordinates.
+StandardisedSearch follow_members(ParameterSpace const& space, SearchResult found, MakeStandardised const& make,
+                                  RunContext& context);
+
+}  // namespace sysid
