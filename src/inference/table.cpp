@@ -2,6 +2,7 @@
 #include "inference/table.hpp"
 
 #include "core/setting/table.hpp"
+#include "inference/automatic.hpp"
 #include "inference/chain/mh.hpp"
 #include "inference/chain/tempering.hpp"
 #include "inference/nuts/nuts.hpp"
@@ -32,6 +33,13 @@ BackendRow const backend_rows[] = {
      tempering::settings(),
      &tempering::refuse,
      &tempering::run},
+    {"auto",
+     "mh, nuts or tempering, chosen by what the search has found",
+     {.proper_prior = true},
+     ObjectiveKind::posterior,
+     {},
+     &no_refusal,
+     &automatic::run},
     {"map",
      "maximum a posteriori (MAP) estimate, with Laplace standard deviations",
      {.proper_prior = true},

@@ -258,10 +258,13 @@ TEST_CASE("the eight schools as they stand agree with quadrature") {
   for (double const e : standard_errors) variance.push_back(e * e);
   Quadrature const exact(
       effects, variance, 5, [](double tau) { return -std::log1p(tau * tau / 25); }, 1000, 2e-3);
-  for (char const* const task : {"mh", "nuts", "tempering"}) DOCTEST_SUBCASE(task) {
+  for (std::string const task : {"mh", "nuts", "tempering", "auto"}) DOCTEST_SUBCASE(task.c_str()) {
       Fitted const fitted = eight_schools("  parameter effect per experiment ~ normal(mu, sd = tau)\n", task);
       CHECK(fitted.exit == 0);
-      CHECK(fitted.summary.at("posterior").at("settings").at("non_centred") == "effect");
+      auto const& settings = fitted.summary.at("posterior").at("settings");
+      CHECK(settings.at("non_centred") == "effect");
+      CHECK(settings.at("backend") == (task == "auto" ? "mh" : task));
+      CHECK(settings.contains("chosen_because") == (task == "auto"));
       check(fitted, "mu", exact.mean_of(0), exact.sd_of(0));
       check(fitted, "tau", exact.mean_of(1), exact.sd_of(1));
       CHECK(fitted.of("posterior", "tau").at("rhat").get<double>() < 1.01);

@@ -25,6 +25,7 @@
 #include "data/start_rule.hpp"
 #include "diagnostics/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
+#include "inference/automatic.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/evidence.hpp"
 #include "inference/table.hpp"
@@ -47,7 +48,8 @@ class Fit {
         what_(what),
         checkpoint_(session, task, what.seed),
         seed_(checkpoint_.seed()),
-        backend_(*find_backend(what.backend)),
+        chosen_(what),
+        backend_(find_backend(what.backend)),
         data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
                                what.prediction)),
         likelihood_(session.file.models[static_cast<std::size_t>(what.model)].processes.empty()
@@ -103,16 +105,30 @@ class Fit {
   }
 
   FitResult sample(RunContext& context) {
+    choose_backend();
     Target const& target = likelihood_->set_target(preparation_.solver, session_.abandonable());
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
-    FitResult result = backend_.run(target, what_.settings, context);
+    FitResult result = backend_->run(target, chosen_.settings, context);
     if (result.failure) {
       advise({model_, data_, preparation_.solver, ledger_}, *result.failure);
       throw UserError(no_result(task_, *result.failure));
     }
     for (Finding& each : result.findings) advise({model_, data_, preparation_.solver, preparation_.ledger}, each);
     return result;
+  }
+
+  // What `auto` stands for, by the modes.
+  void choose_backend() {
+    if (chosen_.backend != "auto") return;
+    Target const& target = likelihood_->set_target(preparation_.solver, session_.interruptible());
+    Ledger looked;
+    automatic::Choice choice = automatic::choose(target, preparation_.modes, seed_, looked);
+    backend_ = find_backend(choice.backend);
+    chosen_.backend = choice.backend;
+    chosen_.settings = Settings(backend_->settings);
+    reason_ = std::move(choice.reason);
+    session_.notices << fmt::format("{}: sampling with {}: {}\n", task_.name, chosen_.backend, reason_);
   }
 
   std::unique_ptr<Target> interruptible_target(SolverSettings const& solver) const {
@@ -179,7 +195,7 @@ class Fit {
     };
     bool const chosen = checkpoint_.keep_steps(steps, content, [&](Journal& journal) {
       context.journal = &journal;
-      bool const ended = refine_solver(session_, task_, make, backend_.objective_kind, finer, again, context);
+      bool const ended = refine_solver(session_, task_, make, backend_->objective_kind, finer, again, context);
       if (!ended) journal.save();  // the sampling before is not done again
       return ended;
     });
@@ -234,8 +250,8 @@ class Fit {
     }
     if (ParameterSpace const* const space = hierarchies()) likelihood_->standardise(non_centred(*space));
     auto const target = make(preparation_.solver);
-    SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_.objective_kind, context)
-                                    : search(*target, backend_.objective_kind, context, shorter_records());
+    SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_->objective_kind, context)
+                                    : search(*target, backend_->objective_kind, context, shorter_records());
     if (found.interrupted) return false;
     if (found.failure) {
       advise(situation(solver), *found.failure);
@@ -250,7 +266,7 @@ class Fit {
     if (solver)
       for (Finding& each : stiff_prior(*solver)) preparation_.findings.push_back(std::move(each));
     print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared, preparation_.solver));
-    if (what_.refine_solver && !refine_solver(session_, task_, make, backend_.objective_kind, from, preparation_, context))
+    if (what_.refine_solver && !refine_solver(session_, task_, make, backend_->objective_kind, from, preparation_, context))
       return false;
     for (Finding& each : preparation_.findings) advise(situation(solver), each);
     return true;
@@ -258,7 +274,7 @@ class Fit {
 
   // Where members of hierarchies may have other coordinates than declared; else null.
   ParameterSpace const* hierarchies() const {
-    return backend_.objective_kind == ObjectiveKind::posterior ? likelihood_->with_hierarchies() : nullptr;
+    return backend_->objective_kind == ObjectiveKind::posterior ? likelihood_->with_hierarchies() : nullptr;
   }
 
   // From the coordinates of members that the search has begun with to those that suit the data. False: interrupted.
@@ -300,7 +316,7 @@ class Fit {
     // Sampling must not be given up on the way, the checks may.
     Target const& target =
         likelihood_->set_target(preparation_.solver, interrupted ? session_.options.execution : session_.interruptible());
-    FinishedFit finished{session_, what_, *likelihood_, target, data_, preparation_, result, backend_.objective_kind,
+    FinishedFit finished{session_, what_, *likelihood_, target, data_, preparation_, result, backend_->objective_kind,
                          ledger_,  seed_, accuracy_,    report, {},    extra_};
     if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
     for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
@@ -309,7 +325,7 @@ class Fit {
     name_held(report, report.findings);
     if (!interrupted) {
       report.functions = likelihood_->functions(result, report.draws);
-      report.evidence = laplace_evidence(target, backend_.objective_kind, preparation_.modes, seed_, finished.extra);
+      report.evidence = laplace_evidence(target, backend_->objective_kind, preparation_.modes, seed_, finished.extra);
       report.noise = noise_parameters(likelihood_->space());
     }
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);
@@ -326,7 +342,7 @@ class Fit {
   Report begin(FitResult const& result) {
     Report report = begin_report(
         session_, task_, what_.model,
-        fmt::format("fit {} to {} with {}", model_.name, data_names(session_.file, what_.experiments), what_.backend), seed_);
+        fmt::format("fit {} to {} with {}", model_.name, data_names(session_.file, what_.experiments), chosen_.backend), seed_);
     add_prediction_rule(model_, what_.prediction, report);
     report.priors = priors_of(likelihood_->space(), report.priors);
     for (ExperimentData const& each : data_) add_data(session_.file, each, model_, report);
@@ -341,7 +357,8 @@ class Fit {
   }
 
   void add_settings(Settings const& settings, Report& report) const {
-    report.settings = {{"backend", what_.backend}};
+    report.settings = {{"backend", chosen_.backend}};
+    if (!reason_.empty()) report.settings.emplace_back("chosen_because", reason_);
     for (auto const& [name, value] : settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("start_state", start_text(what_.start));
     if (!preparation_.standardised.empty())
@@ -351,7 +368,7 @@ class Fit {
     if (model_.dynamics == Dynamics::discrete)
       report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
     for (auto const& each : likelihood_->settings()) report.settings.push_back(each);
-    report.resolved_text = resolved_fit(session_, task_, what_, settings, preparation_.solver, seed_);
+    report.resolved_text = resolved_fit(session_, task_, chosen_, settings, preparation_.solver, seed_);
   }
 
   Session& session_;
@@ -360,7 +377,9 @@ class Fit {
   FitTask const& what_;
   TaskCheckpoint checkpoint_;
   std::uint64_t seed_;
-  BackendRow const& backend_;
+  FitTask chosen_;  // with the back end that `auto` stands for, once it is known
+  BackendRow const* backend_;
+  std::string reason_;  // of that choice
   std::vector<ExperimentData> data_;
   std::unique_ptr<FitLikelihood> likelihood_;
   Model const& model_;
