@@ -108,6 +108,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
       "likelihood",
       "likelihood/process",
       "check/checked",
+      "check/task",
       "search",
       "diagnostics",
       "inference/backend",

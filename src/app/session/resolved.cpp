@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "check/task/select_options.hpp"
 #include "core/text/number.hpp"
 #include "experiment/experiments.hpp"
 #include "syntax/parse.hpp"
@@ -85,15 +86,12 @@ std::string resolved_fit(Session const& session, Task const& task, FitTask const
 
 std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed) {
   FitTask const& first = what.fits.front();
-  std::string weights;
-  for (std::size_t c = 0; c < what.distance.channels.size(); ++c)
-    weights += fmt::format("{}{} = {}", c == 0 ? "" : ", ", what.distance.channels[c], what.distance.weights[c]);
   return fmt::format(
       "# all settings of `{}`, defaults included; paths are relative to the folder of the original file\n{}\n{} = select {} to {} "
       "with {}, "
-      "distance = {}, weights({}), {}, seed = {}\n",
+      "{}, {}, seed = {}\n",
       task.name, without_tasks(session), task.name, session.file.candidates[static_cast<std::size_t>(what.candidates)].name,
-      data_names(session.file, first.experiments), settings_text(what.backend, what.settings), what.distance.text, weights,
+      data_names(session.file, first.experiments), settings_text(what.backend, what.settings), select_options_text(what),
       simulation_text(session.file.models[static_cast<std::size_t>(first.model)], first,
                       first.refine_solver ? without_accuracy(first.solver) : first.solver.text()),
       seed);
@@ -145,8 +143,8 @@ std::map<std::string, int> modules_beside(Source const& source) {
 std::string resolved_module(std::string const& name) { return name.starts_with("resolved_") ? name : "resolved_" + name; }
 
 // A text of the language with data named from `folder`, and modules by the names that they have there.
-std::string moved(std::string const& text, Session const& session, fs::path const& folder,
-                  std::map<std::string, int> const& beside) {
+std::string relocated(std::string const& text, Session const& session, fs::path const& folder,
+                      std::map<std::string, int> const& beside) {
   Diagnostics ignored;
   auto tree = parse(Source(session.source.name(), text), ignored);
   if (!tree) throw InternalError("a resolved file does not parse");
@@ -169,9 +167,11 @@ std::vector<std::pair<std::string, std::string>> resolved_files(Session const& s
   fs::path const folder = session.result_folder(task);
   std::map<std::string, int> const beside = modules_beside(session.source);
   std::string const head = fmt::format("# all settings of `{}`, defaults included; data are named from this folder\n", task.name);
-  std::vector<std::pair<std::string, std::string>> files = {{"resolved.sysid", head + moved(resolved, session, folder, beside)}};
+  std::vector<std::pair<std::string, std::string>> files = {
+      {"resolved.sysid", head + relocated(resolved, session, folder, beside)}};
   for (auto const& [name, file] : beside)
-    files.emplace_back(resolved_module(name) + ".sysid", moved(std::string(session.source.text(file)), session, folder, beside));
+    files.emplace_back(resolved_module(name) + ".sysid",
+                       relocated(std::string(session.source.text(file)), session, folder, beside));
   return files;
 }
 

@@ -1,8 +1,9 @@
-// One row for each option; the verbs share most of them.
+// One row for each option; the verbs share most of them. Those of `select` alone are in select_options.cpp.
 #include "check/task/task_options.hpp"
 
 #include <map>
 
+#include "check/task/select_options.hpp"
 #include "core/setting/table.hpp"
 #include "syntax/words.hpp"
 
@@ -18,9 +19,6 @@ constexpr TaskOptionRow rows[] = {
     {"search", "search = near(posterior)",
      "where the search for modes starts: at draws of the prior, or where an earlier fit ended", "everywhere near"},
     {"seed", "seed = 1", "seed of all random numbers; if not given, one is drawn and printed", {}},
-    {"distance", "distance = rmse", "distance between simulated and measured samples: nmse, rmse or expressions of channels",
-     "nmse rmse"},
-    {"weights", "weights(displacement = 1)", "weights of the channels in the distance", {}},
     {"noise", "noise = 1 [percent]",
      "noise of the simulated channels: a percentage of each channel's standard deviation without noise, or that of the model",
      "model"},
@@ -44,7 +42,7 @@ std::map<TaskKind, Names> const& by_kind() {
   static std::map<TaskKind, Names> const all = {
       {TaskKind::simulate, {"values", "input", "noise", "samples", "rate", "step", "solver", "substeps", "seed", "file"}},
       {TaskKind::fit, {"start", "solver", "substeps", "prediction", "search", "seed"}},
-      {TaskKind::select, {"distance", "weights", "start", "solver", "substeps", "prediction", "seed"}},
+      {TaskKind::select, {"start", "solver", "substeps", "prediction", "seed"}},
       {TaskKind::discover, {"noise", "top", "candidates", "refit", "seed"}},
       {TaskKind::predict, {"draws", "redraw", "start", "prediction", "seed"}}};
   return all;
@@ -56,6 +54,8 @@ std::vector<TaskOptionRow> task_options(std::string_view verb) {
   std::vector<TaskOptionRow> all;
   auto const kind = words::task_kind(verb);
   if (!kind) return all;
+  if (kind == TaskKind::select)
+    for (SelectOptionRow const& own : select_options()) all.push_back(own.option);
   for (std::string_view const name : by_kind().at(*kind))
     all.push_back(kind == TaskKind::discover && name == "noise" ? noise_of_discovery : *row_named(rows, name));
   return all;

@@ -3,7 +3,7 @@
 
 #include "check/message/errors.hpp"
 #include "check/message/errors_reuse.hpp"
-#include "check/task/distance.hpp"
+#include "check/task/select_options.hpp"
 #include "check/task/task_checker.hpp"
 #include "check/task/task_options.hpp"
 
@@ -94,14 +94,12 @@ SelectTask TaskChecker::select() {
     for (CandidateModel const& each : file_.candidates[static_cast<std::size_t>(*index)].models) models.push_back(each.model);
   }
   FitTask common;
-  DistanceOptions distance;
+  SelectOptions own{options_, task};
   for (ast::Option const& option : tree_.options) {
     std::string const key = key_of(option);
     if (simulation_option(option, key, models, common)) continue;
-    if (!option.input && option.key && key == "distance") {
-      if (options_.fresh(option, key)) distance.distance = &option;
-    } else if (!option.input && !option.key && key == "weights") {
-      if (options_.fresh(option, key)) distance.weights = &option;
+    if (SelectOptionRow const* const row = find_select_option(option)) {
+      if (options_.fresh(option, key)) row->read(option, own);
     } else if (!backend_option(option, key, backends_.selecting, task.backend, task.settings)) {
       options_.unknown(option, task_option_names("select"));
     }
@@ -118,7 +116,7 @@ SelectTask TaskChecker::select() {
   if (task.fits.empty()) return task;
   auto channels = common_channels(set, task.fits.front().experiments);
   if (!diagnostics_.has_errors(before_))
-    task.distance = check_distance(distance, std::move(channels), set, file_, options_, diagnostics_);
+    task.distance = check_distance(own.distance, std::move(channels), set, file_, options_, diagnostics_);
   return task;
 }
 

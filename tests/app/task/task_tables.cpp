@@ -6,7 +6,7 @@
 #include "app/run/task_runners.hpp"
 #include "app/session/task_rows.hpp"
 #include "check/checked/task_kinds.hpp"
-#include "check/task/task_options.hpp"
+#include "check/task/select_options.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;
@@ -37,4 +37,18 @@ TEST_CASE("a kind of task says what it reads and how it runs") {
     CHECK((runner.run && runner.complete && runner.example));
     CHECK(runner.example({}).find(std::string(kind.verb) + " ") != std::string::npos);
   }
+}
+
+TEST_CASE("each option of select is written out as it is read") {
+  SelectTask task;
+  task.distance.text = "nmse";
+  task.distance.channels = {"displacement", "force"};
+  task.distance.weights = {1, 0.5};
+  for (SelectOptionRow const& row : select_options()) {
+    CAPTURE(row.option.name);
+    std::string const start = std::string(row.option.name) + (row.call ? "(" : " = ");
+    CHECK(row.option.usage.starts_with(start));
+    CHECK(row.text(task).starts_with(start));
+  }
+  CHECK(select_options_text(task) == "distance = nmse, weights(displacement = 1, force = 0.5)");
 }
