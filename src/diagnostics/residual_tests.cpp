@@ -12,7 +12,6 @@
 namespace sysid {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double two_sided_99 = 2.5758293035489004;  // normal quantile of 0.995
 
 double mean_of(std::span<double const> x) {
@@ -127,7 +126,7 @@ double nmse(std::span<double const> observed, std::span<double const> predicted)
     misfit += (observed[t] - predicted[t]) * (observed[t] - predicted[t]);
     variance += (observed[t] - mean) * (observed[t] - mean);
   }
-  return variance > 0 ? 100 * misfit / variance : nan;
+  return variance > 0 ? 100 * misfit / variance : std::numeric_limits<double>::quiet_NaN();
 }
 
 double rmse(std::span<double const> observed, std::span<double const> predicted) {

@@ -29,7 +29,6 @@ constexpr double lost = 0.7;  // nats of each residual: the misfit doubles
 constexpr int most_setbacks = 24;
 constexpr std::size_t few_known = 6;
 constexpr double doubtful = 0.1;  // share of the record up to which any stage may show what the ones before it did not
-constexpr int most_passes = 4, usual_rounds = 15, most_rounds_inside = 100;
 constexpr std::uint64_t growing_step = 5'000'000;  // a stream of its own among those of Purpose::start
 
 double first_share(Target const& target, ShorterRecords const& records) {

@@ -20,7 +20,10 @@ bool in_one_basin(Objective const& objective, Climber const& a, Climber const& b
 /// may be far too wide where the likelihood is no sum of squares. Best first, `hits` summed.
 std::vector<Climber> distinct(Objective const& objective, std::vector<Climber> climbers);
 
-constexpr int rounds_together = 3;  // between two looks at which have met
+constexpr int rounds_together = 3;       // between two looks at which have met
+constexpr int most_passes = 4;           // over all starts, while they find modes that were not known
+constexpr int usual_rounds = 15;         // of a search that nothing hinders
+constexpr int most_rounds_inside = 100;  // where the density vanishes at bounds, so that optima lie inside
 
 /// Without those that at the rate of their last rounds would not come within 30 nats of the best in `as_many_again` times as many.
 /// before: their log densities before these rounds.

@@ -12,8 +12,8 @@ namespace sysid {
 namespace {
 
 constexpr double tolerated = 4.5;
-constexpr int most_rounds = 12;
-constexpr std::array dampings = {0.0, 1e-8, 1e-4, 1.0, 1e4};  // of the largest curvature
+constexpr int most_steps = 12;
+constexpr std::array step_dampings = {0.0, 1e-8, 1e-4, 1.0, 1e4};  // of the largest curvature
 
 /// Steps from `theta` at right angles to the unit vector `along`, which is in widths of the prior, for each damping.
 std::vector<Eigen::VectorXd> steps_across(Objective const& likelihood, Eigen::VectorXd const& theta, Eigen::VectorXd const& along,
@@ -28,7 +28,7 @@ std::vector<Eigen::VectorXd> steps_across(Objective const& likelihood, Eigen::Ve
   double const largest = bend_across.diagonal().maxCoeff();
   std::vector<Eigen::VectorXd> steps;
   if (!(largest > 0)) return steps;
-  for (double const damping : dampings) {
+  for (double const damping : step_dampings) {
     // The direction along the ridge is given a curvature of its own, which moves nothing: its slope is zero.
     Eigen::MatrixXd const damped =
         bend_across + largest * (along * along.transpose() + std::max(damping, 1e-14) * Eigen::MatrixXd::Identity(n, n));
@@ -41,7 +41,7 @@ std::vector<Eigen::VectorXd> steps_across(Objective const& likelihood, Eigen::Ve
 /// Whether the ridge at `from`, beside a place of this log likelihood, is as high.
 bool reaches(Objective const& likelihood, Eigen::VectorXd from, Eigen::VectorXd const& along, double top, Ledger& ledger) {
   double height = likelihood.log_density(to_lanes({from}), ledger).front();
-  for (int round = 0; round < most_rounds && height < top - tolerated; ++round) {
+  for (int round = 0; round < most_steps && height < top - tolerated; ++round) {
     std::vector<Eigen::VectorXd> places = steps_across(likelihood, from, along, ledger);
     if (places.empty()) return false;
     for (Eigen::VectorXd& each : places) each = likelihood.clamp(from + each, from);

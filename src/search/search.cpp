@@ -28,8 +28,7 @@ namespace sysid {
 namespace {
 
 constexpr int draws_per_pass = 2048;
-constexpr int early_rounds = 6, usual_rounds = 15, most_rounds_inside = 100;
-constexpr int most_passes = 4;
+constexpr int early_rounds = 6;
 
 // Steps of Purpose::start: the streams of this file never meet. Other files use some of these numbers again, for other purposes.
 constexpr std::uint64_t search_step = 0, prior_start_step = 1'000, dispersal_step = 1'000'000;
