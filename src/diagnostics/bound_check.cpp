@@ -8,6 +8,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
 
 namespace sysid {
 namespace {
@@ -48,13 +49,13 @@ Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& dr
     ParameterInfo const& info = parameters[p];
     BoundCheck const check = check_bounds(values, info.lower, info.upper);
     if (!check.at_lower && !check.at_upper) continue;
-    findings.push_back({FindingCode::piles_up_at_bound,
-                        Severity::warning,
-                        {info.name},
-                        fmt::format("the posterior of {} is concentrated at the {} bound of its prior, {:.4g}{}", info.name,
-                                    check.at_lower ? "lower" : "upper", check.at_lower ? info.lower : info.upper,
-                                    info.unit.empty() ? "" : " " + info.unit),
-                        "widen the prior, unless the bound is a physical limit"});
+    findings.push_back(
+        {FindingCode::piles_up_at_bound,
+         Severity::warning,
+         {info.name},
+         fmt::format("the posterior of {} is concentrated at the {} bound of its prior, {:.4g}{}", info.name,
+                     check.at_lower ? "lower" : "upper", check.at_lower ? info.lower : info.upper, unit_after_number(info.unit)),
+         "widen the prior, unless the bound is a physical limit"});
   }
   return findings;
 }

@@ -6,6 +6,7 @@
 
 #include "diagnostics/identifiability.hpp"
 
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 
 namespace sysid {
@@ -72,8 +73,8 @@ std::string general(NullDirection const& direction, Words parameters, std::strin
     if (names.size() == most) break;
     ParameterWords const& parameter = parameters[static_cast<std::size_t>(part.parameter)];
     names.push_back(parameter.name);
-    moves.push_back(fmt::format("{} by {:+.3g}{}", parameter.name, tenth * part.natural / parameter.scale,
-                                parameter.unit.empty() ? "" : " " + parameter.unit));
+    moves.push_back(
+        fmt::format("{} by {:+.3g}{}", parameter.name, tenth * part.natural / parameter.scale, unit_after_number(parameter.unit)));
   }
   if (parts.size() == 1) return fmt::format("moving {} leaves {} unchanged to first order", moves[0], output);
   return fmt::format("{}{} are confounded: moving {} together leaves {} unchanged to first order", listed(names),

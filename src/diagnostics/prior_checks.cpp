@@ -55,7 +55,7 @@ Findings check_priors(Report const& report) {
       // A prior that ends there has no tail to be in: that is another finding.
       constexpr double tail = 0.1;  // of the density where 5 % lie beyond
       if (prior.density(below ? *prior.lowest : *prior.highest) > tail * prior.density(below ? *prior.q5 : *prior.q95)) continue;
-      std::string const unit = prior.unit.empty() ? "" : " " + prior.unit;
+      std::string const unit = unit_after_number(prior.unit);
       findings.push_back({FindingCode::prior_contradicted,
                           Severity::warning,
                           {prior.name},

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/numeric/elementary.hpp"
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "diagnostics/convergence.hpp"
 #include "search/refit.hpp"
@@ -236,7 +237,7 @@ std::string what_happens(SolverCheck const& check, bool conditional) {
       return moves_text(check, conditional);
     case SolverCheck::Outcome::width_moves: {
       Moved const& worst = check.moved.front();
-      std::string const unit = worst.unit.empty() ? "" : " " + worst.unit;
+      std::string const unit = unit_after_number(worst.unit);
       return fmt::format("the optimum {} the same, but the curvature around it {}: the sd of {} {} {:.2g}{} in place of {:.2g}{}",
                          verb("stays", "would stay"), verb("changes", "would change"), worst.parameter, verb("is", "would be"),
                          worst.finer_sd, unit, worst.sd, unit);

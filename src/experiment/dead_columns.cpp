@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
 
 namespace sysid {
 namespace {
@@ -31,7 +32,7 @@ std::string number_in(ColumnUse const& column, Quantity const& quantity, double 
     value = convert(value, *quantity.unit, *column.unit);
     unit = column.unit->text;
   }
-  return fmt::format("{:.6g}", value) + (unit.empty() || unit == "-" ? "" : " " + unit);
+  return fmt::format("{:.6g}", value) + unit_after_number(unit);
 }
 
 Finding constant_channel(ExperimentData const& data, ColumnUse const& column, Channel const& channel, double value,

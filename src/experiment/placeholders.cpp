@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 
 namespace sysid {
@@ -67,7 +68,7 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
           Severity::warning,
           {column.column, data.use.name},
           fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: a missing value?", column.column,
-                      data.use.name, suspect.value, unit.empty() || unit == "-" ? "" : " " + unit, plural("row", rows.size()),
+                      data.use.name, suspect.value, unit_after_number(unit), plural("row", rows.size()),
                       first_listed(rows, most_named)),
           input ? "an input acts at every row: interpolate the missing samples, or begin after them; if a pulse saturated the "
                   "recorder, the true values are larger"

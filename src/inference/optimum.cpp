@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/weighted_draws.hpp"
@@ -83,7 +84,7 @@ std::optional<Finding> check_widths(Target const& target, std::vector<Mode> cons
   std::size_t const p = found.front().parameter;
   bool const wrong = std::any_of(found.begin(), found.end(), [](Misfit const& each) { return each.wrong(); });
   ParameterInfo const& worst = target.parameters()[p];
-  std::string const unit = worst.unit.empty() ? "" : " " + worst.unit;
+  std::string const unit = unit_after_number(worst.unit);
   std::string const others =
       found.size() > 1 ? fmt::format("; the same holds for {}", counted(found.size() - 1, "further parameter")) : "";
   return Finding{FindingCode::widths_not_normal, wrong ? Severity::error : Severity::warning, names,

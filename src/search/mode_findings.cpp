@@ -11,6 +11,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
@@ -50,7 +51,7 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
       continue;
     }
     names.push_back(parameter.name);
-    moves.push_back(fmt::format("{} by {:+.2g}{}", parameter.name, move[p], parameter.unit.empty() ? "" : " " + parameter.unit));
+    moves.push_back(fmt::format("{} by {:+.2g}{}", parameter.name, move[p], unit_after_number(parameter.unit)));
   }
   if (known) return std::nullopt;
   if (names.size() == 1)

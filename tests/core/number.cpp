@@ -33,6 +33,9 @@ TEST_CASE("numbers and units are set as a reader likes them") {
   CHECK(pretty_number("4.986e9") == "4.986·10⁹");
   CHECK(pretty_number("-1e-3") == "−1·10⁻³");
   CHECK(pretty_unit("N s/m^3") == "N·s/m³");
+  CHECK("2.44" + unit_after_number("m/s") == "2.44 m/s");
+  CHECK("2.44" + unit_after_number("-") == "2.44");
+  CHECK("2.44" + unit_after_number("") == "2.44");
   CHECK(pretty_units("input x = a [m/s^2], y") == "input x = a [m/s²], y");
   CHECK(pretty_powers("m^1.5") == "m^1.5");
   CHECK(superscript(-12) == "⁻¹²");

@@ -15,7 +15,7 @@ constexpr SettingRow rows[] = {
     {"samples", SettingKind::integer, "25000", 1, infinity, "", "iterations"},
     {"stop", SettingKind::real, "1e-4", 0, 1, "", "threshold"},
     {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive spherical", "moves"},
-    {"polish", SettingKind::flag, "true", 0, 0, "", "polish"},
+    {"polish", SettingKind::flag, "yes", 0, 0, "", "polish"},
     {"scale", SettingKind::real, "0", 0, 1e3, "", "0: chosen", 1e-3},
     {"place", SettingKind::real, "0", -1, 1, "", ""},
 };

@@ -137,7 +137,7 @@ void check_motion(Preflight const& preflight, PriorPage::Channel const& line, Ch
   bool const driven = !preflight.model().inputs.empty(), dead = driven && still.size() == preflight.model().inputs.size();
   preflight.add(FindingCode::prior_at_rest, Severity::warning, {line.name},
                 fmt::format("{} is constant in the simulation of every prior draw, but its measured range is {}{}", line.name,
-                            significant(line.measured, 2), line.unit.empty() ? "" : " " + line.unit),
+                            significant(line.measured, 2), unit_after_number(line.unit)),
                 dead     ? fmt::format("{} constant in the data: check the column, or give initial values other than zero",
                                        quoted(still) + (still.size() == 1 ? " is" : " are"))
                 : driven ? "check that an equation of this state contains an input"
@@ -224,7 +224,7 @@ PriorDraws draw_prior(Preflight const& preflight) {
     if (coordinate.role == ParameterRole::noise) {
       double const middle = quantile(std::vector<double>(values.begin(), values.end()), 0.5);
       std::fill(values.begin(), values.end(), middle);
-      noise.push_back(fmt::format("{} = {}{}", row.name, significant(middle, 2), info.unit.empty() ? "" : " " + info.unit));
+      noise.push_back(fmt::format("{} = {}{}", row.name, significant(middle, 2), unit_after_number(info.unit)));
     }
     prior.coordinates.push_back(std::move(coordinate));
   }

@@ -138,9 +138,8 @@ std::string noise_text(json const& summary) {
   for (json const& name : summary.value("noise", json::array())) {
     json const& parameter = summary.at("parameters").value(name.get<std::string>(), json::object());
     if (!parameter.contains("mean") || !parameter["mean"].is_number()) continue;
-    std::string const unit = parameter.value("unit", "");
-    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", name.get<std::string>(),
-                        significant(parameter["mean"].get<double>(), 3), unit.empty() ? "" : " ", unit);
+    text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ", name.get<std::string>(),
+                        significant(parameter["mean"].get<double>(), 3), unit_after_number(parameter.value("unit", "")));
   }
   return text;
 }

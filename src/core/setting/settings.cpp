@@ -33,7 +33,9 @@ SettingValue fallback_value(SettingRow const& row) {
     case SettingKind::word:
       return std::string(row.fallback);
     case SettingKind::flag:
-      return row.fallback == "true";
+      if (row.fallback != "yes" && row.fallback != "no")
+        throw InternalError(fmt::format("the default of setting `{}` is neither yes nor no", row.name));
+      return row.fallback == "yes";
     case SettingKind::numbers:
       return std::vector<double>{};
   }
@@ -95,7 +97,7 @@ std::string refuse(SettingRow const& row, SettingValue const& value) {
       return fmt::format("it must be one of: {}", row.choices);
     case SettingKind::flag:
       if (std::holds_alternative<bool>(value)) return {};
-      return "it must be true or false";
+      return "it must be yes or no";
     case SettingKind::numbers:
       if (auto const* const list = std::get_if<std::vector<double>>(&value);
           list && std::all_of(list->begin(), list->end(), inside))

@@ -104,6 +104,10 @@ std::string pretty_units(std::string_view words) {
   }
 }
 
+std::string unit_after_number(std::string_view unit) {
+  return unit.empty() || unit == "-" ? std::string() : fmt::format(" {}", unit);
+}
+
 std::string probability_text(double probability) {
   return probability > 0 && probability < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", probability);
 }

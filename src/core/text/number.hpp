@@ -22,6 +22,9 @@ std::string significant(double value, int digits);
 /// "4.986e9" for a page: "4.986·10⁹".
 std::string pretty_number(std::string_view text);
 
+/// What follows a number: " m/s"; nothing for "-", which would read as a minus or a missing value.
+std::string unit_after_number(std::string_view unit);
+
 /// "N s/m^3" as a reader likes it: "N·s/m³".
 std::string pretty_unit(std::string_view unit);
 

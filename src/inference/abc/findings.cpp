@@ -88,8 +88,8 @@ Finding no_population(PopulationRecord const& record, double threshold, int part
   std::uint64_t const beyond = record.simulated - record.failed - static_cast<std::uint64_t>(record.accepted);
   std::string const places = failed_places(ledger);
   std::string const failed = record.failed == 0 ? std::string()
-                                                : fmt::format(", {} of which did not stay finite{}", record.failed,
-                                                              places.empty() ? "" : fmt::format(" ({})", places));
+                                                : fmt::format(" ({} did not stay finite{})", record.failed,
+                                                              places.empty() ? "" : fmt::format(": {}", places));
   std::string const what =
       bounded ? fmt::format("came within the first threshold {}", threshold) : std::string("could be simulated");
   std::string help = "allow more, or use fewer `particles`";
@@ -104,8 +104,8 @@ Finding no_population(PopulationRecord const& record, double threshold, int part
   return {FindingCode::no_population,
           Severity::error,
           {},
-          fmt::format("{} of {} draws from the priors {} after {} simulations{}: {}", record.accepted, particles, what,
-                      record.simulated, failed, stopped_by),
+          fmt::format("{} of {} draws from the priors {}{}, but the first population needs {}: {}", record.accepted,
+                      record.proposed, what, failed, particles, stopped_by),
           help};
 }
 

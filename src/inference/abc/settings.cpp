@@ -35,9 +35,9 @@ constexpr SettingRow rows[] = {
     {"simulations", SettingKind::real, "1e8", 1, 1e18, "", "stop after this many simulations"},
     {"wall_time", SettingKind::real, "0", 0, infinity, "", "stop after this many seconds, which is not reproducible; 0: no limit"},
     {"populations", SettingKind::integer, "100", 1, 1e6, "", "stop after this many populations"},
-    {"cross_check", SettingKind::flag, "true", 0, 0, "",
+    {"cross_check", SettingKind::flag, "yes", 0, 0, "",
      "compare with Laplace's model probabilities, and test the residuals of the best model"},
-    {"polish", SettingKind::flag, "false", 0, 0, "", "continue from the particles with Metropolis-Hastings on the likelihood"},
+    {"polish", SettingKind::flag, "no", 0, 0, "", "continue from the particles with Metropolis-Hastings on the likelihood"},
     {"polish_samples", SettingKind::integer, "25000", 100, 1e8, "",
      "iterations of each of the four chains of `polish`, a fifth of them burn-in"},
 };

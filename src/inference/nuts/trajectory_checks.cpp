@@ -8,6 +8,7 @@
 
 #include "core/numeric/lanes.hpp"
 #include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 
 namespace sysid::nuts {
@@ -62,7 +63,7 @@ Place place_of(TrajectoryReport const& report) {
 }
 
 std::string words_of(Place const& place) {
-  std::string const unit = place.unit.empty() ? "" : " " + place.unit;
+  std::string const unit = unit_after_number(place.unit);
   std::string const where = place.low == place.high ? fmt::format("where `{}` is {:.4g}{}", place.name, place.low, unit)
                                                     : fmt::format("half of them where `{}` lies between {:.4g} and {:.4g}{}",
                                                                   place.name, place.low, place.high, unit);

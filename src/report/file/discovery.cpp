@@ -22,12 +22,13 @@ ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation cons
   if (equation.noise_ratio > 0) title += fmt::format(", residual {} times the noise", significant(equation.noise_ratio, 3));
   if (equation.own_noise > 0)
     title += fmt::format(", error of the equation itself {}{} (sd at a sample)", significant(equation.own_noise, 3),
-                         equation.unit.empty() ? "" : " " + equation.unit);
-  ReportTable table{std::move(title),
-                    "Contribution: root mean square of the term with its coefficient, relative to that of the explained signal, "
-                    "both as columns of the regression.",
-                    {"term", "", "coefficient", "sd", "unit", discovery.measure, "contribution"},
-                    {}};
+                         unit_after_number(equation.unit));
+  ReportTable table{
+      std::move(title),
+      "Contribution: root mean square of coefficient times term, divided by that of the explained signal; in the weak "
+      "form both are weighted integrals.",
+      {"term", "", "coefficient", "sd", "unit", discovery.measure, "contribution"},
+      {}};
   if (discovery.measure == "contribution") table.header.pop_back();
   for (DiscoveredTerm const& term : equation.terms) {
     auto const [value, sd] = coefficient_text(term.coefficient, term.sd);

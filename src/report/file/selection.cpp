@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/numeric/random.hpp"
@@ -27,9 +28,16 @@ std::string model_probability_text(double p) {
   return p > 0.9995 ? "> 0.999" : fmt::format("{:.3f}", p);
 }
 
+/// Against other models: 0 and 1 are rounded then, since an approximate density is positive under each.
+std::string compared_probability_text(double p) {
+  return model_probability_text(std::clamp(p, std::numeric_limits<double>::min(), std::nextafter(1.0, 0.0)));
+}
+
 ReportTable model_table(SelectionReport const& selection) {
-  bool const checked =
-      std::any_of(selection.likelihoods.begin(), selection.likelihoods.end(), [](auto const& l) { return l.has_value(); });
+  auto const compared =
+      std::count_if(selection.likelihoods.begin(), selection.likelihoods.end(), [](auto const& l) { return l.has_value(); });
+  bool const checked = compared > 0;
+  auto* const by_likelihood = compared > 1 ? &compared_probability_text : &model_probability_text;
   ReportTable table{"models",
                     "Probability: sum of the particles' weights. Share: fraction of the particles, Worden et al. (8.21), which is "
                     "not a probability after the second population.",
@@ -40,8 +48,7 @@ ReportTable model_table(SelectionReport const& selection) {
     SelectedModel const& model = selection.result.models[m];
     table.rows.push_back({model.name, model_probability_text(model.prior), model_probability_text(model.probability),
                           model_probability_text(model.share), model.died_in > 0 ? fmt::format("{}", model.died_in) : "-"});
-    if (checked)
-      table.rows.back().push_back(selection.likelihoods[m] ? model_probability_text(selection.likelihoods[m]->probability) : "-");
+    if (checked) table.rows.back().push_back(selection.likelihoods[m] ? by_likelihood(selection.likelihoods[m]->probability) : "-");
   }
   return table;
 }

@@ -17,9 +17,7 @@ namespace {
 
 constexpr int margin = 14;
 
-std::string number_with_unit(std::string const& number, std::string const& unit) {
-  return unit.empty() ? number : number + " " + unit;
-}
+std::string number_with_unit(std::string const& number, std::string const& unit) { return number + unit_after_number(unit); }
 
 // "  label       first line", further lines below it.
 std::string entry(std::string const& label, std::vector<std::string> const& lines) {
