@@ -154,7 +154,7 @@ Diagnostic tilde_without_keyword(Span where) {
 
 Diagnostic other_file(Span begin, std::string const& name, std::string_view kind) {
   return error("E1128", begin, fmt::format("`{}` is not a .sysid file: it looks like {}", name, kind),
-               "give the .sysid file; a record is named in it: `data bench { file \"bench.csv\" ... }`");
+               "give a .sysid file, which names the record: `data bench { file \"bench.csv\" ... }`");
 }
 
 Diagnostic stray_byte(Span where, unsigned char byte) {
@@ -177,7 +177,7 @@ Diagnostic no_meaning(Span where, std::string_view found, std::string help) {
 
 Diagnostic look_alike(Span where, std::string_view found, std::string_view meant) {
   return error("E1116", where, fmt::format("the character `{}` is not part of the language", found),
-               fmt::format("write {}", meant));
+               meant.empty() ? "remove it; it may be invisible" : fmt::format("write {}", meant));
 }
 
 Diagnostic foreign_operator(Span where, std::string_view found, std::string_view help) {
@@ -208,8 +208,9 @@ Diagnostic reserved_word(Token const& word) {
 }
 
 Diagnostic begins_with_sign(Token const& sign) {
-  return error("E1120", sign.span, fmt::format("a statement cannot begin with `{}`", sign.text),
-               "put the first term in parentheses or another term first; a sign at the start of a line continues the line before");
+  return error(
+      "E1120", sign.span, fmt::format("a statement cannot begin with `{}`", sign.text),
+      "write the first term in parentheses, or begin with another term; a sign at the start of a line continues the line before");
 }
 
 Diagnostic prime_apart(Span where) {

@@ -53,7 +53,7 @@ constexpr std::array<Situation, 35> situations{{
      },
      "the rule between samples is written after `hold`: `hold linear`"},
     {[](Gap const& g) { return found(g, "elseif") || found(g, "elif") || found(g, "elsif"); }, "write `else if`"},
-    {[](Gap const& g) { return g.wanted == "`else`"; }, "every `if` has an `else`: the value where the condition does not hold"},
+    {[](Gap const& g) { return g.wanted == "`else`"; }, "every `if` needs an `else`: the value where the condition does not hold"},
     {[](Gap const& g) { return found(g, "if") && g.wanted != wanted::name && g.wanted != wanted::column; },
      "a value that depends on a condition is written `if condition then value else value`"},
     {[](Gap const& g) { return found(g, "[") && g.wanted == wanted::value; }, "a list is written in parentheses: `(1, 2)`"},

@@ -193,7 +193,7 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
   if (gap.wanted == wanted::with_or_end && part)
     return fmt::format("a range of the data is written `{}.{}`", gap.before()->text, gap.next()->text);
   if (found.is(".") && gap.at + 2 <= gap.statement.size())
-    return fmt::format("data have one level of ranges: remove `{}`", gap.text(gap.at, gap.at + 2));
+    return fmt::format("a range has no ranges of its own: remove `{}`", gap.text(gap.at, gap.at + 2));
   if ((found.is("and") || found.is("&")) && is_word(gap.next()))
     return fmt::format("separate data by commas: `{}, {}`",
                        gap.text(gap.find("to") < gap.at ? gap.find("to") + 1 : gap.at - 1, gap.at), gap.text(gap.at + 1, with));

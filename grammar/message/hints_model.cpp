@@ -221,7 +221,7 @@ std::string in_expression(Gap const& gap) {
   bool const side_by_side = gap.wanted == wanted::operator_between;
   if (side_by_side && number && (right->is("pi") || right->is("π")))
     return gap.before(2) != nullptr && gap.before(2)->is("/")
-               ? fmt::format("a product below a fraction bar is in parentheses: `/({}*pi)`", left->text)
+               ? fmt::format("a product in a denominator needs parentheses: `/({}*pi)`", left->text)
                : fmt::format("multiplication is written with `*`: `{}*pi`", left->text);
   if (side_by_side && number && right->is("x") && gap.next(2) != nullptr && gap.next()->is("10") && gap.next(2)->is("^"))
     return fmt::format("a power of ten is written `{}e{}`", left->text,

@@ -35,7 +35,7 @@ constexpr std::array<LookAlike, 32> look_alikes{{
     {"\u00a0", "a space"},
     {"\u202f", "a space"},
     {"\u2009", "a space"},
-    {"\u200b", "nothing"},
+    {"\u200b", ""},
     {"…", "`..`"},
     {"½", "`0.5`"},
     {"¼", "`0.25`"},

@@ -132,7 +132,8 @@ Work declare_export(CLI::App& verb) {
     flags.emplace_back(flag, &row);
   }
   CLI::Option* const output =
-      verb.add_option("-o,--output", options->output, "folder for the programs of a .sysid file, each in its task's folder")
+      verb.add_option("-o,--output", options->output,
+                      "with --stan and a .sysid file: folder for the Stan programs, with one subfolder for each task")
           ->type_name("FOLDER")
           ->check(refuse_no_path)
           ->default_str(options->run.output.string());

@@ -47,7 +47,7 @@ ExitCode format_one(Messages const& messages, std::string const& path, bool only
 
 Work declare_format(CLI::App& verb) {
   auto const options = std::make_shared<FormatOptions>();
-  verb.add_option("FILE", options->files, "the .sysid files; - reads standard input and writes standard output")->required();
+  verb.add_option("FILE", options->files, "the .sysid files, or `-` for standard input and output")->required();
   verb.add_flag("--check", options->only_check, "change nothing; list the files that would change and exit with 1");
   return [options](Messages const& messages) {
     ExitCode worst = ExitCode::success;  // every file is looked at

@@ -57,11 +57,8 @@ void add_seed(CLI::App& verb, std::optional<std::uint64_t>& seed, char const* he
 
 void add_file(CLI::App& verb, std::string& file) { verb.add_option("FILE", file, "the .sysid file")->required(); }
 
-void add_output(CLI::App& verb, std::filesystem::path& folder) {
-  verb.add_option("-o,--output", folder, "the folder for results")
-      ->type_name("FOLDER")
-      ->check(refuse_no_path)
-      ->default_str(folder.string());
+void add_output(CLI::App& verb, std::filesystem::path& folder, char const* help) {
+  verb.add_option("-o,--output", folder, help)->type_name("FOLDER")->check(refuse_no_path)->default_str(folder.string());
 }
 
 void add_threads(CLI::App& verb, int& threads) {

@@ -7,7 +7,7 @@
 namespace sysid::cli {
 
 void add_file(CLI::App& verb, std::string& file);
-void add_output(CLI::App& verb, std::filesystem::path& folder);
+void add_output(CLI::App& verb, std::filesystem::path& folder, char const* help = "the folder for results");
 void add_seed(CLI::App& verb, std::optional<std::uint64_t>& seed, char const* help);
 void add_threads(CLI::App& verb, int& threads);
 /// --figures and --no-figures; without: that there are none.

@@ -8,7 +8,9 @@ namespace sysid::regression {
 namespace {
 
 Form const form_rows[] = {
-    {"weak", "integrals with test functions, which are differentiated in place of the data; the noise covariance is known",
+    {"weak",
+     "integrals with test functions, which are differentiated in place of the data; the covariance of the residuals follows "
+     "from the noise of the samples",
      weak::settings(), &weak::refuse, &weak::project},
     {"savitzky_golay", "local polynomials, inputs filtered in the same way", savitzky_golay::settings(), &savitzky_golay::refuse,
      &savitzky_golay::project},

@@ -113,8 +113,8 @@ TEST_CASE("what nothing reads is warned of, once the file has no errors") {
 TEST_CASE("a column in a unit of another kind is refused, with both units") {
   std::string const shown = fitted("time t\ninput x = x [m] hold linear\nmeasure displacement = y [s]");
   CHECK(errors_in(shown) == 2);
-  CHECK(shown.find("column `x` is in [m], but the declared unit is [N]") != std::string::npos);
-  CHECK(shown.find("column `y` is in [s], but the declared unit is [m]") != std::string::npos);
+  CHECK(shown.find("column `x` is in [m], but [N] is needed") != std::string::npos);
+  CHECK(shown.find("column `y` is in [s], but [m] is needed") != std::string::npos);
 }
 
 TEST_CASE("cycles are not taken for radians, nor metres for a time") {
@@ -123,7 +123,7 @@ TEST_CASE("cycles are not taken for radians, nor metres for a time") {
   std::string const shown =
       messages(rotor + block("time t\ninput w = f [Hz] hold linear\nmeasure displacement = y") + "fit m to d with mh\n");
   CHECK(errors_in(shown) == 1);
-  CHECK(shown.find("error[E4017]: column `f` is in [Hz], but the declared unit is [rad/s]: one counts cycles, the other radians") !=
+  CHECK(shown.find("error[E4017]: column `f` is in [Hz], but [rad/s] is needed: one counts cycles, the other radians") !=
         std::string::npos);
   CHECK(messages(block("time t [m]")).find("error[E4114]: time cannot be in [m]") != std::string::npos);
   CHECK(messages(block("rate 9 [s]")).find("error[E2014]: the sampling rate is in [Hz], but this is in [s]") != std::string::npos);

@@ -165,7 +165,7 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
                           stated.as_model ? Severity::note : Severity::warning,
                           {candidates[k].what->name},
                           fmt::format("the particles of `{}` were simulated with {}, whose error moves parameters by about {} of "
-                                      "the posterior that the likelihood gives",
+                                      "the posterior that is computed from the likelihood",
                                       candidates[k].what->name, stated.text(),
                                       *posterior.move > 5 ? "many sds" : fmt::format("{:.2g} sd", *posterior.move)),
                           stated.as_model ? "nothing, if the solver is meant to be part of the model"

@@ -93,8 +93,8 @@ Findings compare_probabilities(SelectionResult const& result, std::vector<std::o
     if (model.died_in > 0) each += fmt::format(" and died in population {}", model.died_in);
   }
   return {{FindingCode::probabilities_disagree, Severity::warning, std::move(names), each,
-           "let the run stop later, at a smaller change of the threshold, use more `particles`, or use the probabilities by the "
-           "likelihood if its noise model is right"}};
+           "let the run stop later (a smaller `relative_change`, or a longer `schedule`), use more `particles`, or use the "
+           "probabilities by the likelihood if its noise model is right"}};
 }
 
 }  // namespace sysid

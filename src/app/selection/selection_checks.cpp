@@ -105,13 +105,14 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
   selection.floor_words = fmt::format("{} noise, {}", stated ? "the stated" : "the fitted", lowest->noise);
   double const threshold = selection.result.threshold;
   if (!std::isfinite(threshold) || threshold <= far_above_floor * lowest->distance) return {};
-  return {{FindingCode::threshold_above_noise,
-           Severity::warning,
-           {},
-           fmt::format("the final threshold {} is {} times the noise floor {}, the distance due to {}", significant(threshold, 4),
-                       significant(threshold / lowest->distance, 2), significant(lowest->distance, 4), selection.floor_words),
-           "models that differ by less cannot be distinguished: let the run stop later, at a smaller change of the threshold; if "
-           "the threshold stays above the noise floor, none of the models is right"}};
+  return {
+      {FindingCode::threshold_above_noise,
+       Severity::warning,
+       {},
+       fmt::format("the final threshold {} is {} times the noise floor {}, the distance due to {}", significant(threshold, 4),
+                   significant(threshold / lowest->distance, 2), significant(lowest->distance, 4), selection.floor_words),
+       "models that differ by less cannot be distinguished: let the run stop later (a smaller "
+       "`relative_change`, or a longer `schedule`); if the threshold stays above the noise floor, none of the models is right"}};
 }
 
 FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {

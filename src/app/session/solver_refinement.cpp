@@ -45,8 +45,8 @@ Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& 
   return {FindingCode::step_not_settled,
           Severity::error,
           {},
-          fmt::format("the result has not converged with {}, and finer settings were not tried: with {} {}, almost as much as in "
-                      "the previous refinement",
+          fmt::format("the result has not converged with {}: with {} {}, almost as much as in the previous refinement, so still "
+                      "finer settings were not tried",
                       accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
           settling_advice(refined.solver)};
 }

@@ -19,17 +19,17 @@ Diagnostic probabilities(ast::Name const& set, double sum, int open, int models)
     return error(
         "E6502", set.span,
         fmt::format("the probabilities given here sum to {:.10g}: no probability remains for {}", sum,
-                    open == 1 ? std::string("the last model") : fmt::format("the {} models without one", open)),
-        "the probability of a candidate applies to each of its models; models without one share the remaining probability");
+                    open == 1 ? std::string("the last model") : fmt::format("the {} models without a stated probability", open)),
+        "a stated probability applies to each model of its candidate; models without a stated probability share the rest");
   return error("E6502", set.span, fmt::format("the probabilities of these {} models sum to {:.10g}, not to 1", models, sum),
-               "the probability of a candidate applies to each of its models; models without one share the remaining probability");
+               "a stated probability applies to each model of its candidate; models without a stated probability share the rest");
 }
 
 Diagnostic not_a_probability(Span span, double value) {
   return error("E6503", span, fmt::format("a prior probability must be above 0 and at most 1, but this is {:.10g}", value),
                value == 0
                    ? "remove the candidate"
-                   : "give a number above 0 and at most 1, or remove it: models without one share the remaining probability");
+                   : "give a number above 0 and at most 1, or remove it: models without a stated probability share the rest");
 }
 
 Diagnostic shared_by_none(ast::Name const& name, std::string const& set, Names const& known) {

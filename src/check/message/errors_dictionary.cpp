@@ -110,7 +110,7 @@ Diagnostic unit_of_no_term(Span span, std::string const& unit, Names const& poss
   return error("E6609", span, fmt::format("no term has a coefficient in [{}]", unit.empty() ? "-" : unit),
                possible.empty()
                    ? std::string("declare the units of states, inputs and parameters: the units of coefficients follow from them")
-                   : fmt::format("the terms would have coefficients in {}", units(possible)));
+                   : fmt::format("the coefficients of the terms are in {}", units(possible)));
 }
 
 Diagnostic too_many_terms(Span span, std::size_t most) {

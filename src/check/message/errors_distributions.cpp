@@ -160,11 +160,12 @@ Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const&
 }
 
 Diagnostic logarithm_of_shifted(Span span, std::string const& spelling, std::string const& distribution) {
-  return about({distribution, spelling},
-               error("E2112", span,
-                     fmt::format("the arguments of `{}` are invalid: `{}` needs a unit with an absolute zero, such as [K]",
-                                 distribution, spelling),
-                     "give the median in its unit: `median = 20 [degC]`"));
+  return about(
+      {distribution, spelling},
+      error("E2112", span,
+            fmt::format("`{}` of `{}` cannot be given: a temperature that does not count from absolute zero has no logarithm",
+                        spelling, distribution),
+            "give the median, which is not a logarithm: `median = 20 [degC]`; or declare the parameter in [K]"));
 }
 
 Diagnostic too_many_arguments(ast::Call const& call, ast::Argument const& argument, Names const& signature) {

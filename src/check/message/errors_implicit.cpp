@@ -40,7 +40,7 @@ Diagnostic start_off_constraint(Span equation, Span initial) {
                     "the initial values do not satisfy this equation",
                     Label{equation, {}},
                     {},
-                    "choose initial values that satisfy it and its time derivative for all parameters: as expressions of them"};
+                    "write the initial values as expressions of the parameters, so that it and its time derivative always hold"};
   result.secondary.push_back({initial, "given here"});
   return result;
 }
@@ -48,7 +48,7 @@ Diagnostic start_off_constraint(Span equation, Span initial) {
 Diagnostic estimated_start_of_constraint(Span start, Span equation) {
   Diagnostic result{Severity::error,  "E3018", "an estimated start would violate a constraint between the states",
                     Label{start, {}}, {},      "use `start = record`, with parameters for unknown initial values"};
-  result.secondary.push_back({equation, "this one"});
+  result.secondary.push_back({equation, "the constraint"});
   return result;
 }
 

@@ -20,8 +20,8 @@ constexpr Synonym unit_synonyms[] = {
 
 // Help in place of a guess.
 constexpr Synonym name_synonyms[] = {
-    {"time", "time is declared where it is used: `time t [s]`"},
-    {"t", "time is declared where it is used: `time t [s]`"},
+    {"time", "declare the time in the model: `time t [s]`"},
+    {"t", "declare the time in the model: `time t [s]`"},
     {"π", "write `pi`"},
     {"PI", "write `pi`"},
     {"Pi", "write `pi`"},

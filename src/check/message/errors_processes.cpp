@@ -211,7 +211,8 @@ Diagnostic process_without_normal_noise(Span span, std::string const& channel, s
 }
 Diagnostic process_applied_twice(Span second, Span first, std::string const& name) {
   return about({name}, conflict("E3212", second, "again here, to other arguments", first, "first applied here",
-                                fmt::format("`{}` is applied twice", name), "declare a second function"));
+                                fmt::format("`{}` is applied twice", name),
+                                "declare a second function, or give this one a range: `gp(..., within = (LOW, HIGH))`"));
 }
 Diagnostic process_of_two_channels(Span span, std::string const& name, std::string const& first, std::string const& second) {
   return about({name, first, second},
@@ -236,8 +237,9 @@ Diagnostic channel_without_process(Span span, std::string const& channel) {
                      "give it one, or fit it with a separate model"));
 }
 Diagnostic process_task(Span span, std::string const& verb, std::string const& model) {
-  return about({model}, error("E3217", span, fmt::format("`{}` has a Gaussian process and cannot be {}", model, verb),
-                              "fit it and predict with it: `posterior = fit ... with map`"));
+  return about({model},
+               error("E3217", span, fmt::format("`{}` has a Gaussian process without a range and cannot be {}", model, verb),
+                     "give the function a range: `gp(..., within = (LOW, HIGH))`; else it can only be fitted and predicted"));
 }
 Diagnostic process_beside_estimated_start(Span span, std::string const& model) {
   return about({model}, error("E3217", span, fmt::format("an estimated start of `{}` would ignore its Gaussian process", model),

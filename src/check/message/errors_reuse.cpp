@@ -142,9 +142,11 @@ Diagnostic discrete_part(Span span, std::string const& part, Span declaration) {
 }
 
 Diagnostic process_of_part(Span span, std::string const& part, Span declaration) {
-  return with(about({part}, error("E3215", span, fmt::format("part `{}` has a Gaussian process of its own", part),
-                                  "declare the process in the model around it, where its channel is")),
-              declaration, "declared here");
+  return with(
+      about({part},
+            error("E3215", span, fmt::format("part `{}` declares an unknown function, `~ gp(...)`, which a part cannot have", part),
+                  "declare the function in the model around the part, and use it there")),
+      declaration, "declared here");
 }
 
 Diagnostic module_not_found(ast::Name const& module, std::string const& folder, Names const& known) {

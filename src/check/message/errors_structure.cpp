@@ -25,7 +25,7 @@ Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) 
 
 Diagnostic undetermined(Span declaration, std::string const& unknown) {
   return about(with_bare(unknown), error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
-                                         "change one of the equations: two of them are equivalent in the highest derivatives"));
+                                         "change one of the equations: in the highest derivatives it follows from the others"));
 }
 
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {

@@ -62,13 +62,12 @@ constexpr Synonym option_synonyms[] = {
     {"metric", "distance"},
 };
 
-constexpr std::string_view
-    of_threads = "threads are an option of the command: `sysid run FILE --threads 4`",
-    of_folder = "the folder of results is an option of the command: `sysid run FILE -o DIR`",
-    of_backend = "write the back end directly after `with`: `with mh`",
-    of_tolerance = "tolerances are settings of a solver: `solver = dopri5(relative = 1e-8)`",
-    of_step = "the solver step is given as a fraction of the sampling interval: `substeps = 10` means ten steps per sample",
-    of_duration = "write the number of rows: `samples` is the duration times the rate";
+constexpr std::string_view of_threads = "threads are an option of the command: `sysid run FILE --threads 4`",
+                           of_folder = "the folder of results is an option of the command: `sysid run FILE -o DIR`",
+                           of_backend = "write the back end directly after `with`: `with mh`",
+                           of_tolerance = "tolerances are settings of a solver: `solver = dopri5(relative = 1e-8)`",
+                           of_step = "the solver step follows from the number of steps in each sampling interval: `substeps = 10`",
+                           of_duration = "write the number of rows: `samples` is the duration times the rate";
 /// What is no option of a task, and where it is written.
 constexpr Synonym option_places[] = {
     {"threads", of_threads},
@@ -261,7 +260,7 @@ Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, 
 
 Diagnostic task_too_late(ast::Name const& name) {
   return about({name.text}, error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text),
-                                  "tasks run in order: move it up"));
+                                  "tasks run in the order of the file: move that task before this one"));
 }
 
 Diagnostic experiment_twice(Span second, Span first, std::string const& experiment) {

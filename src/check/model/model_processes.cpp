@@ -81,7 +81,7 @@ void ModelChecker::resolve_process_arguments(std::vector<NodeId> const& predicte
   for (Process const& process : model_.processes)
     for (NodeId const argument : process.arguments)
       if (reads_process(graph, argument) && !failed())
-        diagnostics_.add(errors::process_out_of_place(process.span, "among what it is a function of"));
+        diagnostics_.add(errors::process_out_of_place(process.span, "in the arguments of a Gaussian process"));
 }
 
 void ModelChecker::place_processes() {

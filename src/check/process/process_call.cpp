@@ -99,7 +99,7 @@ std::optional<Typed> Scope::process_call(ast::Call const& call, std::size_t inde
   if (!good) return std::nullopt;
   for (NodeId const argument : process.arguments)
     if (graph_.depends(argument, [](Node const& node) { return is_leaf(node, LeafKind::process); })) {
-      diagnostics_.add(errors::process_out_of_place(call.span, "the argument of another"));
+      diagnostics_.add(errors::process_out_of_place(call.span, "in the arguments of a Gaussian process"));
       return std::nullopt;
     }
   if (expanded) return expansion_call(call, index, columns, given, std::move(process));

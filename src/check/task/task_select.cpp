@@ -69,7 +69,7 @@ std::vector<FitTask> TaskChecker::candidate_fits(CandidateSet const& set, FitTas
   std::vector<FitTask> fits;
   for (CandidateModel const& candidate : set.models) {
     Model const& model = file_.models[static_cast<std::size_t>(candidate.model)];
-    if (!model.processes.empty()) diagnostics_.add(errors::process_task(tree_.subject.span, "selected among", model.name));
+    if (!model.processes.empty()) diagnostics_.add(errors::process_task(tree_.subject.span, "a candidate of `select`", model.name));
     if (model.channels.empty()) {
       diagnostics_.add(errors::nothing_observed({{candidate.span}, candidate.name}));
       return {};

@@ -217,7 +217,8 @@ bool UnitCheck::one_zero(Graph const& graph, UnitOperand const& a, UnitOperand c
   bool const shows_first = a.tree == nullptr || b.tree == nullptr || first.unit.offset == 0;
   auto const words_of = [&](Typed const& value, ast::Expression const* tree) {
     bool const is_name = tree != nullptr && std::holds_alternative<ast::Reference>(tree->node);
-    return errors::Temperature{unit_label({value}), tree == nullptr ? "" : unparse(*tree), is_name, value.unit};
+    bool const is_number = tree != nullptr && std::holds_alternative<ast::Number>(tree->node);
+    return errors::Temperature{unit_label({value}), tree == nullptr ? "" : unparse(*tree), is_name, is_number, value.unit};
   };
   errors::Temperature const one = words_of(first, a.tree == nullptr ? b.tree : a.tree);
   errors::Temperature const two = words_of(second, a.tree == nullptr ? nullptr : b.tree);

@@ -34,8 +34,11 @@ std::string with_names(std::string const& cure, std::string const& names) {
 }
 
 std::string subject(Temperature const& temperature) {
-  return temperature.is_name ? "`" + temperature.text + "`" : "the quantities from which this is computed";
+  bool const as_written = temperature.is_name || temperature.is_number;
+  return as_written ? "`" + temperature.text + "`" : "the quantities from which this is computed";
 }
+
+char const* verb(Temperature const& temperature) { return temperature.is_number ? "write" : "declare"; }
 
 }  // namespace
 
@@ -98,23 +101,26 @@ Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
     case Zeros::in_doubt:
       message = "this sum is ambiguous: a temperature or a difference of temperatures";
       help = without.unit.offset == 0
-                 ? fmt::format("declare {} in [{}] if it is a difference, in [{}] if it is a temperature", subject(without),
-                               difference(with_zero.unit).text, with_zero.unit.text)
-                 : fmt::format("declare {} and {} in one unit, [{}] for temperatures or [{}] for differences", subject(without),
+                 ? fmt::format("{} {} in [{}] if it is a difference, in [{}] if it is a temperature", verb(without),
+                               subject(without), difference(with_zero.unit).text, with_zero.unit.text)
+                 : fmt::format("use one unit for {} and {}: [{}] for temperatures or [{}] for differences", subject(without),
                                subject(with_zero), with_zero.unit.text, difference(with_zero.unit).text);
       break;
     case Zeros::of_difference:
       message = "one of these is a temperature, the other a difference of temperatures";
-      help = without.text.empty() ? fmt::format("subtract the reference temperature of the difference: `{} - 20 [{}]`",
-                                                with_zero.text, with_zero.unit.text)
-                                  : fmt::format("a temperature is `20 [{}] + {}`; a difference is declared in [{}]",
-                                                with_zero.unit.text, without.text, difference(with_zero.unit).text);
+      help = without.text.empty()
+                 ? fmt::format("to get a difference, subtract a reference temperature: `{} - 20 [{}]`", with_zero.text,
+                               with_zero.unit.text)
+                 : fmt::format(
+                       "to get a temperature, add a reference temperature: `20 [{}] + {}`; if a difference is meant on "
+                       "both sides, declare it in [{}]",
+                       with_zero.unit.text, without.text, difference(with_zero.unit).text);
       break;
     case Zeros::agree:
     case Zeros::apart:
       message = "these temperatures have different zero points";
-      help = fmt::format("declare {} in [{}] as well: columns and numbers are converted, expressions are not", subject(shown),
-                         other.unit.text.empty() ? "K" : other.unit.text);
+      help = fmt::format("{} {} in [{}] as well: columns and numbers are converted, expressions are not", verb(shown),
+                         subject(shown), other.unit.text.empty() ? "K" : other.unit.text);
       break;
   }
   return at(Severity::error, "E2211", std::move(shown.label), {std::move(other.label)}, message, help);

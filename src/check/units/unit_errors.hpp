@@ -30,7 +30,7 @@ Diagnostic condition_with_unit(Label condition, std::string const& text);
 struct Temperature {
   Label label;
   std::string text;  // as written; empty: a declaration
-  bool is_name = false;
+  bool is_name = false, is_number = false;
   Unit unit;
 };
 Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other);

@@ -170,7 +170,8 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"penalty", SettingKind::real, "0", 0, 1e16, "",
-     "weight of the squared third derivative, for a step of 1; 0: chosen so that the residual is as large as the noise"},
+     "weight of the squared third derivative, with time in sampling intervals; 0: chosen so that the residual is as large as the "
+     "noise"},
 };
 constexpr int margin = 5;  // samples left out at the ends, where high derivatives of a spline are not to be trusted
 

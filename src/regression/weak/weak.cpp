@@ -21,7 +21,7 @@ constexpr SettingRow rows[] = {
     {"step", SettingKind::integer, "0", 0, 1e6, "", "samples between windows; 0: a sixth of the half-width"},
     {"power", SettingKind::integer, "8", 4, 24, "", "exponent p of the test function (1 - s^2)^p"},
     {"reweightings", SettingKind::integer, "3", 0, 20, "",
-     "how many times the noise covariance is recomputed from the coefficients"},
+     "how many times the covariance of the residuals is computed again with the estimated coefficients"},
 };
 
 constexpr int least_half_width = 10;
