@@ -26,9 +26,9 @@ struct Failure {
 class Ledger {
  public:
   /// Where the failures lie that are counted without a look at each.
-  static constexpr char const* untraced = "not traced: only the first eight are listed";
+  static constexpr char const* untraced = "place not determined: it is determined for the first eight failures only";
   /// Ends the place of failures that are counted together.
-  static constexpr std::string_view not_traced = ", not traced";
+  static constexpr std::string_view not_traced = ", place not determined";
   void add_solves(std::uint64_t count) { solves_ += count; }
   /// Counts a failure; `example`, its `names` and `time` are kept for the first one of its (kind, where).
   void add_failure(FailureClass kind, std::string const& where, double time, std::vector<double> example, std::uint64_t count = 1,

@@ -127,7 +127,8 @@ std::string prior_text(PriorPage const& prior, std::string const& time_unit, dou
   for (Failure const& failure : prior.failures)
     lines.push_back(fmt::format("  {} x {}: {} (first at t = {} {})", failure.count, name(failure.kind), failure.where,
                                 significant(failure.time / time_scale, 4), time_unit));
-  if (prior.untraced > 0) lines.push_back(fmt::format("  {} x not traced: only the first eight are listed", prior.untraced));
+  if (prior.untraced > 0)
+    lines.push_back(fmt::format("  {} x place not determined: it is determined for the first eight failures only", prior.untraced));
   for (PriorPage::Channel const& channel : prior.channels)
     lines.push_back(fmt::format("{}: 90 % of the draws predict a range of {} to {}, median {}; measured {}", channel.name,
                                 significant(channel.low, 2), significant(channel.high, 2), significant(channel.middle, 2),
