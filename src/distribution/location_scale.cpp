@@ -35,4 +35,11 @@ LocationScale location_scale(Graph& graph, Distribution const& use) {
   return {family.logarithmic ? graph.call(log_function, location) : location, use.arguments[family.scale]};
 }
 
+Distribution standard(Graph& graph, Distribution use) {
+  Family const& family = *family_of(use);
+  use.arguments[family.location] = graph.constant(family.logarithmic ? 1 : 0);
+  use.arguments[family.scale] = graph.constant(1);
+  return use;
+}
+
 }  // namespace sysid

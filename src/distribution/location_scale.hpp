@@ -16,5 +16,7 @@ struct LocationScale {
 std::optional<NodeId> scale_argument(Distribution const& use);
 /// Both, of a distribution that has a `scale_argument`.
 LocationScale location_scale(Graph& graph, Distribution const& use);
+/// The one with location 0 and scale 1 of that family.
+Distribution standard(Graph& graph, Distribution use);
 
 }  // namespace sysid

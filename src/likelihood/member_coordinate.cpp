@@ -29,6 +29,23 @@ Coordinate constrain_member(Graph& graph, Support const& support, LocationScale 
   return {moved.value, (Term(graph, moved.log_jacobian) + given.log_sd).id};
 }
 
+NodeId log_density_of_member(Graph& graph, Distribution const& use, MemberCoordinate const& member, NodeId v) {
+  LocationScale const prior = location_scale(graph, use);
+  Support const allowed = support(graph, use);
+  Term const location(graph, prior.location), scale(graph, prior.scale), coordinate(graph, v);
+  // z = (w - mu)/tau
+  Term z = coordinate;
+  if (member.precision != 0 || member.pull != 0) {
+    Term const informed = 1.0 + member.precision * (scale * scale);
+    z = scale * (member.pull - member.precision * location) / informed + coordinate / sqrt(informed);
+  }
+  Coordinate const standardised = constrain(graph, allowed, z.id);
+  Conditional const given = conditional(graph, prior, member);
+  Coordinate const moved = constrain(graph, allowed, (given.mean + given.sd * coordinate).id);
+  Term const of_z(graph, log_density(graph, standard(graph, use), standardised.value));
+  return (of_z + Term(graph, standardised.log_jacobian) - log(scale) - Term(graph, moved.log_jacobian)).id;
+}
+
 NodeId unconstrain_member(Graph& graph, Support const& support, LocationScale const& prior, MemberCoordinate const& member,
                           NodeId x) {
   Conditional const given = conditional(graph, prior, member);

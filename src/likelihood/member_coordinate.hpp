@@ -20,6 +20,8 @@ struct MemberCoordinate {
 /// Any h >= 0 and k give valid coordinates.
 Coordinate constrain_member(Graph& graph, Support const& support, LocationScale const& prior, MemberCoordinate const& member,
                             NodeId v);
+/// log of the prior density of that value, from v and not from w: where tau is far below the last digit of mu, w - mu is lost.
+NodeId log_density_of_member(Graph& graph, Distribution const& use, MemberCoordinate const& member, NodeId v);
 /// The inverse.
 NodeId unconstrain_member(Graph& graph, Support const& support, LocationScale const& prior, MemberCoordinate const& member,
                           NodeId x);

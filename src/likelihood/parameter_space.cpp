@@ -128,7 +128,9 @@ void ParameterSpace::compile() {
     value[static_cast<std::size_t>(r)] = moved.value;
     // The declared density is per declared unit; d(declared)/du = d(SI)/du / scale.
     NodeId const scale = graph.constant(elementary::log(row.to_si(1)));
-    NodeId const density = graph.add(log_density(graph, use, moved.value), scale);
+    NodeId const density = graph.add(
+        member != nullptr ? log_density_of_member(graph, use, *member, coordinates[k]) : log_density(graph, use, moved.value),
+        scale);
     without = graph.add(without, density);
     with_jacobian = graph.add(with_jacobian, graph.add(density, graph.subtract(moved.log_jacobian, scale)));
 

@@ -245,6 +245,26 @@ TEST_CASE("coordinates of members given their population change the density by t
   }
 }
 
+TEST_CASE("a spread below the last digit of the mean leaves the density of a member's coordinate as it is") {
+  std::string const far =
+      "parameter mu ~ normal(2e7, sd = 1e5)\nparameter tau ~ log_uniform(1e-12, 1e6)\nparameter k per experiment ~ normal(mu, sd = "
+      "tau)\n";
+  for (MemberCoordinate const& member : {MemberCoordinate{2, 0, 0}, MemberCoordinate{2, 1e-10, 2e-3}}) {
+    ParameterSpace const space(model_with(far), {{"a", {}}}, {member});
+    LaneArray theta(3, 2);
+    theta(0, 0) = theta(0, 1) = 2e7;
+    theta(1, 0) = theta(1, 1) = std::log(1e-11 / (1e6 - 1e-11));  // near the lower bound, whatever the form of the coordinate
+    theta(2, 0) = 0;
+    theta(2, 1) = 2;
+    LaneArray declared(3, 2);
+    space.constrain(theta, declared);
+    REQUIRE(declared(1, 0) < 1e-9);
+    std::vector<double> density(2);
+    space.log_prior(theta, density, true);
+    CHECK(density[1] - density[0] == doctest::Approx(-2).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("slopes of members and the gradient of their prior are those of differences") {
   ParameterSpace const space(model_with(members), {{"a", {}}, {"b", {}}}, standardised);
   int const rows = static_cast<int>(space.rows().size()), dimension = space.dimension(), width = 2;

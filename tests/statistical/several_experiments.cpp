@@ -213,11 +213,10 @@ namespace {
 // Rubin 1981, table 1: effects of coaching in eight schools and their standard errors.
 std::vector<double> const effects = {28, 8, -3, 7, -1, 1, 18, 12}, standard_errors = {15, 10, 16, 11, 9, 11, 10, 18};
 
-Fitted eight_schools(std::string const& members, std::string const& task) {
-  std::string text =
-      "model schools {\n  input x\n  state y\n  initial y = effect\n  parameter mu ~ normal(0, sd = 5)\n"
-      "  parameter tau ~ half_cauchy(scale = 5)\n  parameter error per experiment\n" +
-      members + "  y' = x\n  observe result ~ normal(y, sd = error)\n}\n";
+Fitted schools(std::vector<double> const& effects, std::vector<double> const& standard_errors, std::string const& population,
+               std::string const& members, std::string const& task) {
+  std::string text = "model schools {\n  input x\n  state y\n  initial y = effect\n  parameter error per experiment\n" +
+                     population + members + "  y' = x\n  observe result ~ normal(y, sd = error)\n}\n";
   std::map<std::string, std::string> files;
   std::string names;
   for (std::size_t s = 0; s < effects.size(); ++s) {
@@ -230,6 +229,11 @@ Fitted eight_schools(std::string const& members, std::string const& task) {
     names += (names.empty() ? "" : ", ") + name;
   }
   return run_file(text + "posterior = fit schools to " + names + " with " + task + ", seed = 1\n", {}, files);
+}
+
+Fitted eight_schools(std::string const& members, std::string const& task) {
+  return schools(effects, standard_errors, "  parameter mu ~ normal(0, sd = 5)\n  parameter tau ~ half_cauchy(scale = 5)\n",
+                 members, task);
 }
 
 std::string const chains = "mh(samples = 120000, burn_in = 20000, thin = 20)";
@@ -251,6 +255,40 @@ TEST_CASE("the eight schools by standardised members agree with quadrature") {
   CHECK_FALSE(fitted.found("posterior", "hierarchy_narrows"));
   // Moves along ridges are tried, and given up: with them to the end there were 95 million simulations.
   CHECK(fitted.summary.at("posterior").at("ledger").at("solves").get<double>() < 6e6);
+}
+
+// The prior of the spread is thirty times as wide as the spread: where members and population together are most probable, the data
+// seem to know each member far better than the population does.
+TEST_CASE("members that differ little are sampled given their population, under a wide prior of its spread") {
+  std::vector<double> const values = {8.2, 7.1, 9.4, 6.6, 8.8, 7.5, 8.0, 7.9}, errors(8, 1.0), variance(8, 1.0);
+  Quadrature const exact(
+      values, variance, 20, [](double tau) { return -0.5 * tau * tau / 400; }, 100, 1e-3);
+  for (std::string const task : {"mh", "nuts"}) DOCTEST_SUBCASE(task.c_str()) {
+      Fitted const fitted = schools(values, errors, "  parameter mu ~ normal(0, sd = 20)\n  parameter tau ~ half_normal(20)\n",
+                                    "  parameter effect per experiment ~ normal(mu, sd = tau)\n", task);
+      CHECK(fitted.exit == 0);
+      CHECK(fitted.summary.at("posterior").at("settings").at("non_centred") == "effect");
+      check(fitted, "mu", exact.mean_of(0), exact.sd_of(0));
+      check(fitted, "tau", exact.mean_of(1), exact.sd_of(1));
+    }
+}
+
+TEST_CASE("members of which the data know the sum alone are sampled as declared") {
+  Stream stream({23, Purpose::test, 0, 0});
+  std::string csv = "t,x,y\n";
+  double held = 0;
+  for (int i = 0; i < 100; ++i) {
+    double const x = stream.normal();
+    csv += shortest(0.1 * i) + "," + shortest(x) + "," + shortest(40 * held + 0.01 * stream.normal()) + "\n";
+    held += 0.1 * x;
+  }
+  Fitted const fitted = run_file(
+      "model m {\n  input x\n  state y\n  initial y = 0\n  parameter mu ~ normal(10, sd = 10)\n  parameter tau ~ half_normal(5)\n"
+      "  parameter k(4) ~ normal(mu, sd = tau)\n  y' = x*sum(k)\n  observe level ~ normal(y, sd = 0.01)\n}\n"
+      "data d { file \"d.csv\"; time t [s]; input x = x hold zero_order; measure level = y }\n"
+      "posterior = fit m to d with mh(samples = 2000, burn_in = 500), seed = 1\n",
+      {}, {{"d.csv", csv}});
+  CHECK_FALSE(fitted.summary.at("posterior").at("settings").contains("non_centred"));
 }
 
 TEST_CASE("the eight schools as they stand agree with quadrature") {

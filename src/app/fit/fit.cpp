@@ -121,7 +121,7 @@ class Fit {
   // What `auto` stands for, by the modes.
   void choose_backend() {
     if (chosen_.backend != "auto") return;
-    Target const& target = likelihood_->set_target(preparation_.solver, session_.interruptible());
+    Target const& target = likelihood_->set_target(preparation_.solver, session_.abandonable());
     Ledger looked;
     automatic::Choice choice = automatic::choose(target, preparation_.modes, seed_, looked);
     backend_ = find_backend(choice.backend);
@@ -203,6 +203,7 @@ class Fit {
     preparation_ = std::move(again);
     preparation_.ledger.merge(ledger_);
     ledger_ = {};
+    chosen_ = what_;
     if (checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
     return true;
   }

@@ -13,6 +13,7 @@
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
 #include "diagnostics/bands.hpp"
+#include "inference/backend/checkpoint.hpp"
 #include "inference/table.hpp"
 
 namespace sysid {
@@ -41,7 +42,9 @@ class ProcessLikelihood : public FitLikelihood {
   ParameterSpace const& space() const override { return *space_; }
   // What the data say of a member alone is not known: its likelihood is no sum of squares.
   ParameterSpace const* with_hierarchies() const override { return nullptr; }
-  void standardise(std::vector<MemberCoordinate> const&) override {}
+  void standardise(std::vector<MemberCoordinate> const& members) override {
+    if (!members.empty()) throw checkpoint::Mismatch("its hierarchies differ");
+  }
 
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {

@@ -29,6 +29,9 @@ Preparation restore_preparation(nlohmann::json const& stored) {
   preparation.findings = checkpoint::decode_findings(stored.at("findings"));
   preparation.ledger = checkpoint::decode_ledger(stored.at("ledger"));
   std::vector<double> const standardised = checkpoint::decode(stored.at("standardised"));
+  for (std::size_t i = 0; i < standardised.size(); i += 3)
+    if (standardised.size() % 3 != 0 || !(standardised[i] >= 0 && standardised[i] <= 1e9))
+      throw checkpoint::Mismatch("its hierarchies differ");
   for (std::size_t i = 0; i + 2 < standardised.size(); i += 3)
     preparation.standardised.push_back({static_cast<int>(standardised[i]), standardised[i + 1], standardised[i + 2]});
   preparation.moves = stored.at("moves").get<std::vector<double>>();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 
 #include "linear_algebra/decompositions.hpp"
@@ -17,9 +19,11 @@ namespace {
 constexpr double well_informed = 25;
 /// Relative change of what is known of the members that leaves their coordinates good.
 constexpr double as_good_as_known = 0.1;
-constexpr int most_rounds_of_coordinates = 3;
+constexpr int most_rounds_of_coordinates = 4;
+/// Precision of a combination of members, over that of any of them alone, from which on it ties them to each other.
+constexpr double much_sharper = 4;
 constexpr std::size_t most_followed = 12;                // modes
-constexpr std::uint64_t standardising_step = 5'000'000;  // a stream of its own among those of Purpose::start
+constexpr std::uint64_t standardising_step = 6'000'000;  // a stream of its own among those of Purpose::start
 
 LaneArray unconstrained(Target const& target, std::vector<double> const& declared) {
   LaneArray values(target.dimension(), 1), theta(target.dimension(), 1);
@@ -44,16 +48,41 @@ std::vector<double> scales_at(Target const& declared, ParameterSpace const& spac
   return {scales.view().data(), scales.view().data() + scales.rows()};
 }
 
-/// Coordinates of members with the same population as one that is little known.
-std::set<int> little_known(ParameterSpace const& space, std::vector<MemberCoordinate> const& members,
-                           std::vector<double> const& scales) {
-  std::set<std::vector<int>> populations;
-  for (std::size_t m = 0; m < members.size(); ++m)
-    if (!(members[m].precision * scales[m] * scales[m] >= well_informed)) populations.insert(space.members()[m].population);
+/// Coordinates of members with the same population as one that is little known, unless their data tie them to each other: members
+/// given their population would lie on a ridge, which bends with its scale.
+std::set<int> little_known(ParameterSpace const& space, MemberInformation const& known, std::vector<double> const& scales) {
+  std::map<std::vector<int>, double> highest;  // precision of one member
+  for (std::size_t m = 0; m < scales.size(); ++m) {
+    double& own = highest.try_emplace(space.members()[m].population, 0).first->second;
+    own = std::max(own, known.members[m].precision);
+  }
+  std::set<std::vector<int>> little, tied;
+  for (std::size_t m = 0; m < scales.size(); ++m) {
+    std::vector<int> const& population = space.members()[m].population;
+    double const variance = scales[m] * scales[m];
+    if (!(known.members[m].precision * variance >= well_informed)) little.insert(population);
+    if (known.sharpest[m] * variance >= well_informed && known.sharpest[m] > much_sharper * highest[population])
+      tied.insert(population);
+  }
   std::set<int> coordinates;
   for (ParameterSpace::Member const& member : space.members())
-    if (populations.contains(member.population)) coordinates.insert(member.coordinate);
+    if (little.contains(member.population) && !tied.contains(member.population)) coordinates.insert(member.coordinate);
   return coordinates;
+}
+
+/// Of each member the largest eigenvalue of what the data know of its population's members together.
+std::vector<double> sharpest(ParameterSpace const& space, Eigen::MatrixXd const& covariance, Eigen::VectorXd const& of_prior) {
+  std::map<std::vector<int>, std::vector<int>> together;
+  for (ParameterSpace::Member const& member : space.members()) together[member.population].push_back(member.coordinate);
+  std::map<std::vector<int>, double> largest;
+  for (auto const& [population, members] : together) {
+    Eigen::MatrixXd known = inverse(covariance(members, members));
+    for (Eigen::Index k = 0; k < known.rows(); ++k) known(k, k) -= of_prior(members[static_cast<std::size_t>(k)]);
+    largest[population] = known.allFinite() ? symmetric_eigen(known).values.maxCoeff() : 0;
+  }
+  std::vector<double> all;
+  for (ParameterSpace::Member const& member : space.members()) all.push_back(largest[member.population]);
+  return all;
 }
 
 bool alike(std::vector<MemberCoordinate> const& a, std::vector<MemberCoordinate> const& b) {
@@ -77,8 +106,8 @@ Findings with_modes_of(Findings findings, Target const& target, std::vector<Mode
 
 }  // namespace
 
-std::vector<MemberCoordinate> member_coordinates(Target const& declared, ParameterSpace const& space,
-                                                 std::vector<double> const& mode, std::uint64_t seed) {
+MemberInformation member_information(Target const& declared, ParameterSpace const& space, std::vector<double> const& mode,
+                                     std::uint64_t seed) {
   Objective const objective = make_objective(declared, ObjectiveKind::posterior, seed, standardising_step);
   int const dimension = declared.dimension();
   LaneArray const theta = unconstrained(declared, mode);
@@ -103,7 +132,7 @@ std::vector<MemberCoordinate> member_coordinates(Target const& declared, Paramet
     bool const usable = std::isfinite(own) && std::isfinite(pull);
     members.push_back({p, usable ? own : 0, usable ? pull : 0});
   }
-  return members;
+  return {std::move(members), sharpest(space, covariance, of_prior)};
 }
 
 std::vector<MemberCoordinate> non_centred(ParameterSpace const& space) {
@@ -117,14 +146,19 @@ StandardisedSearch follow_members(ParameterSpace const& space, SearchResult foun
                                   RunContext& context) {
   std::unique_ptr<Target> const declared = make({});
   StandardisedSearch result{non_centred(space), std::move(found)};
-  std::set<int> standardised;
+  std::optional<std::set<int>> standardised;
   for (int pass = 0; pass < most_rounds_of_coordinates; ++pass) {
     std::vector<double> const& mode = result.found.modes.front().declared;
-    std::vector<MemberCoordinate> chosen = member_coordinates(*declared, space, mode, context.seed);
-    if (pass == 0) standardised = little_known(space, chosen, scales_at(*declared, space, mode));
-    std::erase_if(chosen, [&](MemberCoordinate const& each) { return !standardised.contains(each.coordinate); });
+    MemberInformation known = member_information(*declared, space, mode, context.seed);
+    if (pass == 1) standardised = little_known(space, known, scales_at(*declared, space, mode));
+    std::vector<MemberCoordinate> chosen = std::move(known.members);
+    if (standardised) std::erase_if(chosen, [&](MemberCoordinate const& each) { return !standardised->contains(each.coordinate); });
     std::sort(chosen.begin(), chosen.end(), by_coordinate);
-    if (alike(chosen, result.coordinates) || context.stop_requested()) break;
+    if (context.stop_requested()) break;
+    if (alike(chosen, result.coordinates)) {
+      if (pass > 0) break;
+      continue;  // which members are little known is still to be decided
+    }
     std::unique_ptr<Target> const target = chosen.empty() ? nullptr : make(chosen);
     Target const& next = target ? *target : *declared;
     LaneArray const starts = modes_in(next, result.found.modes);
