@@ -12,7 +12,7 @@
 
 namespace sysid {
 
-Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found) {
+Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found, std::span<std::string const> non_centred) {
   auto const estimated = [&](NodeId argument) {
     return model.graph.depends(argument, [&](Node const& node) {
       return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter &&
@@ -22,6 +22,7 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
   auto const member = std::find_if(model.parameters.begin(), model.parameters.end(), [&](Parameter const& parameter) {
     // The first argument is where the population lies, what follows is how wide it is.
     return parameter.per_experiment && parameter.prior && !parameter.prior->arguments.empty() &&
+           std::find(non_centred.begin(), non_centred.end(), parameter.name) == non_centred.end() &&
            std::any_of(parameter.prior->arguments.begin() + 1, parameter.prior->arguments.end(), estimated);
   });
   if (member == model.parameters.end()) return {};

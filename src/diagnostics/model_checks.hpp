@@ -1,5 +1,6 @@
 // What a finished fit is asked apart from its residuals: does a population upset it, is every parameter used.
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,10 @@
 namespace sysid {
 
 /// What an estimated spread of a population does to a result (docs/methods/several_experiments.md): to chains, when `found` says
-/// that they have not mixed, and to an optimum, whose density may grow without bound where the spread vanishes.
-Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found);
+/// that they have not mixed, and to an optimum, whose density may grow without bound where the spread vanishes. non_centred: names
+/// of parameters that are sampled relative to their population, where a small spread does not slow chains.
+Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found,
+                         std::span<std::string const> non_centred = {});
 
 /// Parameters with a prior that nothing in the model uses: their posterior is their prior.
 Findings check_use(Model const& model, StartRule const& start);

@@ -36,14 +36,16 @@ double worth_of_normals(Target const& target, std::vector<Mode> const& modes, st
 Choice choose(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger) {
   auto const notable = std::count_if(modes.begin(), modes.end(), [](Mode const& each) { return each.share > notable_share; });
   int const count = target.dimension();
-  if (notable > 1 && count <= most_for_tempering && !target.is_expensive())
-    return {"tempering", fmt::format("{} modes have more than {:.0f} % of the posterior mass each, and replicas cross between them",
-                                     notable, 100 * notable_share)};
-  if (notable > 1)
-    return {"mh",
-            fmt::format("{} modes have more than {:.0f} % of the posterior mass each: independence moves jump between them, and "
-                        "{} parameters are too many for tempering",
-                        notable, 100 * notable_share, count)};
+  if (notable > 1) {
+    std::string const modes_of_weight =
+        fmt::format("{} modes have more than {:.0f} % of the posterior mass each", notable, 100 * notable_share);
+    if (count > most_for_tempering)
+      return {"mh", fmt::format("{}: independence moves jump between them, and {} parameters are too many for tempering",
+                                modes_of_weight, count)};
+    if (target.is_expensive())
+      return {"mh", modes_of_weight + ": independence moves jump between them, and each density is too expensive for tempering"};
+    return {"tempering", modes_of_weight + ", and replicas cross between them"};
+  }
   if (!modes.front().flat.empty())
     return {"mh", "the posterior is flat in a direction at its mode, and moves along ridges follow it"};
   if (target.derivatives() == DerivativeSource::differences)

@@ -145,7 +145,7 @@ void ParameterSpace::compile() {
     backward[k] =
         member != nullptr ? unconstrain_member(graph, bounds, *population, *member, leaf) : sysid::unconstrain(graph, bounds, leaf);
     if (std::vector<int> of = population_of(graph, by_rows, coordinate_of); !of.empty()) {
-      members_.push_back({static_cast<int>(k), row.parameter, std::move(of)});
+      members_.push_back({static_cast<int>(k), std::move(of)});
       scales.push_back(*scale_argument(use));
     }
     auto const number = [&](std::optional<NodeId> const& bound, double fallback) {

@@ -61,7 +61,6 @@ class ParameterSpace {
   /// A sampled row whose prior is moved and widened by sampled ones, the width at least.
   struct Member {
     int coordinate;
-    int parameter;                // of the model: members of one have one population
     std::vector<int> population;  // coordinates that its prior's scale reads
   };
   std::vector<Member> const& members() const { return members_; }

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
+#include "check/checking.hpp"
 #include "core/numeric/random.hpp"
+#include "diagnostics/model_checks.hpp"
 
 using namespace sysid;
 using nlohmann::json;
@@ -76,4 +78,19 @@ TEST_CASE("noise with heavy tails is of the size that it states, and of half of 
                   "noise_size"));
   CHECK(has(findings_of(mean + "observe y ~ student_t(a*x, 3, scale = 0.5)", outlying), "noise_size"));
   CHECK(has(findings_of(mean + "observe y ~ student_t(a*x, 3, scale = 2)", outlying), "noise_size"));
+}
+
+TEST_CASE("chains that do not mix are told of their population, unless its members are sampled relative to it") {
+  Model const model = test::model_of(
+      "input x [-]\n parameter mu [-] ~ normal(0, sd = 1)\n parameter tau [-] ~ half_normal(1)\n"
+      "parameter k per experiment [-] ~ normal(mu, sd = tau)\n observe y ~ normal(k*x, sd = 1)");
+  Draws draws;
+  draws.chains.resize(1);
+  draws.chains.front().values = {{0, 1, 0}, {0, 1, 0}};
+  Findings const unmixed = {{FindingCode::ess_bulk_low, Severity::error, {"tau"}, "", ""}};
+  std::vector<std::string> const members = {"k"}, others = {"c"};
+  CHECK(check_hierarchy(model, draws, unmixed).front().code == FindingCode::hierarchy_narrows);
+  CHECK(check_hierarchy(model, draws, unmixed, others).size() == 1);
+  CHECK(check_hierarchy(model, draws, unmixed, members).empty());
+  CHECK(check_hierarchy(model, draws, {}).empty());
 }

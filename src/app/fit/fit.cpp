@@ -2,14 +2,15 @@
 #include "app/fit/fit.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "app/fit/advice.hpp"
 #include "app/fit/fit_checks.hpp"
+#include "app/fit/fit_preparation.hpp"
 #include "app/fit/hierarchies.hpp"
-#include "app/preflight/check_file.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
@@ -17,7 +18,6 @@
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
 #include "app/session/resolved.hpp"
-#include "app/session/search_near.hpp"
 #include "app/session/solver_record.hpp"
 #include "app/session/solver_refinement.hpp"
 #include "app/session/task_checkpoint.hpp"
@@ -29,8 +29,6 @@
 #include "inference/backend/checkpoint.hpp"
 #include "inference/evidence.hpp"
 #include "inference/table.hpp"
-#include "likelihood/first_rows.hpp"
-#include "search/hierarchy/standardised.hpp"
 #include "search/journal.hpp"
 #include "search/search.hpp"
 
@@ -56,6 +54,7 @@ class Fit {
                         ? independent_likelihood(session, what, data_, seed_)
                         : process_likelihood(session, what, data_, seed_)),
         model_(likelihood_->model()),
+        preparing_(session, task, what, data_, *likelihood_, backend_->objective_kind, checkpoint_),
         began_(std::chrono::steady_clock::now()) {
     checkpoint_.of_data(data_);
   }
@@ -131,47 +130,13 @@ class Fit {
     session_.notices << fmt::format("{}: sampling with {}: {}\n", task_.name, chosen_.backend, reason_);
   }
 
-  std::unique_ptr<Target> interruptible_target(SolverSettings const& solver) const {
-    return likelihood_->make_target(experiments_of(data_), solver, session_.interruptible());
-  }
-
-  // What a search of a long record begins with.
-  ShorterRecords shorter_records() const {
-    std::vector<Experiment> const whole = experiments_of(data_);
-    int const least = 4 * start_rows(what_.start);  // an estimated start is not all that a part is for
-    constexpr int most_refinements = 4;
-    return {most_scored_rows(whole), what_.refine_solver && model_.integrated() ? most_refinements : 0,
-            [this, whole, least](double share, int finer) {
-              FirstRows part = first_rows(whole, share, least);
-              return FirstPart{likelihood_->make_target(std::move(part.experiments), refined(preparation_.solver, finer),
-                                                        session_.interruptible()),
-                               part.share};
-            }};
-  }
-
-  static SolverSettings refined(SolverSettings solver, int times) {
-    for (; times > 0; --times) solver = solver.finer();
-    return solver;
-  }
-
-  // Where the search has followed the record with a finer solver than it began with, that is the coarsest to be tried.
-  SolverSettings coarsest(SearchResult const& found) {
-    if (found.finer == 0) return what_.solver;
-    SolverSettings const finer = refined(preparation_.solver, found.finer);
-    session_.notices << fmt::format(
-        "{}: the search uses {}, because with {} the parameters that fit the first rows no longer fit the whole record\n",
-        task_.name, accuracy(finer), accuracy(preparation_.solver));
-    preparation_.solver = finer;
-    return finer;
-  }
-
   // Whether a finer solver moves the draws.
   void check_draws_of(FitResult const& result) {
     accuracy_.reset();
     if (!model_.integrated() || result.interrupted || result.draws.total() < 2) return;
     SolverSettings const& solver = preparation_.solver;
-    accuracy_ = check_draws(*interruptible_target(solver), *interruptible_target(solver.finer()), result.draws, preparation_.modes,
-                            seed_, extra_);
+    accuracy_ = check_draws(*preparing_.target(solver), *preparing_.target(solver.finer()), result.draws, preparation_.modes, seed_,
+                            extra_);
   }
 
   // A solver that the guard has chosen, by modes, for draws that it moves after all. Where none was fine enough for the modes, none
@@ -188,7 +153,7 @@ class Fit {
   bool choose_again(SolverSettings const& finer, json const* steps) {
     Preparation again = preparation_;
     RunContext context = searching(again.ledger);
-    MakeTarget const make = [this](SolverSettings const& solver) { return interruptible_target(solver); };
+    MakeTarget const make = [this](SolverSettings const& solver) { return preparing_.target(solver); };
     auto const content = [&](json const& kept) -> json {
       return {{"preparation", store(preparation_)},
               {"again", {{"solver", write_solver(finer)}, {"ledger", checkpoint::encode(ledger_)}, {"journal", kept}}}};
@@ -223,92 +188,19 @@ class Fit {
   bool prepare(json const* stored) {
     json const* steps = nullptr;
     if (stored != nullptr) checkpoint_.reading([&] { steps = &stored->at("journal"); });
+    RunContext context = searching(preparation_.ledger);
     bool const prepared = checkpoint_.keep_steps(
         steps,
         [](json const& kept) -> json {
           return {{"journal", kept}};
         },
-        [this](Journal& journal) { return prepare(journal); });
+        [&](Journal& journal) {
+          context.journal = &journal;
+          return preparing_.run(context, preparation_);
+        });
     // What took so long that it has been kept on the way is kept at its end.
     if (prepared && checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
     return prepared;
-  }
-
-  // Search and, unless the user fixed it, the step. False: interrupted.
-  bool prepare(Journal& journal) {
-    MakeTarget const make = [this](SolverSettings const& solver) { return interruptible_target(solver); };
-    RunContext context = searching(preparation_.ledger);
-    context.journal = &journal;
-    Findings ahead = check_method(session_, what_);
-    for (Finding& each : check_prior_size(session_, what_, data_)) ahead.push_back(std::move(each));
-    print_data_findings(session_, task_, data_, model_);
-    print_findings(session_, task_, ahead);
-    preparation_.solver = what_.solver;
-    std::optional<SearchSolver> solver;
-    if (what_.refine_solver && model_.integrated()) {
-      solver = choose_search_solver(make, context);
-      if (!solver) return false;
-    }
-    if (ParameterSpace const* const space = hierarchies()) likelihood_->standardise(non_centred(*space));
-    auto const target = make(preparation_.solver);
-    SearchResult found = what_.near ? search_near(session_, *what_.near, *target, backend_->objective_kind, context)
-                                    : search(*target, backend_->objective_kind, context, shorter_records());
-    if (found.interrupted) return false;
-    if (found.failure) {
-      advise(situation(solver), *found.failure);
-      checkpoint_.drop();
-      throw UserError(no_result(task_, *found.failure));
-    }
-    SolverSettings const from = coarsest(found);
-    if (!follow_members(found, context)) return false;
-    preparation_.modes = std::move(found.modes);
-    preparation_.findings = std::move(found.findings);
-    preparation_.findings.insert(preparation_.findings.end(), ahead.begin(), ahead.end());
-    if (solver)
-      for (Finding& each : stiff_prior(*solver)) preparation_.findings.push_back(std::move(each));
-    print_findings(session_, task_, likelihood_->check_ranges(preparation_.modes.front().declared, preparation_.solver));
-    if (what_.refine_solver && !refine_solver(session_, task_, make, backend_->objective_kind, from, preparation_, context))
-      return false;
-    for (Finding& each : preparation_.findings) advise(situation(solver), each);
-    return true;
-  }
-
-  // Where members of hierarchies may have other coordinates than declared; else null.
-  ParameterSpace const* hierarchies() const {
-    return backend_->objective_kind == ObjectiveKind::posterior ? likelihood_->with_hierarchies() : nullptr;
-  }
-
-  // From the coordinates of members that the search has begun with to those that suit the data. False: interrupted.
-  bool follow_members(SearchResult& found, RunContext& context) {
-    ParameterSpace const* const space = hierarchies();
-    if (space == nullptr) return true;
-    auto const make = [&](std::vector<MemberCoordinate> const& members) {
-      likelihood_->standardise(members);
-      return interruptible_target(preparation_.solver);
-    };
-    StandardisedSearch again = sysid::follow_members(*space, std::move(found), make, context);
-    found = std::move(again.found);
-    if (found.interrupted || context.stop_requested()) return false;
-    preparation_.standardised = std::move(again.coordinates);
-    likelihood_->standardise(preparation_.standardised);
-    if (!preparation_.standardised.empty())
-      session_.notices << task_.name << ": " << standardised_notice(*space, preparation_.standardised);
-    return true;
-  }
-
-  FitSituation situation(std::optional<SearchSolver> const& search) const {
-    return {model_, data_, preparation_.solver, preparation_.ledger, search ? &*search : nullptr};
-  }
-
-  // Empty: interrupted.
-  std::optional<SearchSolver> choose_search_solver(MakeTarget const& make, RunContext const& context) {
-    SearchSolver const search = search_solver(make, what_.solver, seed_, context.interrupted, context.journal);
-    if (context.stop_requested()) return std::nullopt;
-    if (search.solver != what_.solver)
-      session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws overflow\n", task_.name,
-                                      accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);
-    preparation_.solver = search.solver;
-    return search;
   }
 
   ExitCode finish(FitResult result) {
@@ -363,13 +255,18 @@ class Fit {
     for (auto const& [name, value] : settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("start_state", start_text(what_.start));
     if (!preparation_.standardised.empty())
-      report.settings.emplace_back("non_centred", names_of(*likelihood_->with_hierarchies(), preparation_.standardised));
+      report.settings.emplace_back("non_centred", fmt::format("{}", fmt::join(non_centred(), ", ")));
     if (what_.near) report.settings.emplace_back("search", search_text(session_.file, what_));
     if (model_.integrated()) add_solver(preparation_.solver, report.settings);
     if (model_.dynamics == Dynamics::discrete)
       report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
     for (auto const& each : likelihood_->settings()) report.settings.push_back(each);
     report.resolved_text = resolved_fit(session_, task_, chosen_, settings, preparation_.solver, seed_);
+  }
+
+  // As declared, the parameters whose members are sampled relative to their population.
+  std::vector<std::string> non_centred() const {
+    return declared_names(parameters_of(*likelihood_->with_hierarchies(), preparation_.standardised));
   }
 
   Session& session_;
@@ -384,6 +281,7 @@ class Fit {
   std::vector<ExperimentData> data_;
   std::unique_ptr<FitLikelihood> likelihood_;
   Model const& model_;
+  FitPreparation preparing_;
   std::chrono::steady_clock::time_point began_;
   Preparation preparation_;
   Ledger ledger_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "app/fit/hierarchies.hpp"
 #include "app/session/fit_end.hpp"
 #include "diagnostics/bound_check.hpp"
 #include "diagnostics/input_checks.hpp"
@@ -90,7 +91,12 @@ std::string without_hierarchy(FinishedFit const& fit) {
   return any ? "" : "no parameter is estimated per experiment";
 }
 
-Findings hierarchy(FinishedFit& fit) { return check_hierarchy(fit.likelihood.model(), fit.result.draws, fit.report.findings); }
+Findings hierarchy(FinishedFit& fit) {
+  std::vector<std::string> non_centred;
+  if (ParameterSpace const* const space = fit.likelihood.with_hierarchies())
+    non_centred = parameters_of(*space, fit.preparation.standardised);
+  return check_hierarchy(fit.likelihood.model(), fit.result.draws, fit.report.findings, non_centred);
+}
 
 Findings failed_solves(FinishedFit& fit) { return failure_findings(fit.sampling); }
 

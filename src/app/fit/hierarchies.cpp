@@ -1,4 +1,4 @@
-// Names of members, each parameter of the model once.
+// Names of members, each parameter of the model once; a vector of parameters is one.
 #include "app/fit/hierarchies.hpp"
 
 #include <fmt/format.h>
@@ -7,7 +7,6 @@
 #include <algorithm>
 
 namespace sysid {
-namespace {
 
 std::vector<std::string> parameters_of(ParameterSpace const& space, std::vector<MemberCoordinate> const& standardised) {
   std::vector<std::string> names;
@@ -20,17 +19,20 @@ std::vector<std::string> parameters_of(ParameterSpace const& space, std::vector<
   return names;
 }
 
-}  // namespace
-
-std::string names_of(ParameterSpace const& space, std::vector<MemberCoordinate> const& standardised) {
-  return fmt::format("{}", fmt::join(parameters_of(space, standardised), ", "));
+std::vector<std::string> declared_names(std::vector<std::string> const& parameters) {
+  std::vector<std::string> names;
+  for (std::string const& parameter : parameters) {
+    std::string name = parameter.substr(0, parameter.find('['));
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+  }
+  return names;
 }
 
-std::string standardised_notice(ParameterSpace const& space, std::vector<MemberCoordinate> const& standardised) {
-  std::vector<std::string> const names = parameters_of(space, standardised);
-  return fmt::format("`{}` {} sampled relative to {} (non-centred), because the data alone do not determine {} much better\n",
-                     fmt::join(names, "`, `"), names.size() == 1 ? "is" : "are",
-                     names.size() == 1 ? "its population" : "their populations", names.size() == 1 ? "it" : "them");
+std::string standardised_notice(std::vector<std::string> const& names) {
+  bool const one = names.size() == 1;
+  return fmt::format("`{}` {} sampled relative to {} (non-centred), because the data determine {} weakly\n",
+                     fmt::join(names, "`, `"), one ? "is" : "are", one ? "the population" : "their populations",
+                     one ? "it" : "them");
 }
 
 }  // namespace sysid

@@ -7,10 +7,13 @@
 
 namespace sysid {
 
-/// The names of the model's parameters that such members are of: "k, c".
-std::string names_of(ParameterSpace const& space, std::vector<MemberCoordinate> const& standardised);
+/// The parameters of the model that such members are of: "k", "c[1]".
+std::vector<std::string> parameters_of(ParameterSpace const& space, std::vector<MemberCoordinate> const& standardised);
+
+/// The names under which these are declared, each once: "k", "c".
+std::vector<std::string> declared_names(std::vector<std::string> const& parameters);
 
 /// The notice about them; a whole line.
-std::string standardised_notice(ParameterSpace const& space, std::vector<MemberCoordinate> const& standardised);
+std::string standardised_notice(std::vector<std::string> const& names);
 
 }  // namespace sysid

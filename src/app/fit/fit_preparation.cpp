@@ -1,0 +1,138 @@
+// The steps before sampling, in their order.
+#include "app/fit/fit_preparation.hpp"
+
+#include <fmt/format.h>
+
+#include "app/fit/advice.hpp"
+#include "app/fit/hierarchies.hpp"
+#include "app/preflight/check_file.hpp"
+#include "app/session/preconditions.hpp"
+#include "app/session/reporting.hpp"
+#include "app/session/search_near.hpp"
+#include "app/session/solver_refinement.hpp"
+#include "data/start_rule.hpp"
+#include "likelihood/first_rows.hpp"
+#include "search/hierarchy/standardised.hpp"
+
+namespace sysid {
+namespace {
+
+SolverSettings refined(SolverSettings solver, int times) {
+  for (; times > 0; --times) solver = solver.finer();
+  return solver;
+}
+
+}  // namespace
+
+FitPreparation::FitPreparation(Session& session, Task const& task, FitTask const& what, std::vector<ExperimentData> const& data,
+                               FitLikelihood& likelihood, ObjectiveKind objective_kind, TaskCheckpoint& checkpoint)
+    : session_(session),
+      task_(task),
+      what_(what),
+      data_(data),
+      likelihood_(likelihood),
+      objective_kind_(objective_kind),
+      checkpoint_(checkpoint) {}
+
+std::unique_ptr<Target> FitPreparation::target(SolverSettings const& solver) const {
+  return likelihood_.make_target(experiments_of(data_), solver, session_.interruptible());
+}
+
+bool FitPreparation::run(RunContext& context, Preparation& preparation) {
+  Model const& model = likelihood_.model();
+  Findings ahead = check_method(session_, what_);
+  for (Finding& each : check_prior_size(session_, what_, data_)) ahead.push_back(std::move(each));
+  print_data_findings(session_, task_, data_, model);
+  print_findings(session_, task_, ahead);
+
+  preparation.solver = what_.solver;
+  std::optional<SearchSolver> solver;
+  if (what_.refine_solver && model.integrated()) {
+    solver = choose_search_solver(context, preparation);
+    if (!solver) return false;
+  }
+  FitSituation const situation{model, data_, preparation.solver, preparation.ledger, solver ? &*solver : nullptr};
+  if (ParameterSpace const* const space = hierarchies()) likelihood_.standardise(non_centred(*space));
+  auto const searched = target(preparation.solver);
+  SearchResult found = what_.near ? search_near(session_, *what_.near, *searched, objective_kind_, context)
+                                  : search(*searched, objective_kind_, context, shorter_records(preparation.solver));
+  if (found.interrupted) return false;
+  if (found.failure) {
+    advise(situation, *found.failure);
+    checkpoint_.drop();
+    throw UserError(no_result(task_, *found.failure));
+  }
+  SolverSettings const from = coarsest(found, preparation);
+  if (!follow_members(found, context, preparation)) return false;
+  preparation.modes = std::move(found.modes);
+  preparation.findings = std::move(found.findings);
+  preparation.findings.insert(preparation.findings.end(), ahead.begin(), ahead.end());
+  if (solver)
+    for (Finding& each : stiff_prior(*solver)) preparation.findings.push_back(std::move(each));
+  print_findings(session_, task_, likelihood_.check_ranges(preparation.modes.front().declared, preparation.solver));
+  MakeTarget const make = [this](SolverSettings const& tried) { return target(tried); };
+  if (what_.refine_solver && !refine_solver(session_, task_, make, objective_kind_, from, preparation, context)) return false;
+  for (Finding& each : preparation.findings) advise(situation, each);
+  return true;
+}
+
+// Empty: interrupted.
+std::optional<SearchSolver> FitPreparation::choose_search_solver(RunContext const& context, Preparation& preparation) {
+  MakeTarget const make = [this](SolverSettings const& tried) { return target(tried); };
+  SearchSolver const search = search_solver(make, what_.solver, context.seed, context.interrupted, context.journal);
+  if (context.stop_requested()) return std::nullopt;
+  if (search.solver != what_.solver)
+    session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws overflow\n", task_.name,
+                                    accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);
+  preparation.solver = search.solver;
+  return search;
+}
+
+// What a search of a long record begins with. solver: that of the search.
+ShorterRecords FitPreparation::shorter_records(SolverSettings const& solver) const {
+  std::vector<Experiment> const whole = experiments_of(data_);
+  int const least = 4 * start_rows(what_.start);  // an estimated start is not all that a part is for
+  constexpr int most_refinements = 4;
+  return {most_scored_rows(whole), what_.refine_solver && likelihood_.model().integrated() ? most_refinements : 0,
+          [this, whole, least, solver](double share, int finer) {
+            FirstRows part = first_rows(whole, share, least);
+            return FirstPart{likelihood_.make_target(std::move(part.experiments), refined(solver, finer), session_.interruptible()),
+                             part.share};
+          }};
+}
+
+// Where the search has followed the record with a finer solver than it began with, that is the coarsest to be tried.
+SolverSettings FitPreparation::coarsest(SearchResult const& found, Preparation& preparation) {
+  if (found.finer == 0) return what_.solver;
+  SolverSettings const finer = refined(preparation.solver, found.finer);
+  session_.notices << fmt::format(
+      "{}: the search uses {}, because with {} the parameters that fit the first rows no longer fit the whole record\n", task_.name,
+      accuracy(finer), accuracy(preparation.solver));
+  preparation.solver = finer;
+  return finer;
+}
+
+// Where members of hierarchies may have other coordinates than declared; else null.
+ParameterSpace const* FitPreparation::hierarchies() const {
+  return objective_kind_ == ObjectiveKind::posterior ? likelihood_.with_hierarchies() : nullptr;
+}
+
+// From the coordinates of members that the search has begun with to those that suit the data. False: interrupted.
+bool FitPreparation::follow_members(SearchResult& found, RunContext& context, Preparation& preparation) {
+  ParameterSpace const* const space = hierarchies();
+  if (space == nullptr) return true;
+  auto const make = [&](std::vector<MemberCoordinate> const& members) {
+    likelihood_.standardise(members);
+    return target(preparation.solver);
+  };
+  StandardisedSearch again = sysid::follow_members(*space, std::move(found), make, context);
+  found = std::move(again.found);
+  if (found.interrupted || context.stop_requested()) return false;
+  preparation.standardised = std::move(again.coordinates);
+  likelihood_.standardise(preparation.standardised);
+  if (!preparation.standardised.empty())
+    session_.notices << task_.name << ": " << standardised_notice(declared_names(parameters_of(*space, preparation.standardised)));
+  return true;
+}
+
+}  // namespace sysid
