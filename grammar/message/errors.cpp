@@ -92,8 +92,9 @@ Diagnostic chained_comparison(Token const& first, Token const& second) {
   return out;
 }
 
-Diagnostic dot_without_digits(Span number, std::string_view repaired) {
-  return error("E1107", number, "a number needs digits on both sides of its dot", fmt::format("write `{}`", repaired));
+Diagnostic dot_without_digits(Span number, std::string_view written, std::string_view repaired) {
+  return error("E1107", number, "a number needs digits on both sides of its dot",
+               fmt::format("write `{}` in place of `{}`", repaired, written));
 }
 
 Diagnostic fortran_exponent(Span number, std::string_view digits, std::string_view exponent) {

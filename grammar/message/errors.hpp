@@ -27,7 +27,7 @@ Diagnostic no_operator_between(Token const& left, Token const& right, std::strin
 /// E1106: `a < b < c`.
 Diagnostic chained_comparison(Token const& first, Token const& second);
 /// E1107: `1.` and `.5`; `repaired` is how it is written.
-Diagnostic dot_without_digits(Span number, std::string_view repaired);
+Diagnostic dot_without_digits(Span number, std::string_view written, std::string_view repaired);
 /// E1129: `1d-3`; digits: `1`, exponent: `d-3`.
 Diagnostic fortran_exponent(Span number, std::string_view digits, std::string_view exponent);
 /// E1108

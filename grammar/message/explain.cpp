@@ -211,7 +211,8 @@ class Failure {
     if (verb != nullptr && verb->is("=") && words::contains(words::model_statements, found().text))
       diagnostic.help = fmt::format("outside of blocks a task is written `NAME = fit ...`: remove `{}`", found().text);
     bool const module = words::translated(words::foreign_items(), found().text) == "use";
-    if (module && sign != nullptr && is_word(*sign)) diagnostic.help = fmt::format("write `use {}`", sign->text);
+    if (module && sign != nullptr && is_word(*sign))
+      diagnostic.help = "write `use NAME` for a module of the library or of this folder; functions such as `sqrt` need none";
     return diagnostic;
   }
 

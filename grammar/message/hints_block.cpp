@@ -110,10 +110,10 @@ std::string in_split(Gap const& gap) {
   if (!gap.begins_with("split") || gap.found == nullptr) return {};
   if (gap.found->is("and") || (gap.found->is("=") && gap.find("and") < gap.at)) {
     std::size_t const both = gap.find("and");
-    return fmt::format("separate parts by commas: `{}, {}`", gap.text(0, both), gap.text(both + 1, gap.statement.size()));
+    return fmt::format("separate ranges by commas: `{}, {}`", gap.text(0, both), gap.text(both + 1, gap.statement.size()));
   }
   bool const apart = gap.wanted == wanted::operator_between && is_word(gap.found) && gap.next() != nullptr && gap.next()->is("=");
-  if (apart) return fmt::format("separate parts by commas: `{}, {}`", gap.text(0, gap.at), gap.rest());
+  if (apart) return fmt::format("separate ranges by commas: `{}, {}`", gap.text(0, gap.at), gap.rest());
   return {};
 }
 
@@ -177,7 +177,7 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
   Token const& found = *gap.found;
   bool const ends = gap.wanted == wanted::preposition_or_end || gap.wanted == wanted::with_or_end;
   if (gap.wanted == "the name of a data block" && found.kind == TokenKind::text)
-    return "name a data block of this file: `to DATA`; the file is named in it";
+    return "name a data block: `to DATA`; the CSV file is named inside that block";
   if (!ends || gap.before() == nullptr) return {};
   std::size_t const with = std::min(gap.find("with"), gap.statement.size());
   if (gap.wanted == wanted::preposition_or_end && found.is("=") && gap.at == verb + 2 && gap.next() != nullptr)

@@ -164,7 +164,7 @@ class Scanner {
       mistake(errors::number_out_of_range(from(begin), number));
     if (peek() == '.' && peek(1) != '.') {
       ++at_;
-      mistake(errors::dot_without_digits(from(begin), with_digits_behind(number)));
+      mistake(errors::dot_without_digits(from(begin), text_.substr(begin, at_ - begin), with_digits_behind(number)));
     }
   }
 
@@ -231,7 +231,9 @@ class Scanner {
     if (symbol == '.' && words::is_digit(peek())) {
       bool const after_operand = begin > 0 && (words::continues_name(text_[begin - 1]) || text_[begin - 1] == '\'');
       digits();
-      if (!after_operand) mistake(errors::dot_without_digits(from(begin), "0" + std::string(text_.substr(begin, at_ - begin))));
+      if (!after_operand)
+        mistake(errors::dot_without_digits(from(begin), text_.substr(begin, at_ - begin),
+                                           "0" + std::string(text_.substr(begin, at_ - begin))));
     } else if (one_character_operators.find(symbol) == std::string_view::npos) {
       mistake(errors::stray_byte(from(begin), static_cast<unsigned char>(symbol)));
     }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/system/files.hpp"
+#include "core/text/words.hpp"
 #include "load/load.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/words.hpp"
@@ -57,10 +58,9 @@ std::string refusal(Reading const& reading, Occurrence const& occurrence) {
 std::string wrong_name(std::string const& name) {
   bool const good = !name.empty() && words::begins_name(name.front()) &&
                     std::all_of(name.begin(), name.end(), words::continues_name) && !words::contains(words::reserved, name);
-  return good ? ""
-              : fmt::format(
-                    "`{}` is not a valid name: use letters, digits and _, a letter first, and none of if then else and or not",
-                    name);
+  if (good) return "";
+  return fmt::format("`{}` is not a valid name: use letters, digits and `_`, and begin with a letter or `_`; {} are reserved", name,
+                     quoted({words::reserved.begin(), words::reserved.end()}));
 }
 
 /// The file itself and those beside it that use it or one of its modules: what a declaration may be named in.

@@ -44,7 +44,7 @@ Words function_words() {
     all.push_back({WordKind::function, std::string(row.name), std::string(row.usage), std::string(row.summary)});
   // Not in a table: they are leaves of the graph, not functions of values (check/expression/lags.cpp).
   for (auto const& [name, usage, summary] :
-       {std::tuple{"lag", "lag(e, k)", "e at k samples before, in discrete time"},
+       {std::tuple{"lag", "lag(e, k)", "the value of e, k samples earlier, in discrete time"},
         {"lags", "lags(e, 1..10)", "past samples, as inputs of an unknown function"},
         {"measured", "measured(channel)", "measured samples of the channel"},
         {"predicted", "predicted(channel)", "prediction of the channel"},

@@ -243,7 +243,8 @@ std::string what_happens(SolverCheck const& check, bool conditional) {
                          worst.finer_sd, unit, worst.sd, unit);
     }
     case SolverCheck::Outcome::modes_merge:
-      return fmt::format("the {} modes that were found {} {}", check.modes, verb("are", "would be"), check.apart);
+      return fmt::format("only {} of the {} modes that were found {} distinct", check.apart, check.modes,
+                         verb("remain", "would remain"));
     case SolverCheck::Outcome::fails:
       return check.failed < 1
                  ? fmt::format("the simulations of {:.0f} % of the draws {}", 100 * check.failed, verb("fail", "would fail"))

@@ -56,11 +56,10 @@ std::string sticking_advice(Model const& model, std::vector<ExperimentData> cons
     std::string const scale = size ? fmt::format("{:.6g}{}", rounded(part * *size), unit) : "vs";
     return fmt::format(
         "where the motion sticks, `sign({0})` switches again and again, so that an adaptive solver does not get past it: write "
-        "`tanh({0}/{1})` in its "
-        "place{2}",
+        "`tanh({0}/{1})` in its place{2}",
         state.name, size && !unit.empty() ? "(" + scale + ")" : scale,
-        size ? fmt::format(", the scale a hundredth of the size of `{}` in this record", state.name)
-             : fmt::format(", vs a hundredth of the usual size of `{}`", state.name));
+        size ? fmt::format(", where the scale is a hundredth of the size of `{}` in this record", state.name)
+             : fmt::format(", where `vs` is a hundredth of the usual size of `{}`", state.name));
   }
   return {};
 }

@@ -49,9 +49,11 @@ Choice choose(Target const& target, std::vector<Mode> const& modes, std::uint64_
   if (!modes.front().flat.empty())
     return {"mh", "the posterior is flat in a direction at its mode, and moves along ridges follow it"};
   if (target.derivatives() == DerivativeSource::differences)
-    return {"mh",
-            fmt::format("it needs no derivatives, which this model has by differences alone: {:.0f} simulations for each gradient",
-                        target.derivative_cost())};
+    return {
+        "mh",
+        fmt::format(
+            "it needs no derivatives; for this model they would be finite differences, with {:.0f} simulations for each gradient",
+            target.derivative_cost())};
   if (count <= most_for_walks)
     return {"mh", fmt::format("one well-defined mode in {} parameters, where its moves are cheapest", count)};
   double const worth = worth_of_normals(target, modes, seed, ledger);

@@ -44,7 +44,9 @@ McmcRefinement refine_with_chains(Session& session, std::vector<Candidate> const
       continue;
     }
     if (posteriors[k].given_up) {
-      missed("the search for its mode was stopped: by the likelihood, another model is at least exp(30) times as probable");
+      missed(
+          "the search for its mode was stopped, because according to the likelihood another model is at least exp(30) times as "
+          "probable");
       continue;
     }
     auto const target = likelihood_target(session, candidates[k], posteriors[k].solver, session.abandonable());

@@ -7,8 +7,7 @@ namespace sysid::errors {
 
 Diagnostic candidate_twice(Span second, Span first, std::string const& model) {
   if (second == first)
-    return about({model},
-                 error("E6501", second, fmt::format("`{}` is listed twice by this candidate", model), "list each number once"));
+    return about({model}, error("E6501", second, fmt::format("`{}` is listed twice on this line", model), "list each number once"));
   return about({model}, conflict("E6501", second, "again", first, "first here",
                                  fmt::format("`{}` is listed as a candidate twice: its probability would count twice", model),
                                  "list each model once"));
@@ -20,9 +19,9 @@ Diagnostic probabilities(ast::Name const& set, double sum, int open, int models)
         "E6502", set.span,
         fmt::format("the probabilities given here sum to {:.10g}: no probability remains for {}", sum,
                     open == 1 ? std::string("the last model") : fmt::format("the {} models without a stated probability", open)),
-        "a stated probability applies to each model of its candidate; models without a stated probability share the rest");
+        "a probability written on a line applies to each model of that line; models without one share the rest");
   return error("E6502", set.span, fmt::format("the probabilities of these {} models sum to {:.10g}, not to 1", models, sum),
-               "a stated probability applies to each model of its candidate; models without a stated probability share the rest");
+               "a probability written on a line applies to each model of that line; models without one share the rest");
 }
 
 Diagnostic not_a_probability(Span span, double value) {

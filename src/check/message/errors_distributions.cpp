@@ -119,7 +119,8 @@ Diagnostic unknown_argument(ast::Name const& argument, std::string const& distri
                        "the mean itself is median*exp(sd^2/2)"));
   return about({distribution, argument.text},
                error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
-                     guess_or(argument_synonyms, argument.text, known, fmt::format("its arguments are {}", quoted(known)))));
+                     guess_or(argument_synonyms, argument.text, known,
+                              fmt::format("{} {}", known.size() == 1 ? "its argument is" : "its arguments are", quoted(known)))));
 }
 
 Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other) {
@@ -173,7 +174,9 @@ Diagnostic too_many_arguments(ast::Call const& call, ast::Argument const& argume
   return about({call.function.text},
                error("E2107", argument.span, fmt::format("`{}` does not take this many arguments", call.function.text),
                      (point.empty() ? "" : point + "; ") +
-                         (signature.empty() ? "it takes none" : fmt::format("its arguments are {}", quoted(signature)))));
+                         (signature.empty() ? "it takes none"
+                                            : fmt::format("{} {}", signature.size() == 1 ? "its argument is" : "its arguments are",
+                                                          quoted(signature)))));
 }
 
 Diagnostic not_a_noise(ast::Call const& call, Names const& known) {

@@ -40,7 +40,8 @@ Diagnostic start_off_constraint(Span equation, Span initial) {
                     "the initial values do not satisfy this equation",
                     Label{equation, {}},
                     {},
-                    "write the initial values as expressions of the parameters, so that it and its time derivative always hold"};
+                    "write the initial values as expressions of the parameters, so that this equation and its time derivative hold "
+                    "for all values of the parameters"};
   result.secondary.push_back({initial, "given here"});
   return result;
 }

@@ -247,7 +247,8 @@ Diagnostic unit_exponent(Span span) {
 }
 
 Diagnostic list_here(Span span) {
-  return error("E2013", span, "a list cannot be used in an expression", "parentheses with a comma make a list; remove the comma");
+  return error("E2013", span, "a list cannot be used in an expression",
+               "parentheses with a comma make a list: write a single value");
 }
 
 Diagnostic number_of_other_kind(Span span, Subject const& what, Unit const& given, Unit const& wanted) {

@@ -48,18 +48,22 @@ Diagnostic unknown_kernel(ast::Name const& name, Names const& known) {
 Diagnostic not_an_input_of_process(Span span, std::string const& given, std::string const& process, Names const& inputs) {
   Names names{process};
   if (!given.empty()) names.insert(names.begin(), given);
-  return about(
-      names, error("E3204", span,
-                   given.empty() ? "the first arguments of a kernel are the names of its inputs"
-                                 : fmt::format("`{}` is not an input of `{}`", given, process),
-                   guess_or(given, inputs, fmt::format("its inputs are {}; hyper-parameters are given by name", quoted(inputs)))));
+  return about(names, error("E3204", span,
+                            given.empty() ? "the first arguments of a kernel are the names of its inputs"
+                                          : fmt::format("`{}` is not an input of `{}`", given, process),
+                            guess_or(given, inputs,
+                                     fmt::format("{} {}; hyper-parameters are given by name",
+                                                 inputs.size() == 1 ? "its input is" : "its inputs are", quoted(inputs)))));
 }
 Diagnostic kernel_input_twice(Span span, std::string const& input) {
   return about({input}, error("E3204", span, fmt::format("the kernel has the input `{}` twice", input), "list each input once"));
 }
 Diagnostic kernel_of_one_input(Span span, std::string const& kernel, std::size_t given) {
-  return about({kernel}, error("E3205", span, fmt::format("`{}` is a kernel of one input, but has {} here", kernel, given),
-                               "name one: `periodic(day, amplitude = s, ...)`; multiply kernels for several inputs"));
+  return about(
+      {kernel},
+      error("E3205", span, fmt::format("`{}` is a kernel of one input, but has {} here", kernel, given),
+            fmt::format("name the one input that it uses: `{}(INPUT, ...)`; for several inputs multiply kernels of one input each",
+                        kernel)));
 }
 Diagnostic hyper_parameter_count(Span span, std::string const& name, std::size_t given, std::size_t wanted) {
   return about({name},
@@ -184,8 +188,9 @@ Diagnostic process_out_of_place(Span span, std::string const& what) {
 }
 Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel) {
   return about({name, channel}, error("E3210", span, fmt::format("`{}` must be added to the mean of `{}`", name, channel),
-                                      "put a constant factor into its amplitude; products with other quantities and nonlinear "
-                                      "functions of it are not supported"));
+                                      "put a positive factor into its amplitude, and write `+` for `-`, which is the same for a "
+                                      "function of mean zero; products with "
+                                      "other quantities and nonlinear functions of it are not supported"));
 }
 Diagnostic process_added_twice(Span span, std::string const& name, std::string const& channel) {
   return about({name, channel},

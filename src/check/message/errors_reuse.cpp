@@ -132,7 +132,7 @@ Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) 
 Diagnostic candidate_range(Span span, long models, std::size_t most) {
   return error("E2809", span,
                models < 1 ? "this range is empty: it ends before it begins"
-                          : fmt::format("this candidate has {} models, more than a set can contain", models),
+                          : fmt::format("this line has {} models, more than a set can contain", models),
                models < 1 ? "write the smaller number first: `1..4`" : fmt::format("keep at most {}", most));
 }
 Diagnostic discrete_part(Span span, std::string const& part, Span declaration) {

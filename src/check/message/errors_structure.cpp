@@ -20,12 +20,13 @@ Diagnostic algebraic_state(Span declaration, std::string const& state) {
 
 Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) {
   return error("E3003", equation.span, "one equation too many: the others already determine every state",
-               fmt::format("the states are {}; delete this equation, or declare the state that it determines", quoted(states)));
+               fmt::format("{} {}; delete this equation, or declare the state that it determines",
+                           states.size() == 1 ? "the state is" : "the states are", quoted(states)));
 }
 
 Diagnostic undetermined(Span declaration, std::string const& unknown) {
   return about(with_bare(unknown), error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
-                                         "change one of the equations: in the highest derivatives it follows from the others"));
+                                         "change one of the equations: in the highest derivatives they are linearly dependent"));
 }
 
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {

@@ -168,7 +168,9 @@ Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::stri
 
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
   std::string help = guess_or(option_synonyms, option, known, known.empty() ? std::string() : place_of_option(option));
-  if (help.empty()) help = known.empty() ? std::string("it has none") : fmt::format("its options are {}", quoted(known));
+  if (help.empty())
+    help = known.empty() ? std::string("it has none")
+                         : fmt::format("{} {}", known.size() == 1 ? "its option is" : "its options are", quoted(known));
   return about({task, option}, error("E6002", span, fmt::format("`{}` has no option `{}`", task, option), std::move(help)));
 }
 
@@ -220,7 +222,7 @@ Diagnostic unknown_backend(ast::Name const& name, Names const& known) {
 
 Diagnostic data_missing(ast::Task const& task, std::string const& preposition) {
   return error("E6009", task.verb.span, fmt::format("this {} has no data", task.verb.text),
-               fmt::format("add `{} DATA` or `{} DATA.PART`", preposition, preposition));
+               fmt::format("add `{} DATA` or `{} DATA.RANGE`", preposition, preposition));
 }
 
 Diagnostic data_unused(ast::Task const& task, Span data) {

@@ -20,7 +20,8 @@ constexpr TaskOptionRow rows[] = {
      "where the search for modes starts: at draws of the prior, or where an earlier fit ended", "everywhere near"},
     {"seed", "seed = 1", "seed of all random numbers; if not given, one is drawn and printed", {}},
     {"noise", "noise = 1 [percent]",
-     "noise of the simulated channels: a percentage of each channel's standard deviation without noise, or that of the model",
+     "noise of the simulated channels: a percentage of each channel's standard deviation without noise, or `model`: the noise that "
+     "the model declares",
      "model"},
     {"values", "values(m = 1, k = 1e4)", "values of parameters with a prior, in their declared units", {}},
     {"input", "input x = gaussian(sd = 10)", "the signal of an input", {}},

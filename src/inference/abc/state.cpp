@@ -140,7 +140,7 @@ State restore(json const& stored, SelectionTarget const& candidates, Ledger& led
         {departure.at(0).get<int>(), departure.at(1).get<bool>(), restore_particles(departure.at(2), candidates.dimension(m))});
     State::Departure const& last = state.departures.back();
     if (last.population < (last.by_chance ? 1 : 0) || last.population > state.last.number)
-      throw checkpoint::Mismatch("a model has left in a population that was not");
+      throw checkpoint::Mismatch("a model died in a population that does not exist");
   }
   ledger = checkpoint::decode_ledger(stored.at("ledger"));
   return state;

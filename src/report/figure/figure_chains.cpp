@@ -159,8 +159,9 @@ Figure rank_figure(Draws const& draws) {
   for (std::size_t i = 0; i < count; ++i) drawing.plots.push_back(rank_plot(draws, i, layout.multiples.panel(i, {48, 10, 44, 8})));
   Figure out{"ranks", "Rank plots", "", script(drawing), Topic::chains};
   out.caption =
-      "Rank plot: how often the draws of each chain fall into each twentieth of all draws (ranks as fractions). Converged chains "
-      "are level and inside the band, which holds for independent draws. A slope shows a chain at another level than the rest; a "
+      "Rank plot: all draws are sorted by value and divided into twenty equal groups; the plot shows how many draws of each chain "
+      "fall into each group (ranks as fractions). Converged chains are level and inside the band, which holds for independent "
+      "draws. A slope shows a chain at another level than the rest; a "
       "hump shows a chain with another spread." +
       multiples_excluded(draws.names.size());
   return out;

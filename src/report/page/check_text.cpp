@@ -117,9 +117,9 @@ std::string failures_text(PriorPage const& prior) {
   if (!prior.explicit_solver.empty()) text += fmt::format(", {} with {}", prior.failed_explicit, prior.explicit_solver);
   if (prior.stiff_tried > 0)
     text += fmt::format(", {}{} with {}", prior.stiff_tried < prior.stiff_left ? "about " : "", prior.failed, prior.stiff_solver);
-  return text + fmt::format(": {} for {} of them",
-                            prior.spent ? "more steps between two samples are needed" : "the steps are too long",
-                            prior.failed_as_stated - prior.failed);
+  int const curable = prior.failed_as_stated - prior.failed;
+  return text + fmt::format(": {} of these {} fail{} only because {}", curable, prior.failed_as_stated, curable == 1 ? "s" : "",
+                            prior.spent ? "more steps between two samples are needed" : "the steps are too long");
 }
 
 std::string prior_text(PriorPage const& prior, std::string const& time_unit, double time_scale) {

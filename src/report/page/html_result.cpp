@@ -28,7 +28,7 @@ std::string cell_html(std::string const& text, std::string const& column) {
 std::string outside_words(PriorInfo const& prior, double middle) {
   double const width = *prior.q95 - *prior.q5, beyond = std::max(*prior.q5 - middle, middle - *prior.q95);
   if (!(beyond > 0)) return "";
-  return fmt::format("{} the prior's 90 % interval, by {} of its width", middle > *prior.q95 ? "above" : "below",
+  return fmt::format("{} the prior's 90 % interval, by {} times its width", middle > *prior.q95 ? "above" : "below",
                      pretty_number(significant(beyond / width, 2)));
 }
 
