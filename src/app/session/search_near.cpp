@@ -28,36 +28,59 @@ std::vector<int> columns_there(Target const& target, Draws const& earlier) {
   return columns;
 }
 
+/// Whether the prior of now allows each of these values [P x W], declared, beside others that are drawn from it: a value outside
+/// its bounds has no place on their scale.
+LaneArray allowed(Target const& target, LaneArray const& values, LaneArray const& drawn) {
+  int const count = values.width();
+  LaneArray allowed(target.dimension(), count), theta(target.dimension(), count);
+  for (int p = 0; p < target.dimension(); ++p) {
+    LaneArray beside = drawn;
+    std::copy(values.row(p).begin(), values.row(p).end(), beside.row(p).begin());
+    target.unconstrain(beside, theta);
+    for (int w = 0; w < count; ++w) allowed(p, w) = std::isfinite(theta(p, w)) ? 1 : 0;
+  }
+  return allowed;
+}
+
 }  // namespace
 
-SearchResult search_near(Session& session, int earlier, Target const& target, ObjectiveKind objective_kind, RunContext& context) {
-  Draws const& draws = fitted_model(session, earlier).draws;
-  std::vector<int> const columns = columns_there(target, draws);
+LaneArray starts_near(Target const& target, Draws const& earlier, std::uint64_t seed) {
+  std::vector<int> const columns = columns_there(target, earlier);
   auto const coefficient = [&](int p) { return target.parameters()[static_cast<std::size_t>(p)].coefficient; };
   bool something_new = false;
   for (int p = 0; p < target.dimension(); ++p)
     something_new = something_new || (columns[static_cast<std::size_t>(p)] < 0 && !coefficient(p));
   int const count = something_new ? starts_with_something_new : starts_where_all_is_known;
-  LaneArray prior(target.dimension(), count), declared(target.dimension(), count), starts(target.dimension(), count);
-  target.sample_prior({context.seed, Purpose::start, 0, near_step}, prior);
+  LaneArray prior(target.dimension(), count), drawn(target.dimension(), count), starts(target.dimension(), count);
+  target.sample_prior({seed, Purpose::start, 0, near_step}, prior);
   // A function that the earlier model had not is none at the start.
   for (int p = 0; p < target.dimension(); ++p)
     if (columns[static_cast<std::size_t>(p)] < 0 && coefficient(p)) std::fill(prior.row(p).begin(), prior.row(p).end(), 0.0);
-  target.constrain(prior, declared);
-  LaneArray const spread_draws = spread(draws, count - 1);
-  std::vector<double> const best = best_draw(draws);
+  target.constrain(prior, drawn);
+  LaneArray values = drawn;
+  LaneArray const spread_draws = spread(earlier, count - 1);
+  std::vector<double> const best = best_draw(earlier);
   for (int w = 0; w < count; ++w)
     for (int p = 0; p < target.dimension(); ++p) {
       int const column = columns[static_cast<std::size_t>(p)];
       if (column < 0) continue;
-      declared(p, w) = w == 0 || column >= spread_draws.rows() ? best[static_cast<std::size_t>(column)]
-                                                               : spread_draws(column, (w - 1) % spread_draws.width());
+      values(p, w) = w == 0 || column >= spread_draws.rows() ? best[static_cast<std::size_t>(column)]
+                                                             : spread_draws(column, (w - 1) % spread_draws.width());
     }
-  target.unconstrain(declared, starts);
-  // A value that the prior of now does not allow has no place on its scale.
+  // Values are replaced before they are placed: where members of a hierarchy lie on their scale depends on the spread.
+  LaneArray const kept = allowed(target, values, drawn);
+  for (int w = 0; w < count; ++w)
+    for (int p = 0; p < target.dimension(); ++p)
+      if (kept(p, w) == 0) values(p, w) = drawn(p, w);
+  target.unconstrain(values, starts);
   for (int w = 0; w < count; ++w)
     for (int p = 0; p < target.dimension(); ++p)
       if (!std::isfinite(starts(p, w))) starts(p, w) = prior(p, w);
+  return starts;
+}
+
+SearchResult search_near(Session& session, int earlier, Target const& target, ObjectiveKind objective_kind, RunContext& context) {
+  LaneArray const starts = starts_near(target, fitted_model(session, earlier).draws, context.seed);
   SearchResult result = search_from(target, objective_kind, starts, context);
   std::string const& name = session.file.tasks[static_cast<std::size_t>(earlier)].name;
   if (!result.modes.empty())

@@ -5,8 +5,12 @@
 
 namespace sysid {
 
-/// Local searches from draws of the fit task `earlier`: parameters of the same name and unit begin at their values there,
-/// coefficients of a function that is new at zero, others at draws of their priors. UserError where that fit has left no draws.
+/// Places [P x W] on the unbounded scales of `target`, the first at the best of the `earlier` draws: parameters of the same name
+/// and unit have their values there, coefficients of a function that is new are zero, others, and those whose prior no longer
+/// allows the earlier value, are draws of their priors.
+LaneArray starts_near(Target const& target, Draws const& earlier, std::uint64_t seed);
+
+/// Local searches from there, of the fit task `earlier`. UserError where that fit has left no draws.
 SearchResult search_near(Session& session, int earlier, Target const& target, ObjectiveKind objective_kind, RunContext& context);
 
 }  // namespace sysid

@@ -225,9 +225,10 @@ Diagnostic process_of_two_channels(Span span, std::string const& name, std::stri
                      "declare a function for each"));
 }
 Diagnostic process_never_applied(ast::Name const& name) {
-  return about({name.text},
-               error("E3213", name.span, fmt::format("`{}` is declared but never applied", name.text),
-                     fmt::format("add it to the mean of a channel: `observe y ~ normal(MEAN + {}(...), sd = s)`", name.text)));
+  return about({name.text}, error("E3213", name.span, fmt::format("`{}` is declared but never applied", name.text),
+                                  fmt::format("add it to the mean of a channel: `observe y ~ normal(MEAN + {}(...), sd = s)`; or, "
+                                              "declared `within` a range, use it in an equation",
+                                              name.text)));
 }
 Diagnostic process_of_one_experiment(Span span, std::string const& name, std::string const& parameter) {
   return about(

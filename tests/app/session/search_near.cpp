@@ -1,8 +1,13 @@
 // `search = near(FIT)`: the same optimum from where an earlier fit ended, with a changed prior, a term more, or a unit changed.
 #include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
+#include "app/session/search_near.hpp"
+#include "inference/targets.hpp"
 
 using namespace sysid;
 
@@ -121,4 +126,54 @@ near  = fit unknown to bench with map, search = near(first), substeps = 8, seed 
 )",
                     {{"made.csv", made_record()}});
   CHECK(run.summary("near").at("fit").at("rmse") < 0.5 * run.summary("first").at("fit").at("rmse").get<double>());
+}
+
+namespace {
+
+/// A spread between 2 and 5 and one member, placed relative to it.
+class Population : public testing::TestTarget {
+ public:
+  Population()
+      : TestTarget({"tau", "k"}, {{testing::Prior::uniform, 2, 5}, {testing::Prior::normal, 0, 1}}, 1, 0,
+                   [](std::vector<double> const&, std::vector<double>& rows) { rows[0] = 0; }) {}
+  void constrain(ConstLanes theta, Lanes declared) const override {
+    TestTarget::constrain(theta, declared);
+    for (int w = 0; w < theta.width(); ++w) declared(1, w) *= declared(0, w);
+  }
+  void unconstrain(ConstLanes declared, Lanes theta) const override {
+    TestTarget::unconstrain(declared, theta);
+    // A spread that its prior does not allow leaves its members without a place.
+    for (int w = 0; w < theta.width(); ++w)
+      theta(1, w) = std::isfinite(theta(0, w)) ? declared(1, w) / declared(0, w) : std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("members keep their earlier values where the prior no longer allows the earlier spread") {
+  Population const target;
+  Draws earlier;
+  earlier.names = {"tau", "k"};
+  earlier.units = {"", ""};
+  earlier.parameter_count = 2;
+  earlier.chains.resize(1);
+  for (int d = 0; d < 20; ++d) {
+    earlier.chains[0].values.push_back({d % 2 == 0 ? 1.0 : 3.0, 7.0 + d});
+    earlier.chains[0].log_prior.push_back(0);
+    earlier.chains[0].log_likelihood.push_back(0);
+    earlier.chains[0].log_density.push_back(0);
+  }
+  LaneArray const starts = starts_near(target, earlier, 1);
+  LaneArray declared(2, starts.width());
+  target.constrain(starts, declared);
+  int replaced = 0;
+  for (int w = 0; w < starts.width(); ++w) {
+    CHECK(declared(0, w) > 2);
+    CHECK(declared(0, w) < 5);
+    if (std::fabs(declared(0, w) - 3) > 1e-9) ++replaced;
+    CHECK(declared(1, w) == doctest::Approx(std::round(declared(1, w))));
+    CHECK(declared(1, w) >= 6.999);
+  }
+  CHECK(replaced > 0);
+  CHECK(replaced < starts.width());
 }
