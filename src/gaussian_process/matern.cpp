@@ -179,7 +179,7 @@ KernelRow matern(std::string_view name, std::string_view summary) {
 }  // namespace
 
 KernelRow matern12_kernel() {
-  return matern<1>("matern12", "rough functions without a derivative: first-order lags, drifting levels");
+  return matern<1>("matern12", "rough functions without a derivative: drifting levels, white noise after a first-order filter");
 }
 KernelRow matern32_kernel() { return matern<3>("matern32", "functions with one derivative"); }
 KernelRow matern52_kernel() { return matern<5>("matern52", "functions with two derivatives, usual in mechanics"); }

@@ -166,7 +166,8 @@ std::vector<std::pair<std::string, std::string>> resolved_files(Session const& s
                                                                 std::string const& resolved) {
   fs::path const folder = session.result_folder(task);
   std::map<std::string, int> const beside = modules_beside(session.source);
-  std::string const head = fmt::format("# all settings of `{}`, defaults included; data are named from this folder\n", task.name);
+  std::string const head =
+      fmt::format("# all settings of `{}`, defaults included; paths of data files are relative to this folder\n", task.name);
   std::vector<std::pair<std::string, std::string>> files = {
       {"resolved.sysid", head + relocated(resolved, session, folder, beside)}};
   for (auto const& [name, file] : beside)

@@ -172,9 +172,10 @@ Diagnostic no_expansion(Span span, std::string const& what) {
                "use squared_exponential, matern12, matern32, matern52, linear, constant, oscillator, or a sum of them");
 }
 Diagnostic expansion_of_lags(Span span, std::string const& name) {
-  return about({name},
-               error("E3233", span, fmt::format("`{}` is a finite sum, which cannot have as many inputs as these lags", name),
-                     "remove `within` in a model of discrete time, or pass single values"));
+  return about(
+      {name},
+      error("E3233", span, fmt::format("`{}` is a finite sum: an argument of it must be a single value, not a list of lags", name),
+            "if the model is in discrete time, remove `within`; otherwise pass single values"));
 }
 Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given, Unit const& wanted) {
   return about({name},

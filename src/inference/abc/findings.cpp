@@ -77,7 +77,8 @@ std::optional<Finding> equal_distances(SelectionResult const& result) {
       fmt::format("the threshold cannot fall below {:.6g}: all particles of {} have exactly this distance, because their "
                   "simulation depends on no parameter",
                   result.threshold, fixed),
-      "smaller distances do not raise the probability of the other models: compare the likelihoods, or set a smaller threshold by "
+      "while the threshold stays there, smaller distances of the other models do not raise their probability: compare the "
+      "likelihoods, or set a smaller threshold by "
       "`schedule`"};
 }
 

@@ -29,7 +29,7 @@ constexpr SettingRow rows[] = {
      "mean acceptance that the step is tuned to; higher: shorter steps, which follow sharper bends"},
     {"depth", SettingKind::integer, "10", 1, 15, "", "maximum number of doublings of a trajectory"},
     {"metric", SettingKind::word, "automatic", 0, 0, "automatic dense diagonal",
-     "dense: the covariance of the posterior; diagonal: its variances alone; automatic: dense to 100 parameters"},
+     "dense: the covariance of the posterior; diagonal: its variances alone; automatic: dense up to 100 parameters"},
     {"start", SettingKind::word, "global", 0, 0, "global prior",
      "where the chains start; global: around the modes of a search over the prior; prior: at draws from it"},
 };

@@ -45,7 +45,8 @@ ReportTable support_table(DiscoveredEquation const& equation) {
   bool const probable = std::any_of(equation.supports.begin(), equation.supports.end(),
                                     [](DiscoveredSupport const& each) { return each.probability > 0 && each.probability < 1; });
   ReportTable table{"best sets of terms for " + equation.target,
-                    "Log evidence: relative to the model with only the terms that are always kept, with the same prior for all.",
+                    "Log evidence: relative to the equation with only the terms that are always kept; the same prior is used for "
+                    "every set of terms.",
                     {"terms", "log evidence"},
                     {}};
   if (probable) table.header.insert(table.header.begin() + 1, "probability");
