@@ -198,6 +198,10 @@ Diagnostic bounds_in_brackets(Span where) {
                "bounds are arguments of the prior: `normal(0, sd = 1, lower = 0, upper = 1)`");
 }
 
+Diagnostic range_in_brackets(Span where) {
+  return error("E1118", where, "a range of values is not written in brackets", "it is a prior: `~ uniform(0.1, 10)`");
+}
+
 Diagnostic bracket_out_of_place(Span where) {
   return error("E1118", where, "a unit is not allowed here",
                "a unit is allowed only after a number, a declared name or a data column; elsewhere multiply by a number with a "

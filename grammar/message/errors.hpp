@@ -65,6 +65,8 @@ Diagnostic bracket_out_of_place(Span where);
 Diagnostic list_in_brackets(Span where, bool prior);
 /// E1118: `normal(0, sd = 1) [0, 1]`.
 Diagnostic bounds_in_brackets(Span where);
+/// E1118: `parameter m [kg] in [0.1, 10]`.
+Diagnostic range_in_brackets(Span where);
 /// E1119: `if` as a name.
 Diagnostic reserved_word(Token const& word);
 /// E1120: a statement that begins with + or -.

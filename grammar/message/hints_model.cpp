@@ -228,6 +228,8 @@ std::string in_expression(Gap const& gap) {
                        gap.text(gap.at + 3, std::min(gap.at + 4, gap.statement.size())));
   if (side_by_side && right->is("end")) return "remove `end`";
   if (side_by_side && left->is("return")) return "remove `return`";
+  if (side_by_side && (left->is("for") || left->is("while")) && gap.begins_with(left->text))
+    return "there are no loops: declare a vector, `state q(3)`, and write its equation once";
   if (side_by_side && right->is("(") && left->text.ends_with('\'')) {
     Token const *inside = gap.next(), *close = gap.next(2), *sign = gap.next(3);
     if (inside != nullptr && close != nullptr && close->is(")"))

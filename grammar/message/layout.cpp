@@ -200,7 +200,9 @@ class LayoutPass {
       std::size_t const opener = open_.back();
       bool const list = token.is(",") && opener > 0 && (is_opener(opener - 1) || continues_after(tokens_[opener - 1], true));
       bool const behind_prior = token.is(",") && opener > line_ + 2 && tokens_[line_].is("parameter") && !list && has_tilde(opener);
-      mistake(opener, list           ? errors::list_in_brackets(tokens_[opener].span, tokens_[line_].is("parameter"))
+      bool const range = token.is(",") && opener > 0 && tokens_[opener - 1].is("in") && tokens_[line_].is("parameter");
+      mistake(opener, range          ? errors::range_in_brackets(tokens_[opener].span)
+                      : list         ? errors::list_in_brackets(tokens_[opener].span, tokens_[line_].is("parameter"))
                       : behind_prior ? errors::bounds_in_brackets(tokens_[opener].span)
                                      : errors::unclosed(tokens_[opener], token.span));
       open_.pop_back();

@@ -42,8 +42,8 @@ std::string FoundSource::text(std::vector<FoundStructure> const& structures) con
   std::string out = fmt::format("# found by `discover {} from {}` with {}, seed {}\n", dictionary.name,
                                 data_names(file, what.experiments), what.selector, seed);
   out +=
-      "# sds of the priors: ten sds of the regression and at least a tenth of the coefficient, because the fit uses the same "
-      "record again\n\n";
+      "# sd of each prior: ten times that of the regression, at least a tenth of the coefficient; wide, because the fit uses the "
+      "same record again\n\n";
   std::vector<std::string> models;
   std::set<std::string> inputs, channels;
   for (Channel const& channel : dictionary.measured.channels) channels.insert(channel.name);

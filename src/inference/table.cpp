@@ -13,7 +13,7 @@ namespace {
 
 BackendRow const backend_rows[] = {
     {"mh",
-     "Metropolis-Hastings chains: independence moves around the modes and random walks",
+     "Metropolis-Hastings chains: proposals drawn around the modes, independent of the current state, and random walks",
      {.proper_prior = true},
      ObjectiveKind::posterior,
      mh::settings(),

@@ -140,7 +140,7 @@ class Description {
   }
 
   std::string unasked(AssessedParameter const& coordinate) {
-    if (coordinate.role == ParameterRole::noise) return "from residuals of the fit";
+    if (coordinate.role == ParameterRole::noise) return "not computed (noise)";
     if (coordinate.role == ParameterRole::prior) return "from parameters whose prior depends on it";
     if (coordinate.role == ParameterRole::none) return "not used";  // the checker has warned of it
     add(FindingCode::not_identifiable, Severity::error, {coordinate.words.name},

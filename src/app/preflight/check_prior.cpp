@@ -91,8 +91,9 @@ void check_failures(Preflight const& preflight) {
   double const lost = solver.row().stiff ? stiff : static_cast<double>(page.failed_as_stated - page.failed_explicit) / page.draws;
   if (page.failed == page.draws)
     preflight.add(FindingCode::prior_fails, Severity::error, {},
-                  fmt::format("the simulation fails at all {} prior draws", page.draws),
-                  fmt::format("check the priors, {} and the named part of the equation", units_that_scale(preflight.model())));
+                  fmt::format("all {} prior draws fail: the simulation or its likelihood is not finite", page.draws),
+                  fmt::format("check the named expression (can it be a noise sd of 0?), the priors and {}",
+                              units_that_scale(preflight.model())));
   else if (share > many_failures)
     preflight.add(
         FindingCode::prior_fails, !preflight.candidate() || 1 / (1 - share) > bare_mention ? Severity::warning : Severity::note, {},

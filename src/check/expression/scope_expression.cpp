@@ -156,6 +156,11 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
   }
   std::size_t const count = arguments.count, least = static_cast<std::size_t>(row->minimum_arguments),
                     most = static_cast<std::size_t>(row->maximum_arguments);
+  bool const branches = row->unit_rule == UnitRule::branches;
+  if (branches && arguments.counted && count >= 2 && count % 2 == 0) {
+    diagnostics_.add(errors::piecewise_without_otherwise(call));
+    return std::nullopt;
+  }
   if (arguments.counted && (count < least || count > most)) {
     diagnostics_.add(errors::argument_count(call.function, count, least, most));
     return std::nullopt;

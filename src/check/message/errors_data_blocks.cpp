@@ -98,7 +98,8 @@ Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, 
 Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& column_unit, std::string const& declared_unit) {
   return about(what.names,
                error("E4113", span, fmt::format("{} is in [{}], but [{}] is needed", what.words, column_unit, declared_unit),
-                     "correct one of the two units: both must measure the same kind of quantity"));
+                     column_unit == "g" ? "`[g]` is the gram; the acceleration of gravity is `[g_n]`"
+                                        : "correct one of the two units: both must measure the same kind of quantity"));
 }
 
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {

@@ -15,13 +15,17 @@ Diagnostic explicit_solver(Span option, std::string const& solver, Span equation
 }
 
 Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input) {
-  return {Severity::error,
-          "E3015",
-          fmt::format("this constraint prescribes a motion: the constraint force needs the second derivative of input `{}`", input),
-          Label{equation.span, {}},
-          {},
-          fmt::format("use the acceleration as the input, or use `{}` in place of the state", input),
-          with_bare(input)};
+  return {
+      Severity::error,
+      "E3015",
+      fmt::format("this constraint prescribes a motion: the constraint force needs the second derivative of input `{}`", input),
+      Label{equation.span, {}},
+      {},
+      fmt::format(
+          "use the acceleration as the input, `y'' = acceleration`; or, if the constraint force is not needed, delete its equation "
+          "and write `{}` in place of the state",
+          input),
+      with_bare(input)};
 }
 
 Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown) {

@@ -20,7 +20,7 @@ constexpr Synonym unit_synonyms[] = {
 
 // Help in place of a guess.
 constexpr Synonym name_synonyms[] = {
-    {"time", "declare the time in the model: `time t [s]`"},
+    {"time", "declare it, `time time [s]`, or write the name of the time that is declared"},
     {"t", "declare the time in the model: `time t [s]`"},
     {"π", "write `pi`"},
     {"PI", "write `pi`"},

@@ -148,9 +148,9 @@ Diagnostic expansion_by_optimum(Span span, std::string const& function, std::str
   return about(
       {parameter, function, "map"},
       error("E3235", span,
-            fmt::format(
-                "`map` cannot estimate `{}` together with the function `{}` that it scales: the function would follow the noise",
-                parameter, function),
+            fmt::format("`map` cannot estimate `{0}`, which scales the function `{1}`, together with `{1}`: the function would "
+                        "follow the noise",
+                        parameter, function),
             fmt::format("give `{}` a value (`sysid compare` compares fits with different values), or fit with mh", parameter)));
 }
 Diagnostic expansion_terms(Span span, std::size_t inputs) {

@@ -26,7 +26,7 @@ Diagnostic surplus_equation(ast::Equation const& equation, Names const& states) 
 
 Diagnostic undetermined(Span declaration, std::string const& unknown) {
   return about(with_bare(unknown), error("E3005", declaration, fmt::format("the equations do not determine `{}`", unknown),
-                                         "change one of the equations: in the highest derivatives they are linearly dependent"));
+                                         "the equations are linearly dependent in the highest derivatives: change one of them"));
 }
 
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {

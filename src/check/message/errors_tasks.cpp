@@ -210,9 +210,12 @@ Diagnostic option_choice(Span span, std::string const& option, std::string const
 
 Diagnostic backend_missing(ast::Task const& task, Names const& known) {
   bool const selects = words::task_kind(task.verb.text) == TaskKind::select;
-  return error(
-      "E6007", task.verb.span, fmt::format("this {} has no back end", selects ? "selection" : "fit"),
-      fmt::format("add `with {}`; back ends: {}", selects ? "abc_smc(particles = 1000)" : "mh(samples = 25000)", quoted(known)));
+  std::string const example = selects ? "with abc_smc(particles = 1000)" : "with mh(samples = 25000)";
+  return error("E6007", task.verb.span, fmt::format("this {} has no back end", selects ? "selection" : "fit"),
+               fmt::format("{}; back ends: {}",
+                           task.options.empty() ? fmt::format("add `{}`", example)
+                                                : fmt::format("name it before the options: `{}, ...`", example),
+                           quoted(known)));
 }
 
 Diagnostic unknown_backend(ast::Name const& name, Names const& known) {
@@ -261,8 +264,11 @@ Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, 
 }
 
 Diagnostic task_too_late(ast::Name const& name) {
-  return about({name.text}, error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text),
-                                  "tasks run in the order of the file: move that task before this one"));
+  Diagnostic result = about({name.text}, error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text),
+                                               "tasks run in the order of the file: move that task before this one"));
+  result.prompt_help = fmt::format(
+      "a task cannot build on one that was entered after it: give this task another name, or enter `{}` anew", name.text);
+  return result;
 }
 
 Diagnostic experiment_twice(Span second, Span first, std::string const& experiment) {

@@ -91,7 +91,7 @@ Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, st
 }
 Diagnostic condition_with_unit(Label condition, std::string const& text) {
   return at(Severity::error, "E2209", std::move(condition), {}, "a condition is true or false, not a quantity with a unit",
-            fmt::format("compare it: `{} > 0`", text));
+            fmt::format("compare it: `{} > 0`; in `piecewise` a condition comes before its value", text));
 }
 Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
   bool const shows_zero = shown.unit.offset != 0;

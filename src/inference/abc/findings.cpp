@@ -94,7 +94,7 @@ Finding no_population(PopulationRecord const& record, double threshold, int part
                                                               places.empty() ? "" : fmt::format(": {}", places));
   std::string const what =
       bounded ? fmt::format("came within the first threshold {}", threshold) : std::string("could be simulated");
-  std::string help = "allow more, or use fewer `particles`";
+  std::string help = "raise the limit that was reached (`simulations`, `wall_time`), or use fewer `particles`";
   if (record.simulated == 0 && record.proposed > 0)
     help =
         "the densities of the priors are not finite at their own draws: give them widths within the range of floating-point "
@@ -140,7 +140,9 @@ Findings check_populations(SelectionResult const& result, Plan const& plan) {
                         {},
                         fmt::format("the run stopped before its end: {}{}", result.stopped_by,
                                     std::isfinite(result.threshold) ? "" : "; its only population is a sample of the priors"),
-                        "allow more, use fewer `particles`, or stop at a larger `target` or `relative_change`"});
+                        "raise the limit that was reached (`simulations`, `wall_time`, `populations`), use fewer `particles`, or "
+                        "stop at a larger `target` or "
+                        "`relative_change`"});
   return findings;
 }
 

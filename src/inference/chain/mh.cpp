@@ -31,7 +31,8 @@ constexpr SettingRow rows[] = {
     {"thin", SettingKind::integer, "10", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "4", 1, 65536, "", "number of independent chains"},
     {"proposal", SettingKind::word, "adaptive", 0, 0, "adaptive walk spherical",
-     "adaptive: independence moves around the modes and a random walk, both adapted during burn-in; walk: the random walk alone; "
+     "adaptive: proposals drawn around the modes, independent of the current state, and a random walk, both adapted during "
+     "burn-in; walk: the random walk alone; "
      "spherical: a random walk with covariance `variance` times the identity"},
     {"variance", SettingKind::real, "0.1", 1e-300, infinity, "",
      "variance of the spherical proposal, in unconstrained coordinates"},

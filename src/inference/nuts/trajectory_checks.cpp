@@ -73,7 +73,7 @@ std::string words_of(Place const& place) {
 std::string remedy(double acceptance) {
   std::string const shorter = acceptance < 0.95 ? "acceptance = 0.95" : acceptance < 0.99 ? "acceptance = 0.99" : "";
   return (shorter.empty() ? std::string() : "use " + shorter + ", which takes shorter steps; if that does not help, ") +
-         "sample with mh or tempering, or write a hierarchy whose members have bounds in the non-centred form (k = mean + "
+         "sample with mh or tempering; if the members of a hierarchy have bounds, write it in the non-centred form (k = mean + "
          "spread*z)";
 }
 

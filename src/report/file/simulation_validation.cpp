@@ -36,10 +36,12 @@ ReportTable structure_table(ValidationReport const& validation) {
                         validation.longest - validation.shortest > validation.step
                             ? fmt::format("{} to {}", seconds(validation.shortest), seconds(validation.longest))
                             : seconds(validation.longest));
-  ReportTable table{fmt::format("structures by simulation: {}", segments),
-                    "Log odds: of a structure relative to the first, by evidence and number of terms.",
-                    {"terms", "log odds", "probability", "residual/noise"},
-                    {}};
+  ReportTable table{
+      fmt::format("structures by simulation: {}", segments),
+      "Log odds of a structure relative to the first: log evidence plus log prior, which depends on the number of terms. Draws "
+      "bounded: with how many draws of the coefficients the simulation stays within ten times the range of the measurements.",
+      {"terms", "log odds", "probability", "residual/noise"},
+      {}};
   bool const scored = !validation.held_out.empty();
   if (scored) {
     table.caption += fmt::format(
