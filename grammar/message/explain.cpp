@@ -212,7 +212,8 @@ class Failure {
       diagnostic.help = fmt::format("outside of blocks a task is written `NAME = fit ...`: remove `{}`", found().text);
     bool const module = words::translated(words::foreign_items(), found().text) == "use";
     if (module && sign != nullptr && is_word(*sign))
-      diagnostic.help = "write `use NAME` for a module of the library or of this folder; functions such as `sqrt` need none";
+      diagnostic.help = fmt::format(
+          "write `use {}` if it is a module of the library or of this folder; functions such as `sqrt` need none", sign->text);
     return diagnostic;
   }
 

@@ -246,7 +246,7 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
       for (std::size_t i = 0; i < arguments.size(); ++i) {
         bool const condition = i % 2 == 0 && i + 1 < arguments.size();
         if (condition)
-          agreed = units_.condition(arguments[i]) && agreed;
+          agreed = units_.condition(arguments[i], true) && agreed;
         else
           branches.push_back(arguments[i]);
       }

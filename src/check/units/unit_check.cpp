@@ -233,9 +233,10 @@ bool UnitCheck::one_zero(Graph const& graph, std::span<UnitOperand const> operan
   return true;
 }
 
-bool UnitCheck::condition(UnitOperand const& operand) {
+bool UnitCheck::condition(UnitOperand const& operand, bool before_value) {
   if (!is_known(operand) || operand.value.unit.dimensionless()) return true;
-  report(errors::condition_with_unit({operand.value.span, "[" + words(operand.value.unit) + "]"}, unparse(*operand.tree)));
+  report(errors::condition_with_unit({operand.value.span, "[" + words(operand.value.unit) + "]"}, unparse(*operand.tree),
+                                     before_value));
   return false;
 }
 

@@ -49,8 +49,8 @@ class UnitCheck {
   /// False, with a diagnostic, when two temperatures that meet count from different zeros; addends: see `compare_zeros`.
   bool one_zero(Graph const& graph, UnitOperand const& a, UnitOperand const& b, bool addends);
   bool one_zero(Graph const& graph, std::span<UnitOperand const> operands);
-  /// What stands for true or false.
-  bool condition(UnitOperand const& operand);
+  /// What stands for true or false; before_value: followed by its value, with which it may have changed places.
+  bool condition(UnitOperand const& operand, bool before_value = false);
 
   /// While the body of a function is looked at for a call: mistakes in it are reported at the call.
   void enter_call(Span call, std::string const& function) { calls_.push_back({call, function}); }

@@ -89,9 +89,9 @@ Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, st
             "the unit of this power is not known: its base has a unit, but its exponent is not a constant",
             fmt::format("make the base a pure number: divide `{}` by a reference value in [{}]", text, unit));
 }
-Diagnostic condition_with_unit(Label condition, std::string const& text) {
+Diagnostic condition_with_unit(Label condition, std::string const& text, bool before_value) {
   return at(Severity::error, "E2209", std::move(condition), {}, "a condition is true or false, not a quantity with a unit",
-            fmt::format("compare it: `{} > 0`; in `piecewise` a condition comes before its value", text));
+            fmt::format("compare it: `{} > 0`{}", text, before_value ? "; in `piecewise` a condition comes before its value" : ""));
 }
 Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
   bool const shows_zero = shown.unit.offset != 0;

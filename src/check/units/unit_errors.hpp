@@ -25,7 +25,7 @@ Diagnostic units_differ(Occasion const& occasion, UnitConflict conflict);
 Diagnostic pure_argument(Label argument, std::string const& function, std::string help);
 Diagnostic exponent_with_unit(Label exponent, std::string help);
 Diagnostic base_with_unit(Label base, Span exponent, std::string const& text, std::string const& unit);
-Diagnostic condition_with_unit(Label condition, std::string const& text);
+Diagnostic condition_with_unit(Label condition, std::string const& text, bool before_value);
 /// A temperature, or a difference of two, where it meets another.
 struct Temperature {
   Label label;
