@@ -2,7 +2,7 @@
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
-namespace {
+namespace constant_parts {
 
 constexpr HyperParameterRow hyper_parameters[] = {{"amplitude", false, {.output = 1}}};
 
@@ -31,9 +31,10 @@ std::vector<NodeId> features(Graph&, std::span<NodeId const> p, std::span<NodeId
 
 constexpr StateSpaceRow state_space{1, &stationary, &transition};
 
-}  // namespace
+}  // namespace constant_parts
 
 KernelRow constant_kernel() {
+  using namespace constant_parts;
   return {.name = "constant",
           .hyper_parameters = hyper_parameters,
           .values = &values,

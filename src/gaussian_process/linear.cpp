@@ -2,7 +2,7 @@
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
-namespace {
+namespace linear_parts {
 
 constexpr HyperParameterRow hyper_parameters[] = {{"slope", true, {.output = 1, .input = -1}}};
 
@@ -38,9 +38,10 @@ std::vector<NodeId> features(Graph& graph, std::span<NodeId const> p, std::span<
   return result;
 }
 
-}  // namespace
+}  // namespace linear_parts
 
 KernelRow linear_kernel() {
+  using namespace linear_parts;
   return {.name = "linear",
           .hyper_parameters = hyper_parameters,
           .values = &values,

@@ -7,7 +7,7 @@
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
-namespace {
+namespace matern_parts {
 
 ///   k = amplitude^2 q(z) exp(-z),   z = sqrt(2 nu) r,   r^2 = sum over d of ((x_d - x'_d)/length_d)^2,
 ///   q = 1,   1 + z,   1 + z + z^2/3   for nu = 1/2, 3/2, 5/2                               Rasmussen & Williams 2006, eq. 4.17
@@ -162,7 +162,7 @@ void transition(Numbers p, double step, double* out, double* derivatives) {
 }
 
 template <int TwiceNu>
-KernelRow matern(std::string_view name, std::string_view summary) {
+KernelRow row(std::string_view name, std::string_view summary) {
   constexpr int dimension = (TwiceNu + 1) / 2;
   static constexpr StateSpaceRow state_space{dimension, &stationary<dimension>, &transition<dimension>};
   return {.name = name,
@@ -176,12 +176,12 @@ KernelRow matern(std::string_view name, std::string_view summary) {
           .summary = summary};
 }
 
-}  // namespace
+}  // namespace matern_parts
 
 KernelRow matern12_kernel() {
-  return matern<1>("matern12", "rough functions without a derivative: drifting levels, white noise after a first-order filter");
+  return matern_parts::row<1>("matern12", "rough functions without a derivative: drifting levels, white noise after a first-order filter");
 }
-KernelRow matern32_kernel() { return matern<3>("matern32", "functions with one derivative"); }
-KernelRow matern52_kernel() { return matern<5>("matern52", "functions with two derivatives, usual in mechanics"); }
+KernelRow matern32_kernel() { return matern_parts::row<3>("matern32", "functions with one derivative"); }
+KernelRow matern52_kernel() { return matern_parts::row<5>("matern52", "functions with two derivatives, usual in mechanics"); }
 
 }  // namespace sysid::gaussian_process

@@ -6,7 +6,7 @@
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
-namespace {
+namespace oscillator_parts {
 
 // `own` is the unit of force, [u_F]; input is time, output displacement.
 constexpr HyperParameterRow hyper_parameters[] = {{"mass", false, {.output = -1, .input = 2, .own = 1}},
@@ -155,9 +155,10 @@ NodeId spectral_root(Graph& graph, std::span<NodeId const> p, Numbers frequencie
   return sqrt(Term(graph, p[3]) / (real * real + imaginary * imaginary)).id;
 }
 
-}  // namespace
+}  // namespace oscillator_parts
 
 KernelRow oscillator_kernel() {
+  using namespace oscillator_parts;
   return {.name = "oscillator",
           .hyper_parameters = hyper_parameters,
           .one_input = true,

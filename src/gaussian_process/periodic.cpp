@@ -5,7 +5,7 @@
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
-namespace {
+namespace periodic_parts {
 
 constexpr HyperParameterRow hyper_parameters[] = {
     {"amplitude", false, {.output = 1}}, {"length", true, {}}, {"period", true, {.input = 1}}};
@@ -62,9 +62,10 @@ Jet jet(Jets left, Jets right, Jets p) {
   return p[0] * p[0] * exp(-2.0 * sum);
 }
 
-}  // namespace
+}  // namespace periodic_parts
 
 KernelRow periodic_kernel() {
+  using namespace periodic_parts;
   return {.name = "periodic",
           .hyper_parameters = hyper_parameters,
           .values = &values,

@@ -7,7 +7,7 @@
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
-namespace {
+namespace squared_exponential_parts {
 
 ///   k = amplitude^2 exp(-r^2/2),   r^2 = sum over d of ((x_d - x'_d)/length_d)^2          Rasmussen & Williams 2006, eq. 4.9, 5.1
 ///
@@ -44,9 +44,10 @@ NodeId spectral_root(Graph& graph, std::span<NodeId const> p, Numbers frequencie
   return (root * exp(-0.25 * exponent)).id;
 }
 
-}  // namespace
+}  // namespace squared_exponential_parts
 
 KernelRow squared_exponential_kernel() {
+  using namespace squared_exponential_parts;
   return {.name = "squared_exponential",
           .hyper_parameters = amplitude_and_lengths,
           .values = &values,

@@ -89,7 +89,7 @@ Expressions friction(Arguments velocities, int, ast::Expression const* stribeck,
   return terms;
 }
 
-GeneratorRow const rows[] = {
+GeneratorRow const all[] = {
     {"polynomial",
      "all products of powers up to a total degree, without the constant 1",
      {"degree", GeneratorOption::Kind::whole, true, 20, "polynomial(y, y', degree = 3)"},
@@ -107,14 +107,14 @@ GeneratorRow const rows[] = {
 
 }  // namespace
 
-std::span<GeneratorRow const> generators() { return rows; }
+std::span<GeneratorRow const> generators() { return all; }
 
 std::vector<std::string> generator_names() {
   std::vector<std::string> names;
-  for (GeneratorRow const& row : rows) names.emplace_back(row.name);
+  for (GeneratorRow const& row : all) names.emplace_back(row.name);
   return names;
 }
 
-GeneratorRow const* find_generator(std::string_view name) { return row_named(rows, name); }
+GeneratorRow const* find_generator(std::string_view name) { return row_named(all, name); }
 
 }  // namespace sysid
