@@ -8,7 +8,7 @@
 #include "gaussian_process/rows.hpp"
 
 namespace sysid::gaussian_process {
-namespace {
+namespace rational_quadratic_parts {
 
 constexpr HyperParameterRow hyper_parameters[] = {
     {"amplitude", false, {.output = 1}}, {"length", true, {.input = 1}}, {"shape", false, {}}};
@@ -49,9 +49,10 @@ Jet jet(Jets left, Jets right, Jets p) {
   return p[0] * p[0] * exp(-1 * shape * logarithm);
 }
 
-}  // namespace
+}  // namespace rational_quadratic_parts
 
 KernelRow rational_quadratic_kernel() {
+  using namespace rational_quadratic_parts;
   return {.name = "rational_quadratic",
           .hyper_parameters = hyper_parameters,
           .values = &values,
