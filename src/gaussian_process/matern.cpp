@@ -179,7 +179,8 @@ KernelRow row(std::string_view name, std::string_view summary) {
 }  // namespace matern_parts
 
 KernelRow matern12_kernel() {
-  return matern_parts::row<1>("matern12", "rough functions without a derivative: drifting levels, white noise after a first-order filter");
+  return matern_parts::row<1>("matern12",
+                              "rough functions without a derivative: drifting levels, white noise after a first-order filter");
 }
 KernelRow matern32_kernel() { return matern_parts::row<3>("matern32", "functions with one derivative"); }
 KernelRow matern52_kernel() { return matern_parts::row<5>("matern52", "functions with two derivatives, usual in mechanics"); }
