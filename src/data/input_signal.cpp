@@ -8,20 +8,16 @@
 #include "data/file_errors.hpp"
 
 namespace sysid {
-namespace {
 
-double mean_step(std::vector<double> const& time) { return (time.back() - time.front()) / static_cast<double>(time.size() - 1); }
+double mean_step(std::span<double const> time) { return (time.back() - time.front()) / static_cast<double>(time.size() - 1); }
 
-/// The first sample whose step from the one before differs from the mean; 0: none.
-std::size_t unequal_step(std::vector<double> const& time) {
+std::size_t unequal_step(std::span<double const> time) {
   constexpr double tolerance = 1e-6;
   double const usual = mean_step(time);
   for (std::size_t i = 1; i < time.size(); ++i)
     if (!(std::fabs(time[i] - time[i - 1] - usual) <= tolerance * usual)) return i;
   return 0;
 }
-
-}  // namespace
 
 InputSignal::InputSignal(InputRule rule, std::vector<double> time, std::vector<double> samples) {
   if (time.size() < 2 || time.size() != samples.size()) throw InternalError("an input signal needs two samples, each with a time");

@@ -61,7 +61,7 @@ struct StoredFit {
             session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, fitted.solver.method, what.prediction)),
         space(parameter_space(compiled->model, what.experiments)),
         data(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
-                              what.prediction)) {}
+                              what.prediction, fitted.solver)) {}
 
   Session& session;
   FitTask const& what;

@@ -11,6 +11,7 @@
 #include "core/text/number.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/lags.hpp"
+#include "solver/linear_structure.hpp"
 
 namespace sysid {
 namespace {
@@ -180,6 +181,43 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
   Experiment experiment = make_experiment(record, name, from, range, rows.span);
   mark_past(experiment, model, rows.span);
   return experiment;
+}
+
+void require_exact_steps(Experiment const& experiment, DataBlock const& block, Model const& model, SolverSettings const& solver) {
+  if (!model.integrated() || !solver.row().exact) return;
+  if (std::size_t const row = unequal_step(experiment.time); row > 0)
+    throw UserError(
+        {Severity::error,
+         "E4205",
+         fmt::format("row {} of `{}` is {:.9g} s after the row before, but the mean step is {:.9g} s: `{}` needs equal steps",
+                     experiment.first_row + static_cast<int>(row), block.path, experiment.time[row] - experiment.time[row - 1],
+                     mean_step(experiment.time), solver.method),
+         Label{block.time ? block.time->span : block.span, {}},
+         {},
+         "use another solver; if the sampling was regular and the printed times are rounded, give `rate` instead of "
+         "the time column",
+         {solver.method}});
+  std::vector<NodeId> derivatives;
+  for (State const& state : model.states) derivatives.push_back(state.derivative);
+  std::vector<int> const held = inputs_not_linear(model.graph, derivatives);
+  for (std::size_t i = 0; i < experiment.inputs.size(); ++i) {
+    bool const hold = std::find(held.begin(), held.end(), static_cast<int>(i)) != held.end();
+    if (experiment.inputs[i].degree() <= (hold ? 0 : 1)) continue;
+    std::string const& name = model.inputs[i].name;
+    auto const bound = std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == name; });
+    throw UserError(
+        {Severity::error,
+         "E4205",
+         hold ? fmt::format("`{}` is exact only if `{}`, which the equations do not read linearly, is constant between "
+                            "its samples",
+                            solver.method, name)
+              : fmt::format("`{}` is exact only if `{}` is constant or a straight line between its samples", solver.method, name),
+         Label{bound == block.inputs.end() ? block.span : bound->rule_span, {}},
+         {},
+         fmt::format("use another solver, or `hold {}` if that is what the input did",
+                     hold ? "zero_order" : "zero_order` or `hold linear"),
+         {solver.method, name}});
+  }
 }
 
 std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data) {

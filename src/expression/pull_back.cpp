@@ -22,8 +22,8 @@ std::vector<NodeId> pull_back(Graph& graph, std::span<NodeId const> roots, std::
   std::size_t size = 0;
   for (NodeId const id : order) size = std::max(size, id + std::size_t{1});
   for (NodeId const leaf : leaves) size = std::max(size, leaf + std::size_t{1});
-  std::vector<bool> moves(size);  // with one of the leaves
-  for (NodeId const leaf : leaves) moves[leaf] = true;
+  std::vector<bool> moves(size), ends(size);  // with one of the leaves; at one
+  for (NodeId const leaf : leaves) moves[leaf] = ends[leaf] = true;
   for (NodeId const id : order) {
     Node const& node = graph[id];
     NodeId const operands[] = {node.a, node.b, node.c};
@@ -35,7 +35,7 @@ std::vector<NodeId> pull_back(Graph& graph, std::span<NodeId const> roots, std::
   for (NodeId const id : order | std::views::reverse) {
     Node const node = graph[id];  // a copy: the graph grows below
     NodeId const weight = adjoint[id], operands[] = {node.a, node.b, node.c};
-    if (graph.is_constant(weight, 0)) continue;
+    if (graph.is_constant(weight, 0) || ends[id]) continue;
     for (int i = 0; i < operand_count(node); ++i) {
       if (!moves[operands[i]]) continue;
       // (a/b)' by b is -(w/b) (a/b), which shares w/b with that by a.

@@ -36,6 +36,7 @@ std::string present_name(Model const& model, Node const& leaf) {
     case LeafKind::unknown:
       return index < model.unknowns.size() ? model.unknowns[index].name : fmt::format("unknown({})", index);
     case LeafKind::step_size:
+    case LeafKind::equal_step:
       return "h";
     case LeafKind::control:
     case LeafKind::interval:

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "expression/pull_back.hpp"
+#include "program/binding.hpp"
 #include "program/tangents.hpp"
+#include "solver/solver.hpp"
 
 namespace sysid {
 namespace {
@@ -19,6 +21,28 @@ std::vector<NodeId> leaves_of(Graph& graph, int first, std::size_t count) {
 std::vector<NodeId> added(Graph& graph, std::vector<NodeId> const& leaves, std::span<NodeId const> values) {
   std::vector<NodeId> result;
   for (std::size_t i = 0; i < leaves.size(); ++i) result.push_back(graph.add(leaves[i], values[i]));
+  return result;
+}
+
+/// The largest parts of the roots that are known once per parameter vector, parameters themselves among them.
+std::vector<NodeId> known_early(Graph const& graph, std::span<NodeId const> roots) {
+  BindingTimes binding(graph);
+  std::vector<NodeId> result, open(roots.begin(), roots.end());
+  std::vector<bool> seen(graph.size());
+  while (!open.empty()) {
+    NodeId const id = open.back();
+    open.pop_back();
+    if (seen[id]) continue;
+    seen[id] = true;
+    if (binding(id) == Binding::parameter) {
+      result.push_back(id);
+      continue;
+    }
+    Node const& node = graph[id];
+    NodeId const operands[] = {node.a, node.b, node.c};
+    open.insert(open.end(), operands, operands + operand_count(node));
+  }
+  std::ranges::sort(result);
   return result;
 }
 
@@ -45,13 +69,22 @@ AdjointExpressions adjoint_of(SimulationSource const& source, Graph& graph, std:
   std::vector<NodeId> by, parameters;
   for (std::size_t i = 0; i < states; ++i) by.push_back(graph.leaf(LeafKind::state, static_cast<int>(i)));
   for (int const p : source.adjoint_by) parameters.push_back(graph.leaf(LeafKind::parameter, p));
-  by.insert(by.end(), parameters.begin(), parameters.end());
-  std::vector<NodeId> const adjoints = leaves_of(graph, adjoint_leaf, states), slopes = leaves_of(graph, slope_leaf, count);
+  bool const once = !source.map && find_solver(source.integrator)->exact;
+  std::vector<NodeId> const values = once ? known_early(graph, next) : std::vector<NodeId>();
+  std::vector<NodeId> const adjoints = leaves_of(graph, adjoint_leaf, states),
+                            slopes = leaves_of(graph, slope_leaf, count + values.size());
 
-  std::vector<NodeId> const back = pull_back(graph, next, adjoints, by);
+  std::vector<NodeId> of_step = by;
+  of_step.insert(of_step.end(), once ? values.begin() : parameters.begin(), once ? values.end() : parameters.end());
+  std::vector<NodeId> const back = pull_back(graph, next, adjoints, of_step);
   result.step.assign(back.begin(), back.begin() + static_cast<std::ptrdiff_t>(states));
-  result.slopes = added(graph, slopes, std::span(back).subspan(states));
-  result.start = added(graph, slopes, pull_back(graph, source.initial, adjoints, parameters));
+  if (once) result.slopes.assign(slopes.begin(), slopes.begin() + static_cast<std::ptrdiff_t>(count));
+  std::size_t const gathered = result.slopes.size();
+  for (std::size_t i = gathered; i < slopes.size(); ++i) result.slopes.push_back(graph.add(slopes[i], back[states + i - gathered]));
+  result.start = added(graph, {slopes.begin(), slopes.begin() + static_cast<std::ptrdiff_t>(count)},
+                       pull_back(graph, source.initial, adjoints, parameters));
+  if (once) result.start = added(graph, result.start, pull_back(graph, values, std::span(slopes).subspan(count), parameters));
+  by.insert(by.end(), parameters.begin(), parameters.end());
   for (ChannelSource const& channel : source.channels) {
     std::vector<NodeId> const ones(channel.sums.size(), graph.constant(1));
     std::vector<NodeId> const of = pull_back(graph, channel.sums, ones, by);

@@ -7,6 +7,7 @@ namespace {
 Binding of_leaf(LeafKind kind) {
   switch (kind) {
     case LeafKind::parameter:
+    case LeafKind::equal_step:
       return Binding::parameter;
     case LeafKind::input:
     case LeafKind::input_rate:

@@ -277,6 +277,10 @@ class Compilation {
         return Operand{OperandPlace::uniform, row_bank + static_cast<std::uint32_t>(row.size() - 1)};
       }
       if (when == Binding::parameter) {
+        if (!hoisting_ && node.operation == Operation::leaf) {  // a step that the experiment gives
+          row.push_back(id);
+          return Operand{OperandPlace::uniform, row_bank + static_cast<std::uint32_t>(row.size() - 1)};
+        }
         if (auto const found = hoisted_rows_.find(id); found != hoisted_rows_.end())
           return Operand{OperandPlace::lane, hoisted_bank + found->second};
         if (!hoisting_) return std::nullopt;

@@ -106,7 +106,7 @@ struct SimulationProgram {
   int hot_registers = 0;  // rows that a step and the observations touch: they should stay in the first-level cache
   std::vector<double> constants;
   int uniforms = 0;  // constants and the widest row
-  Section prologue;  // parameters -> hoisted values
+  Section prologue;  // parameters, a step that all samples share -> hoisted values
   Section start;     // parameters, hoisted values, data of the first sample -> initial states
   Section carry;     // what is to be remembered of a sample -> the last states
   Section step;      // one integrator step, one attempt at one, or the map from sample to sample; empty for SUNDIALS' solvers

@@ -40,6 +40,7 @@ void Block::set_parameters(ConstLanes parameters) {
     double* const row = file_.registers + r * executor_.stride();
     for (int w = 0; w < executor_.width; ++w) row[w] = parameters(r, std::min(w, lanes_ - 1));
   }
+  file_.load_row(schedule_.prologue_row(), program_.prologue.uniforms.kernel.outputs);
   run(*program_.prologue.linked, executor_, file_.file);
   stepper_->parameters_changed();
 }

@@ -13,6 +13,11 @@ namespace {
 
 constexpr int rows_at_once = 4096;
 
+bool suits_exact_steps(Experiment const& experiment) {
+  return unequal_step(experiment.time) == 0 && std::all_of(experiment.inputs.begin(), experiment.inputs.end(),
+                                                           [](InputSignal const& each) { return each.degree() <= 1; });
+}
+
 }  // namespace
 
 Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver)
@@ -35,6 +40,9 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
     counts_.push_back(count);
   }
 
+  if (solver.row().exact && !map_ && !suits_exact_steps(experiment))
+    throw InternalError("an exact step along samples that it does not suit");
+  prologue_ = tabulate(program.prologue.uniforms, 1, false);
   start_ = tabulate(program.start.uniforms, 1, false);
   carry_ = tabulate(program.carry.uniforms, samples(), false);
   // An embedded method finds its own steps: its rows belong to whole intervals.
@@ -88,6 +96,8 @@ double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const
       return time(sample) + s * interval;
     case LeafKind::step_size:
       return interval / solver_.substeps;
+    case LeafKind::equal_step:
+      return mean_step(experiment_.time);
     case LeafKind::coefficient: {
       InputSignal const& input = experiment_.inputs[static_cast<std::size_t>(leaf.index / (largest_input_degree + 1))];
       auto const power = static_cast<std::size_t>(leaf.index % (largest_input_degree + 1));
@@ -124,6 +134,8 @@ double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
       return experiment_.inputs[static_cast<std::size_t>(leaf.index)].rate(last ? sample - 1 : sample, last ? 1 : 0);
     case LeafKind::time:
       return row >= 0 ? time(row) : time(0) + row * (time(1) - time(0));
+    case LeafKind::equal_step:
+      return mean_step(experiment_.time);
     case LeafKind::measured:
       return measured_sample(experiment_, leaf.index, row);
     default:

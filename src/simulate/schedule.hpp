@@ -42,6 +42,7 @@ class Schedule {
 
   /// Step `substep` of the interval after `sample`; fixed steps only.
   double const* step_row(int sample, int substep) const { return steps_.row(sample * solver_.substeps + substep); }
+  double const* prologue_row() const { return prologue_.values.data(); }
   double const* start_row() const { return start_.values.data(); }
   double const* carry_row(int sample) const { return carry_.row(sample); }
   double const* observe_row(int channel, int sample) const { return observe_[static_cast<std::size_t>(channel)].row(sample); }
@@ -69,7 +70,7 @@ class Schedule {
   std::vector<std::vector<std::uint8_t>> summed_;  // [channels][samples]
   std::vector<int> counts_;
   int last_summed_ = 0;
-  UniformRows start_, carry_, steps_, records_, reverse_steps_, reverse_start_;
+  UniformRows prologue_, start_, carry_, steps_, records_, reverse_steps_, reverse_start_;
   std::vector<UniformRows> observe_, reverse_observe_;
   std::vector<double> epilogue_;
 };

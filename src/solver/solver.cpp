@@ -16,6 +16,7 @@ namespace sysid {
 std::vector<NodeId> rk4_step(Stages const& stages);
 std::vector<NodeId> heun_step(Stages const& stages);
 std::vector<NodeId> euler_step(Stages const& stages);
+std::vector<NodeId> exponential_step(Stages const& stages);
 EmbeddedMethod const& dopri5();
 
 namespace {
@@ -63,6 +64,14 @@ std::span<SolverRow const> solvers() {
        .order = 1,
        .in_program = true,
        .step = &euler_step},
+      {.name = "exponential",
+       .summary = "the exact step of equations that are linear in their states, by the exponential of their matrix",
+       .settings = {},
+       .stepping = Stepping::fixed,
+       .order = 0,
+       .in_program = true,
+       .exact = true,
+       .step = &exponential_step},
       {.name = "dopri5",
        .summary = "the adaptive method of Dormand and Prince of order 5, with separate steps for each simulation",
        .settings = adaptive_settings,
@@ -124,6 +133,7 @@ SolverRow const& SolverSettings::row() const {
 SolverSettings SolverSettings::finer() const {
   SolverSettings result = *this;
   result.as_model = false;
+  if (row().exact) return result;
   if (fixed_step()) {
     result.substeps *= 2;
   } else {
@@ -145,7 +155,7 @@ std::string SolverSettings::finer_words() const { return fixed_step() ? "half th
 
 std::string SolverSettings::other_methods() const {
   std::string const stiff = fmt::format("`solver = {}`", stiff_solver().name);
-  if (row().stiff) return {};
+  if (row().stiff || row().exact) return {};
   if (row().adaptive) return stiff + " if the model is stiff";
   return fmt::format("`solver = {}`, or {} if the model is stiff", adaptive_solver().name, stiff);
 }
@@ -184,7 +194,7 @@ std::string SolverSettings::text() const {
   for (SettingRow const& each : row().settings)
     if (auto const value = values.all().find(std::string(each.name)); value != values.all().end())
       arguments += fmt::format("{}{} = {}", arguments.empty() ? "" : ", ", each.name, setting_text(value->second));
-  return fmt::format("{}({})", method, arguments);
+  return arguments.empty() ? method : fmt::format("{}({})", method, arguments);
 }
 
 double SolverSettings::near_zero(double reached) const {

@@ -25,11 +25,14 @@ struct SolverRow {
   std::string_view summary;
   std::span<SettingRow const> settings;
   Stepping stepping;
-  int order;                // of its error; 0: variable
+  int order;                // of its error; 0: variable, or none
   bool adaptive = false;    // chooses its own steps, within the tolerances; else `substeps` equal steps in every interval
   bool in_program = false;  // its step is a part of the compiled program, all lanes together; else lane by lane
   bool stiff = false;       // suits stiff equations: it solves for each step with a Jacobian
   bool implicit = false;    // solves for derivatives that are given implicitly, and for algebraic states
+  /// Steps from sample to sample without an error: of equations that are linear in their states (solver/linear_structure.hpp), with
+  /// equal steps and inputs that are straight lines between samples. There is nothing to refine.
+  bool exact = false;
   /// The states after one step of a method with fixed steps.
   std::vector<NodeId> (*step)(Stages const&) = nullptr;
   /// The coefficients of an embedded method.
@@ -61,7 +64,7 @@ struct SolverSettings {
 
   SolverRow const& row() const;
   bool fixed_step() const { return !row().adaptive; }
-  /// What the tolerance guard compares with: half the step, or a hundredth of the tolerances.
+  /// What the tolerance guard compares with: half the step, or a hundredth of the tolerances; itself where it is exact.
   SolverSettings finer() const;
   /// Whether a task may state it: within the limits of the table.
   bool within_limits() const;

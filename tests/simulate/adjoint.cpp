@@ -104,6 +104,8 @@ std::vector<Case> cases() {
           {"duffing, substeps", with_second_channel(systems::duffing()), {.substeps = 3}, duffing, {0, 2, 4}},
           {"bouc_wen with a power", systems::bouc_wen(0), {.substeps = 1}, {2, 10, 5e4, 0.8, -1.1, 1.5}, {0, 1, 2, 3, 4, 5}},
           {"chain", systems::chain(3), {.substeps = 2}, {1, 2, 400, 410, 420, 1e3}, {0, 1, 2, 3, 4, 5}},
+          {"linear chain", systems::linear_chain(3), {.method = "exponential"}, {1, 2, 400, 410, 420, 1e3}, {0, 1, 2, 3, 4, 5}},
+          {"linear chain, some parameters", systems::linear_chain(2), {.method = "exponential"}, {1, 2, 400, 410, 1e3}, {1, 3}},
           {"map", map(), {.substeps = 1}, {0.5, 0.02, 0.1, 0.3}, {0, 1, 2, 3}}};
 }
 

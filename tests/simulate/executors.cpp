@@ -46,6 +46,17 @@ SimulationSource switching() {
   return source;
 }
 
+/// A linear oscillator whose noise reads the sample before.
+SimulationSource remembering() {
+  SimulationSource source = switching();
+  Graph& g = source.graph;
+  NodeId const y = g.leaf(LeafKind::state, 0), v = g.leaf(LeafKind::state, 1), x = g.leaf(LeafKind::input, 0);
+  NodeId const k = g.leaf(LeafKind::parameter, 0), c = g.leaf(LeafKind::parameter, 1);
+  source.derivative = {v, g.subtract(g.subtract(x, g.multiply(c, v)), g.multiply(k, y)), g.constant(0)};
+  source.integrator = "exponential";
+  return source;
+}
+
 SimulationSource with(SimulationSource source, std::string const& integrator) {
   source.integrator = integrator;
   return source;
@@ -59,6 +70,8 @@ std::vector<Setting> settings() {
           {"duffing, adaptive", with(systems::duffing(), "dopri5"), {.method = "dopri5", .relative = 1e-5}, duffing},
           {"bouc_wen", systems::bouc_wen(2), {.substeps = 1}, {2, 10, 5e4, 0.8, -1.1}},
           {"bouc_wen with a power", systems::bouc_wen(0), {.substeps = 1}, {2, 10, 5e4, 0.8, -1.1, 1.5}},
+          {"linear", systems::linear_chain(2), {.method = "exponential"}, {1, 2, 400, 410, 1e8}},
+          {"linear, remembering", remembering(), {.method = "exponential"}, {3e3, 0.5}},
           {"switching", switching(), {.substeps = 1}, {3e3, 0.5}},
           {"switching, substeps", switching(), {.substeps = 2}, {3e3, 0.5}}};
 }

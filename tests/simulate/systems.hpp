@@ -80,4 +80,18 @@ inline SimulationSource chain(int masses) {
   return source;
 }
 
+/// The same chain without the cubic springs, stepped exactly; parameters m, c, k_1 ... k_n, precision; sums: the log density of the
+/// first mass.
+inline SimulationSource linear_chain(int masses) {
+  SimulationSource source = chain(masses);
+  Graph& g = source.graph;
+  NodeId const cubic = g.leaf(LeafKind::parameter, masses + 2);
+  source.derivative = g.substitute(source.derivative, [&](NodeId leaf) -> std::optional<NodeId> {
+    return leaf == cubic ? std::optional(g.constant(0)) : std::nullopt;
+  });
+  source.channels = {{{normal_log_density(g, 0, g.leaf(LeafKind::state, 0), cubic)}}};
+  source.integrator = "exponential";
+  return source;
+}
+
 }  // namespace sysid::systems

@@ -49,7 +49,7 @@ class Fit {
         chosen_(what),
         backend_(find_backend(what.backend)),
         data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
-                               what.prediction)),
+                               what.prediction, what.solver)),
         likelihood_(session.file.models[static_cast<std::size_t>(what.model)].processes.empty()
                         ? independent_likelihood(session, what, data_, seed_)
                         : process_likelihood(session, what, data_, seed_)),
@@ -133,8 +133,8 @@ class Fit {
   // Whether a finer solver moves the draws.
   void check_draws_of(FitResult const& result) {
     accuracy_.reset();
-    if (!model_.integrated() || result.interrupted || result.draws.total() < 2) return;
     SolverSettings const& solver = preparation_.solver;
+    if (!model_.integrated() || solver.row().exact || result.interrupted || result.draws.total() < 2) return;
     accuracy_ = check_draws(*preparing_.target(solver), *preparing_.target(solver.finer()), result.draws, preparation_.modes, seed_,
                             extra_);
   }

@@ -43,7 +43,9 @@ std::string without_timing(FinishedFit const& fit) {
 }
 
 Findings input_timing(FinishedFit& fit) {
-  SolverSettings const& solver = fit.preparation.solver;
+  // An exact step suits some rules between samples alone.
+  SolverSettings const& fitted = fit.preparation.solver;
+  SolverSettings const solver = fitted.row().exact ? SolverSettings{.method = std::string(adaptive_solver().name)} : fitted;
   FitOfExperiments const remade{[&](std::vector<Experiment> experiments) {
                                   return fit.likelihood.make_target(std::move(experiments), solver, fit.session.interruptible());
                                 },
@@ -56,7 +58,9 @@ Findings input_timing(FinishedFit& fit) {
 
 // --- the solver and unknown functions
 std::string without_solver(FinishedFit const& fit) {
-  return fit.likelihood.model().integrated() ? "" : "the model has no differential equation";
+  if (!fit.likelihood.model().integrated()) return "the model has no differential equation";
+  SolverSettings const& solver = fit.preparation.solver;
+  return solver.row().exact ? fmt::format("`{}` is exact: it has no step to check", solver.method) : "";
 }
 
 // Draws are weighted again, an optimum is found again. A solver that was chosen has been compared with finer ones before, at the

@@ -32,7 +32,7 @@ std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData cons
     page.coverage.push_back(std::move(coverage));
   }
   Model const& model = *task.model;
-  std::vector<ExperimentData> data = load_experiments(session, there, model, task.start, task.prediction);
+  std::vector<ExperimentData> data = load_experiments(session, there, model, task.start, task.prediction, task.solver);
   for (ExperimentData const& each : data) {
     page.coverage.push_back(describe_coverage(each, session.file.data[static_cast<std::size_t>(each.use.data)], task.start, model));
     look_at_data(session.file, each, model, page.findings);
@@ -91,7 +91,7 @@ void preflight_candidates(Session& session, Task const& task, SelectTask const& 
   std::vector<std::vector<ExperimentData>> data;
   for (FitTask const& fit : selection.fits)
     data.push_back(load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
-                                    fit.prediction));
+                                    fit.prediction, fit.solver));
   for (std::size_t k = 0; k < data.size(); ++k)
     for (ExperimentData const& each : data[k])
       look_at_data(session.file, each, session.file.models[static_cast<std::size_t>(selection.fits[k].model)], page.findings);

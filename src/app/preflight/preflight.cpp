@@ -84,8 +84,8 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
     shortened = shortened || experiments.back().time.size() < each.experiment.time.size();
   }
   // To 64 times the steps, fewer on records that would take long; to a 1e-4 of the tolerances. What no solver integrates is exact
-  // as it stands.
-  effort.refinements = !model().integrated() ? 0 : what.solver.fixed_step() ? 6 : 2;
+  // as it stands, and so is an exact step.
+  effort.refinements = !model().integrated() || what.solver.row().exact ? 0 : what.solver.fixed_step() ? 6 : 2;
   while (effort.refinements > 2 && (longest * static_cast<std::size_t>(what.solver.substeps)) << effort.refinements > most_steps)
     --effort.refinements;
   step_work = work_of(model(), experiments) * what.solver.substeps;

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<ExperimentData> load(Session& session, FitTask const& fit, std::vector<ExperimentUse> const& uses, StartRule start,
                                  PredictionRule rule) {
-  return load_experiments(session, uses, session.file.models[static_cast<std::size_t>(fit.model)], start, rule);
+  return load_experiments(session, uses, session.file.models[static_cast<std::size_t>(fit.model)], start, rule, fit.solver);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ std::vector<Candidate> prepare_candidates(Session& session, SelectTask const& wh
     candidate.compiled =
         session.compiled(fit.model, fit.start.kind == StartRule::Kind::estimated, fit.solver.method, fit.prediction);
     candidate.data = load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
-                                      fit.prediction);
+                                      fit.prediction, fit.solver);
     Model const& model = candidate.compiled->model;
     candidate.space = parameter_space(model, fit.experiments);
     candidate.simulated = parameter_space(without_noise_parameters(model), fit.experiments);

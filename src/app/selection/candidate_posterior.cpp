@@ -44,7 +44,9 @@ double unit_term(Candidate const& candidate, Candidate const& first) {
 /// Follows the modes to finer solvers; a solver that the task states is only asked.
 void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_t seed, Journal& journal,
                       CandidatePosterior& posterior) {
-  if (!candidate.compiled->model.integrated() || posterior.modes.empty() || posterior.modes.front().theta.empty()) return;
+  if (!candidate.compiled->model.integrated() || candidate.fit->solver.row().exact || posterior.modes.empty() ||
+      posterior.modes.front().theta.empty())
+    return;
   Ledger extra;
   if (!candidate.fit->refine_solver) {
     std::vector<Mode> const weightiest = {posterior.modes.front()};

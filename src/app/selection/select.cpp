@@ -274,7 +274,7 @@ class Select {
                          std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection, Report& report) {
     add(solver_findings(candidates_, posteriors), report);
     add(add_noise_floor(session_, candidates_, target, posteriors, selection), report);
-    if (leading.compiled->model.integrated() && std::isfinite(selection.result.threshold))
+    if (leading.compiled->model.integrated() && !leading.fit->solver.row().exact && std::isfinite(selection.result.threshold))
       add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver), report);
   }
 

@@ -51,7 +51,7 @@ SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate,
   out.start_rows = start_rows(what_.start);
   std::vector<ExperimentData> data =
       load_experiments(session_, what_.candidate_experiments[candidate], session_.file.models[static_cast<std::size_t>(fit.model)],
-                       what_.start, what_.prediction);
+                       what_.start, what_.prediction, fit.solver);
   out.data = std::make_unique<ExperimentData const>(std::move(data[experiment]));
   auto const space = parameter_space(without_noise_parameters(out.model()), fit.experiments);
   LaneArray const declared = spread_with_repeats(candidates_[candidate].draws, counts_[candidate]);

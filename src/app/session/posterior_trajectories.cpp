@@ -17,7 +17,7 @@ PosteriorTrajectories::PosteriorTrajectories(Session& session, PredictTask const
       compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method, what.prediction)),
       space_(parameter_space(compiled_->model, fit_.experiments)),
       data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(fit_.model)], what.start,
-                             what.prediction)),
+                             what.prediction, fitted_.solver)),
       seed_(seed),
       wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {}
 

@@ -82,13 +82,14 @@ ExecutionOptions Session::abandonable() const {
 }
 
 std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,
-                                             StartRule start, PredictionRule prediction) {
+                                             StartRule start, PredictionRule prediction, SolverSettings const& solver) {
   auto const as_predicted = with_prediction(model, prediction);
   std::vector<ExperimentData> all;
   for (ExperimentUse const& use : uses) {
     Record const& record = session.record(use.data, model);
     DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
     all.push_back({use, record, cut(record, block, *as_predicted, use.part, start)});
+    require_exact_steps(all.back().experiment, block, *as_predicted, solver);
   }
   return all;
 }

@@ -76,8 +76,9 @@ class Session {
   std::uint64_t polls_ = 0;
 };
 
-/// Reads them in order, for a model of the file; UserError, UnusableData, UnreadableData as above.
+/// Reads them in order, for a model of the file; UserError, UnusableData, UnreadableData as above. solver: which may need equal
+/// steps.
 std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,
-                                             StartRule start, PredictionRule prediction);
+                                             StartRule start, PredictionRule prediction, SolverSettings const& solver = {});
 
 }  // namespace sysid

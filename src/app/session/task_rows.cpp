@@ -22,7 +22,7 @@ std::optional<Diagnostic> never_refused(Session&, Task const&) { return std::nul
 std::vector<int> needs_none(Task const&) { return {}; }
 
 std::vector<ExperimentData> data_of_fit(Session& session, FitTask const& fit) {
-  return load_experiments(session, fit.experiments, model_of(session.file, fit.model), fit.start, fit.prediction);
+  return load_experiments(session, fit.experiments, model_of(session.file, fit.model), fit.start, fit.prediction, fit.solver);
 }
 
 namespace simulate {
@@ -40,7 +40,7 @@ namespace fit {
 FitTask const& of(Task const& task) { return std::get<FitTask>(task.what); }
 Experiments experiments(Task const& task) { return of(task).experiments; }
 TaskData data_of_one(CheckedFile const& file, FitTask const& what) {
-  return {&model_of(file, what.model), &what.experiments, what.start, what.prediction};
+  return {&model_of(file, what.model), &what.experiments, what.start, what.prediction, what.solver};
 }
 std::vector<TaskData> data(CheckedFile const& file, Task const& task) { return {data_of_one(file, of(task))}; }
 std::string name(Session const& session, Task const& task) { return name_of_model(session, of(task).model); }
@@ -84,7 +84,7 @@ CheckedDictionary const& dictionary(CheckedFile const& file, Task const& task) {
 }
 Experiments experiments(Task const& task) { return of(task).experiments; }
 std::vector<TaskData> data(CheckedFile const& file, Task const& task) {
-  return {{&dictionary(file, task).measured, &of(task).experiments, {StartRule::Kind::rest, 0}, PredictionRule::as_written}};
+  return {{&dictionary(file, task).measured, &of(task).experiments, {StartRule::Kind::rest, 0}, PredictionRule::as_written, {}}};
 }
 std::string name(Session const& session, Task const& task) {
   return fmt::format("dictionary `{}`", dictionary(session.file, task).name);
@@ -104,15 +104,14 @@ Experiments experiments(Task const& task) { return of(task).experiments; }
 std::vector<TaskData> data(CheckedFile const& file, Task const& task) {
   PredictTask const& what = of(task);
   std::vector<TaskData> all;
-  auto const add = [&](int model, Experiments const& experiments) {
-    all.push_back({&model_of(file, model), &experiments, what.start, what.prediction});
+  auto const add = [&](FitTask const& fitted, Experiments const& experiments) {
+    all.push_back({&model_of(file, fitted.model), &experiments, what.start, what.prediction, fitted.solver});
   };
   Task const& from = subject(file, task);
   if (kind_of(from) == TaskKind::select)
-    for (std::size_t c = 0; c < select::of(from).fits.size(); ++c)
-      add(select::of(from).fits[c].model, what.candidate_experiments[c]);
+    for (std::size_t c = 0; c < select::of(from).fits.size(); ++c) add(select::of(from).fits[c], what.candidate_experiments[c]);
   else
-    add(fit::of(from).model, what.experiments);
+    add(fit::of(from), what.experiments);
   return all;
 }
 std::string name(Session const& session, Task const& task) {

@@ -19,6 +19,7 @@ struct TaskData {
   std::vector<ExperimentUse> const* experiments = nullptr;
   StartRule start;
   PredictionRule prediction = PredictionRule::as_written;
+  SolverSettings solver;
 };
 
 /// Of a predict task, `name` and `digest` are those of the task that it predicts with.

@@ -224,8 +224,9 @@ class Simulate {
       throw failed(
           fmt::format("the simulation `{}` {}", task_.name,
                       functions_ ? "does not stay finite" : first_failure(session_, what_, *compiled_, experiment_, parameters_)),
-          what_.solver.fixed_step() ? fmt::format("use smaller steps (`{}`), {}, or other values",
-                                                  smaller_steps(what_.solver).option(), what_.solver.other_methods())
+          what_.solver.row().exact    ? std::string("use other values")
+          : what_.solver.fixed_step() ? fmt::format("use smaller steps (`{}`), {}, or other values",
+                                                    smaller_steps(what_.solver).option(), what_.solver.other_methods())
           : what_.solver.other_methods().empty()
               ? fmt::format("use other values, or more `steps` (now {})", what_.solver.steps)
               : fmt::format("use {}, more `steps` (now {}), or other values", what_.solver.other_methods(), what_.solver.steps));
@@ -237,7 +238,8 @@ class Simulate {
   }
 
   void note_findings(Trajectory::Result const& result) {
-    if (model().integrated()) check_step(session_, task_, what_, compiled_, experiment_, parameters_, result);
+    if (model().integrated() && !what_.solver.row().exact)
+      check_step(session_, task_, what_, compiled_, experiment_, parameters_, result);
     for (Finding const& finding : drift_findings(session_.source, model(), result, task_.name))
       session_.notices << fmt::format("{}: {}{}\n", task_.name, finding.severity == Severity::warning ? "warning: " : "",
                                       finding.message);

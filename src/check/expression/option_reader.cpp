@@ -183,7 +183,7 @@ bool OptionReader::solver(ast::Option const& option, SolverSettings& place) {
   Settings values(row->settings);
   if (call != nullptr) settings(*call, row->settings, values);
   place = make_solver(*row, values);
-  if (place.as_model) return true;
+  if (place.as_model || row->exact) return true;
   return call != nullptr && std::any_of(call->arguments.begin(), call->arguments.end(), [](ast::Argument const& argument) {
            // Neither the work budget nor `as_model = no` is a statement of accuracy.
            return argument.name && argument.name->text != "steps" && argument.name->text != "as_model";

@@ -1,5 +1,6 @@
 // Every message of the checker, one named constructor per mistake; wording lives in errors_*.cpp alone.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,6 +68,12 @@ Diagnostic state_without_equation(Span declaration, std::string const& state, st
 Diagnostic algebraic_state(Span declaration, std::string const& state);
 Diagnostic surplus_equation(ast::Equation const& equation, Names const& states);
 Diagnostic explicit_solver(Span option, std::string const& solver, Span equation, std::string const& unknown);
+/// part: what is not linear in the states; absent where it has no place in the text.
+Diagnostic solver_of_linear_equations(Span option, std::string const& solver, std::optional<Span> const& part, bool varies);
+Diagnostic solver_that_reads_no_time(Span option, std::string const& solver, std::string const& model);
+Diagnostic solver_of_few_states(Span option, std::string const& solver, std::string const& model, std::size_t states, int most);
+/// held: not even a straight line will do.
+Diagnostic input_of_exact_solver(Span input, std::string const& name, Span option, std::string const& solver, bool held);
 Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input);
 Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown);
 Diagnostic start_off_constraint(Span equation, Span initial);

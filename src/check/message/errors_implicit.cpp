@@ -14,6 +14,54 @@ Diagnostic explicit_solver(Span option, std::string const& solver, Span equation
   return result;
 }
 
+namespace {
+
+constexpr std::string_view other_solvers = "remove the option, or use `rk4`, `dopri5` or, if the model is stiff, `cvode`";
+
+}  // namespace
+
+Diagnostic solver_of_linear_equations(Span option, std::string const& solver, std::optional<Span> const& part, bool varies) {
+  Diagnostic result{Severity::error,
+                    "E3020",
+                    varies ? fmt::format("`{}` needs coefficients of the states that do not change in time", solver)
+                           : fmt::format("`{}` needs equations that are linear in the states", solver),
+                    Label{option, {}},
+                    {},
+                    std::string(other_solvers)};
+  result.names.push_back(solver);
+  if (part) result.secondary.push_back({*part, varies ? "changes in time" : "not linear"});
+  return result;
+}
+
+Diagnostic solver_that_reads_no_time(Span option, std::string const& solver, std::string const& model) {
+  return {
+      Severity::error,   "E3020", fmt::format("`{}` needs equations that do not read time, but those of `{}` do", solver, model),
+      Label{option, {}}, {},      fmt::format("make what depends on time an input of the model; or {}", other_solvers),
+      {solver, model}};
+}
+
+Diagnostic solver_of_few_states(Span option, std::string const& solver, std::string const& model, std::size_t states, int most) {
+  return {Severity::error,   "E3020", fmt::format("`{}` is limited to {} states, but `{}` has {}", solver, most, model, states),
+          Label{option, {}}, {},      std::string(other_solvers),
+          {solver, model}};
+}
+
+Diagnostic input_of_exact_solver(Span input, std::string const& name, Span option, std::string const& solver, bool held) {
+  Diagnostic result{
+      Severity::error,
+      "E3020",
+      held ? fmt::format("`{}` needs an input `{}` that is constant between its samples, as the equations do not read "
+                         "it linearly",
+                         solver, name)
+           : fmt::format("`{}` needs an input `{}` that is constant or a straight line between its samples", solver, name),
+      Label{input, {}},
+      {},
+      fmt::format("use another solver, or `hold = {}`", held ? "zero_order" : "linear")};
+  result.names = {solver, name};
+  result.secondary.push_back({option, "the solver"});
+  return result;
+}
+
 Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input) {
   return {
       Severity::error,

@@ -27,6 +27,8 @@ class TaskChecker {
   std::optional<int> item(ast::Name const& name, std::map<std::string, std::optional<int>> const& items, std::string const& kind);
   // Equations that cannot be solved for their highest derivatives need a solver that does without.
   void suit(SolverSettings& solver, Model const& model);
+  // An exact step needs linear equations.
+  void suit_exact(SolverSettings const& solver, Model const& model);
   void suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options);
   void suit(FitTask& task, Model const& model);
   // `prediction = one_step`, for models that have lags to read.
@@ -92,6 +94,7 @@ class TaskChecker {
   static void simulate_file(TaskChecker& checker, ast::Option const& option, SimulateOptions& options);
   // What is left out is taken from the model or missed; what must hold between the options.
   void complete_simulation(SimulateOptions const& options);
+  void check_exact_inputs(SimulateOptions const& options);
   // `values(m = 1, ...)`.
   void values(ast::Call const& call, Model const& model, SimulateTask& task);
   // The names that states, channel locations and (when the model makes the noise) noise need.

@@ -8,6 +8,8 @@
 #include "check/task/signal_generators.hpp"
 #include "check/task/task_options.hpp"
 #include "core/setting/table.hpp"
+#include "data/input_rule.hpp"
+#include "solver/linear_structure.hpp"
 
 namespace sysid {
 namespace {
@@ -135,6 +137,21 @@ void TaskChecker::simulate_file(TaskChecker& checker, ast::Option const& option,
         errors::option_kind(option.value.span, key_of(option), {"a file name in quotes, without folders"}, "file = \"truth.csv\""));
 }
 
+void TaskChecker::check_exact_inputs(SimulateOptions const& options) {
+  Model const& model = options.model;
+  SolverSettings const& solver = options.task.solver;
+  if (!solver.row().exact) return;
+  std::vector<NodeId> derivatives;
+  for (State const& state : model.states) derivatives.push_back(state.derivative);
+  std::vector<int> const to_hold = inputs_not_linear(model.graph, derivatives);
+  for (std::size_t i = 0; i < options.given.size(); ++i) {
+    bool const held = std::find(to_hold.begin(), to_hold.end(), static_cast<int>(i)) != to_hold.end();
+    if (options.given[i] && row_of(options.task.inputs[i].rule).degree > (held ? 0 : 1))
+      diagnostics_.add(
+          errors::input_of_exact_solver(options.places[i], model.inputs[i].name, *options_.solver_span(), solver.method, held));
+  }
+}
+
 void TaskChecker::complete_simulation(SimulateOptions const& options) {
   Model const& model = options.model;
   SimulateTask& task = options.task;
@@ -153,6 +170,7 @@ void TaskChecker::complete_simulation(SimulateOptions const& options) {
           errors::option_missing(tree_, "input " + model.inputs[i].name, "input " + model.inputs[i].name + " = gaussian(sd = 1)"));
   if (auto const missing = values_needed(model, task); !missing.empty())
     diagnostics_.add(errors::value_missing(tree_.verb.span, missing));
+  check_exact_inputs(options);
   if (task.samples > 0 && task.step > 0)
     for (std::size_t i = 0; i < options.given.size(); ++i)
       if (options.given[i]) check_band(task.inputs[i], task, options.places[i], diagnostics_);

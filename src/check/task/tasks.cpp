@@ -7,6 +7,7 @@
 #include "check/message/errors.hpp"
 #include "check/task/task_checker.hpp"
 #include "core/setting/table.hpp"
+#include "solver/linear_structure.hpp"
 
 namespace sysid {
 
@@ -56,8 +57,40 @@ std::optional<int> TaskChecker::item(ast::Name const& name, std::map<std::string
   return place->second;
 }
 
+namespace {
+
+/// Of a node, else of the smallest expression around it that has a place in the text.
+std::optional<Span> place_of(Graph const& graph, NodeId node) {
+  std::vector<bool> holds(graph.size(), false);
+  for (NodeId id = node; id < graph.size(); ++id) {
+    Node const& each = graph[id];
+    int const operands = operand_count(each);
+    holds[id] = id == node || (operands > 0 && holds[each.a]) || (operands > 1 && holds[each.b]) || (operands > 2 && holds[each.c]);
+    if (!holds[id]) continue;
+    if (auto const span = graph.span(id)) return span;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void TaskChecker::suit_exact(SolverSettings const& solver, Model const& model) {
+  if (!model.integrated() || !solver.row().exact) return;
+  Span const option = *options_.solver_span();
+  std::vector<NodeId> derivatives;
+  for (State const& state : model.states) derivatives.push_back(state.derivative);
+  auto const found = find_nonlinear(model.graph, derivatives);
+  if (found && found->why == NotLinear::Why::time)
+    diagnostics_.add(errors::solver_that_reads_no_time(option, solver.method, model.name));
+  else if (found)
+    diagnostics_.add(errors::solver_of_linear_equations(option, solver.method, place_of(model.graph, found->node),
+                                                        found->why == NotLinear::Why::varies));
+  else if (static_cast<int>(model.states.size()) > most_exact_states)
+    diagnostics_.add(errors::solver_of_few_states(option, solver.method, model.name, model.states.size(), most_exact_states));
+}
+
 void TaskChecker::suit(SolverSettings& solver, Model const& model) {
-  if (!model.implicit) return;
+  if (!model.implicit) return suit_exact(solver, model);
   if (!options_.solver_span())
     solver = {.method = std::string(implicit_solver().name)};
   else if (!solver.row().implicit)

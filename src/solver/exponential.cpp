@@ -1,0 +1,213 @@
+// The exact step of equations that are linear in their states, with inputs that are held or straight lines over the step:
+//   x' = A x + b(t),   x(h) = x + X x + h (phi_1 - phi_2) b(0) + h phi_2 b(h),   X = exp(hA) - 1,
+//   phi_1(z) = (e^z - 1)/z,  phi_2(z) = (phi_1(z) - 1)/z  at z = hA            Hochbruck & Ostermann 2010, section 2.1
+// No matrix is inverted, so A may be singular or defective. All three functions come by scaling and doubling (Moler & Van Loan
+// 2003, method 3), with X in place of exp(hA), which would round the slow part of a step to that of 1:
+//   X(2z) = 2 X + X^2,   phi_1(2z) = phi_1 + X phi_1/2,   phi_2(2z) = (2 phi_2 + phi_1 + X phi_2)/4
+// The matrices read parameters and the sampling step alone, so that they are computed once per parameter vector.
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/text/diagnostic.hpp"
+#include "solver/linear_structure.hpp"
+#include "solver/stages.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int doublings = 20;
+constexpr int degree = 15;           // of phi_2's series: what is left out is below rounding for |z| < 1
+constexpr double most_scaled = 0.5;  // |z| after scaling, as the root of a power
+constexpr int power_of_check = 8;    // of which power: units of states that differ by 1e8 count 10 then
+
+/// Entries that are zero are a constant zero, which is what products skip.
+class Matrix {
+ public:
+  Matrix(int rows, int columns, NodeId zero)
+      : rows_(rows), columns_(columns), entries_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), zero) {}
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  NodeId& operator()(int i, int j) { return entries_[static_cast<std::size_t>(i * columns_ + j)]; }
+  NodeId operator()(int i, int j) const { return entries_[static_cast<std::size_t>(i * columns_ + j)]; }
+
+ private:
+  int rows_, columns_;
+  std::vector<NodeId> entries_;
+};
+
+class Matrices {
+ public:
+  explicit Matrices(Graph& graph) : graph_(graph), zero_(graph.constant(0)) {}
+
+  Matrix zeros(int rows, int columns) const { return {rows, columns, zero_}; }
+  bool is_zero(NodeId entry) const { return graph_.is_constant(entry, 0); }
+
+  /// to + a b
+  Matrix add_product(Matrix to, Matrix const& a, Matrix const& b) {
+    for (int i = 0; i < a.rows(); ++i)
+      for (int k = 0; k < a.columns(); ++k)
+        for (int j = 0; j < b.columns() && !is_zero(a(i, k)); ++j) add_product(to(i, j), a(i, k), b(k, j));
+    return to;
+  }
+  Matrix product(Matrix const& a, Matrix const& b) { return add_product(zeros(a.rows(), b.columns()), a, b); }
+
+  /// to + factor a
+  Matrix add_scaled(Matrix to, NodeId factor, Matrix const& a) {
+    for (int i = 0; i < a.rows(); ++i)
+      for (int j = 0; j < a.columns(); ++j) add_product(to(i, j), factor, a(i, j));
+    return to;
+  }
+  Matrix add_scaled(Matrix to, double factor, Matrix const& a) { return add_scaled(std::move(to), graph_.constant(factor), a); }
+  Matrix scaled(double factor, Matrix const& a) { return add_scaled(zeros(a.rows(), a.columns()), factor, a); }
+  Matrix scaled(NodeId factor, Matrix const& a) { return add_scaled(zeros(a.rows(), a.columns()), factor, a); }
+
+  Matrix add_to_diagonal(Matrix a, double value) {
+    for (int i = 0; i < a.rows(); ++i) a(i, i) = graph_.add(a(i, i), graph_.constant(value));
+    return a;
+  }
+
+  static Matrix columns_of(Matrix const& a, std::vector<int> const& columns, NodeId zero) {
+    Matrix result(a.rows(), static_cast<int>(columns.size()), zero);
+    for (int i = 0; i < a.rows(); ++i)
+      for (int j = 0; j < result.columns(); ++j) result(i, j) = a(i, columns[static_cast<std::size_t>(j)]);
+    return result;
+  }
+
+ private:
+  void add_product(NodeId& to, NodeId a, NodeId b) {
+    if (is_zero(a) || is_zero(b)) return;
+    to = is_zero(to) ? graph_.multiply(a, b) : graph_.fused(a, b, to);
+  }
+
+  Graph& graph_;
+  NodeId zero_;
+};
+
+/// exp(hA) - 1, and columns of phi_1(hA) and phi_2(hA).
+struct Exponential {
+  Matrix x, phi_1, phi_2;
+};
+
+class Writer {
+ public:
+  explicit Writer(Stages const& stages)
+      : graph_(stages.graph),
+        matrices_(graph_),
+        states_(stages.states),
+        h_(graph_.leaf(LeafKind::equal_step)),
+        zero_(graph_.constant(0)) {
+    if (find_nonlinear(graph_, stages.derivative)) throw InternalError("an exact step of equations that are not linear");
+    std::vector<NodeId> const at_rest(states_.size(), zero_);
+    begin_ = stages.evaluate(at_rest, Stage::begin);
+    end_ = stages.evaluate(at_rest, Stage::end);
+    for (int i = 0; i < size(); ++i)
+      if (!matrices_.is_zero(begin_[static_cast<std::size_t>(i)]) || !matrices_.is_zero(end_[static_cast<std::size_t>(i)]))
+        forced_.push_back(i);
+  }
+
+  std::vector<NodeId> next(std::span<NodeId const> derivative) {
+    Exponential const exact = exponential(jacobian(derivative));
+    std::vector<NodeId> result;
+    for (int i = 0; i < size(); ++i) {
+      NodeId sum = states_[static_cast<std::size_t>(i)];
+      for (int j = 0; j < size(); ++j) sum = graph_.add(sum, graph_.multiply(exact.x(i, j), states_[static_cast<std::size_t>(j)]));
+      for (int j = 0; j < static_cast<int>(forced_.size()); ++j) sum = graph_.add(sum, forcing(exact, i, j));
+      result.push_back(sum);
+    }
+    return result;
+  }
+
+ private:
+  int size() const { return static_cast<int>(states_.size()); }
+
+  Matrix jacobian(std::span<NodeId const> derivative) {
+    Matrix a = matrices_.zeros(size(), size());
+    for (int i = 0; i < size(); ++i)
+      for (int j = 0; j < size(); ++j)
+        a(i, j) = graph_.differentiate(derivative[static_cast<std::size_t>(i)], states_[static_cast<std::size_t>(j)]);
+    return a;
+  }
+
+  /// What the j-th of the forced states gives to state i.
+  NodeId forcing(Exponential const& exact, int i, int j) {
+    auto const state = static_cast<std::size_t>(forced_[static_cast<std::size_t>(j)]);
+    NodeId const phi_1 = exact.phi_1(i, j), phi_2 = exact.phi_2(i, j);
+    if (begin_[state] == end_[state]) return graph_.multiply(graph_.multiply(h_, phi_1), begin_[state]);
+    NodeId const early = graph_.multiply(h_, graph_.subtract(phi_1, phi_2)), late = graph_.multiply(h_, phi_2);
+    return graph_.add(graph_.multiply(early, begin_[state]), graph_.multiply(late, end_[state]));
+  }
+
+  Exponential exponential(Matrix const& a) {
+    Matrix const z = matrices_.scaled(graph_.multiply(h_, graph_.constant(std::ldexp(1.0, -doublings))), a);
+    Matrix const z2 = matrices_.product(z, z), z3 = matrices_.product(z2, z), z4 = matrices_.product(z2, z2);
+    // sum z^k/(k + 2)!, four terms at a time (Paterson & Stockmeyer 1973).
+    Matrix phi_2 = matrices_.zeros(size(), size());
+    for (int first = degree - 3; first >= 0; first -= 4) {
+      Matrix terms = matrices_.add_scaled(matrices_.scaled(coefficient(first + 3), z3), coefficient(first + 2), z2);
+      terms = matrices_.add_to_diagonal(matrices_.add_scaled(std::move(terms), coefficient(first + 1), z), coefficient(first));
+      phi_2 = matrices_.add_product(std::move(terms), z4, phi_2);
+    }
+    Matrix phi_1 = matrices_.add_to_diagonal(matrices_.product(z, phi_2), 1);
+    Matrix x = matrices_.product(z, phi_1);
+    phi_1 = Matrices::columns_of(phi_1, forced_, zero_);
+    phi_2 = Matrices::columns_of(phi_2, forced_, zero_);
+    for (int i = 0; i < doublings; ++i) {
+      phi_2 =
+          matrices_.add_product(matrices_.add_scaled(matrices_.scaled(0.5, phi_2), 0.25, phi_1), matrices_.scaled(0.25, x), phi_2);
+      phi_1 = matrices_.add_product(phi_1, matrices_.scaled(0.5, x), phi_1);
+      x = matrices_.add_product(matrices_.scaled(2.0, x), x, x);
+    }
+    return {failing_beyond_reach(std::move(x), matrices_.product(z4, z4), a), std::move(phi_1), std::move(phi_2)};
+  }
+
+  static double coefficient(int k) { return 1 / std::tgamma(k + 3.0); }
+
+  /// NaN where the scaled matrix is too large for the series. An entry that lies on no cycle of A plays no part in how fast powers
+  /// grow: how large it is is a matter of units, as of the derivatives that tangents add below the diagonal.
+  Matrix failing_beyond_reach(Matrix x, Matrix const& power, Matrix const& a) {
+    std::vector<std::vector<bool>> const reaches = reachable(a);
+    std::set<NodeId> norms;
+    for (int i = 0; i < size(); ++i) {
+      NodeId norm = zero_;
+      for (int j = 0; j < size(); ++j)
+        if (reaches[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] &&
+            reaches[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)])
+          norm = graph_.add(norm, graph_.unary(Operation::absolute, power(i, j)));
+      if (!matrices_.is_zero(norm)) norms.insert(norm);
+    }
+    NodeId largest = zero_;
+    for (NodeId const norm : norms) largest = largest == zero_ ? norm : graph_.binary(Operation::maximum, largest, norm);
+    NodeId const within = graph_.binary(Operation::less_equal, largest, graph_.constant(std::pow(most_scaled, power_of_check)));
+    NodeId const nothing = graph_.select(within, zero_, graph_.constant(std::numeric_limits<double>::quiet_NaN()));
+    for (int i = 0; i < size(); ++i)
+      for (int j = 0; j < size(); ++j)
+        if (!matrices_.is_zero(x(i, j))) x(i, j) = graph_.add(x(i, j), nothing);
+    return x;
+  }
+
+  /// Whether state i depends on state j, directly or through others.
+  std::vector<std::vector<bool>> reachable(Matrix const& a) const {
+    auto const n = static_cast<std::size_t>(size());
+    std::vector<std::vector<bool>> result(n, std::vector<bool>(n));
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) result[i][j] = !matrices_.is_zero(a(static_cast<int>(i), static_cast<int>(j)));
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n && result[i][k]; ++j) result[i][j] = result[i][j] || result[k][j];
+    return result;
+  }
+
+  Graph& graph_;
+  Matrices matrices_;
+  std::vector<NodeId> states_;
+  NodeId h_, zero_;
+  std::vector<NodeId> begin_, end_;  // the derivative at rest, at the ends of the step: b
+  std::vector<int> forced_;          // where that is not zero
+};
+
+}  // namespace
+
+std::vector<NodeId> exponential_step(Stages const& stages) { return Writer(stages).next(stages.derivative); }
+
+}  // namespace sysid
