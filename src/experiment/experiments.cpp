@@ -183,6 +183,36 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
   return experiment;
 }
 
+namespace {
+
+std::vector<NodeId> derivatives_of(Model const& model) {
+  std::vector<NodeId> derivatives;
+  for (State const& state : model.states) derivatives.push_back(state.derivative);
+  return derivatives;
+}
+
+/// An input that is neither held nor, where the equations read all inputs linearly, a straight line between its samples.
+struct CurvedInput {
+  std::size_t index;
+  bool to_be_held;
+};
+std::optional<CurvedInput> curved_input(Experiment const& experiment, Model const& model) {
+  std::vector<int> const held = inputs_not_linear(model.graph, derivatives_of(model));
+  for (std::size_t i = 0; i < experiment.inputs.size(); ++i) {
+    bool const hold = std::find(held.begin(), held.end(), static_cast<int>(i)) != held.end();
+    if (experiment.inputs[i].degree() > (hold ? 0 : 1)) return CurvedInput{i, hold};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool allows_exact_steps(Experiment const& experiment, Model const& model) {
+  return model.integrated() && !model.implicit && static_cast<int>(model.states.size()) <= most_exact_states &&
+         !find_nonlinear(model.graph, derivatives_of(model)) && unequal_step(experiment.time) == 0 &&
+         !curved_input(experiment, model);
+}
+
 void require_exact_steps(Experiment const& experiment, DataBlock const& block, Model const& model, SolverSettings const& solver) {
   if (!model.integrated() || !solver.row().exact) return;
   if (std::size_t const row = unequal_step(experiment.time); row > 0)
@@ -197,27 +227,23 @@ void require_exact_steps(Experiment const& experiment, DataBlock const& block, M
          "use another solver; if the sampling was regular and the printed times are rounded, give `rate` instead of "
          "the time column",
          {solver.method}});
-  std::vector<NodeId> derivatives;
-  for (State const& state : model.states) derivatives.push_back(state.derivative);
-  std::vector<int> const held = inputs_not_linear(model.graph, derivatives);
-  for (std::size_t i = 0; i < experiment.inputs.size(); ++i) {
-    bool const hold = std::find(held.begin(), held.end(), static_cast<int>(i)) != held.end();
-    if (experiment.inputs[i].degree() <= (hold ? 0 : 1)) continue;
-    std::string const& name = model.inputs[i].name;
-    auto const bound = std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == name; });
-    throw UserError(
-        {Severity::error,
-         "E4205",
-         hold ? fmt::format("`{}` is exact only if `{}`, which the equations do not read linearly, is constant between "
-                            "its samples",
-                            solver.method, name)
-              : fmt::format("`{}` is exact only if `{}` is constant or a straight line between its samples", solver.method, name),
-         Label{bound == block.inputs.end() ? block.span : bound->rule_span, {}},
-         {},
-         fmt::format("use another solver, or `hold {}` if that is what the input did",
-                     hold ? "zero_order" : "zero_order` or `hold linear"),
-         {solver.method, name}});
-  }
+  std::optional<CurvedInput> const curved = curved_input(experiment, model);
+  if (!curved) return;
+  std::string const& name = model.inputs[curved->index].name;
+  auto const bound = std::find_if(block.inputs.begin(), block.inputs.end(), [&](auto const& each) { return each.input == name; });
+  throw UserError(
+      {Severity::error,
+       "E4205",
+       curved->to_be_held
+           ? fmt::format("`{}` is exact only if `{}`, which the equations do not read linearly, is constant between "
+                         "its samples",
+                         solver.method, name)
+           : fmt::format("`{}` is exact only if `{}` is constant or a straight line between its samples", solver.method, name),
+       Label{bound == block.inputs.end() ? block.span : bound->rule_span, {}},
+       {},
+       fmt::format("use another solver, or `hold {}` if that is what the input did",
+                   curved->to_be_held ? "zero_order" : "zero_order` or `hold linear"),
+       {solver.method, name}});
 }
 
 std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data) {

@@ -40,6 +40,8 @@ Record load_record(DataBlock const& block, Model const& model, std::filesystem::
 /// Throws UserError when they are outside the record, the start needs more rows, or the model needs a sample that is missing.
 Experiment cut(Record const& record, DataBlock const& block, Model const& model, int part, StartRule start);
 
+/// Whether a solver whose step is exact for linear equations could take the rows.
+bool allows_exact_steps(Experiment const& experiment, Model const& model);
 /// UserError where a solver's step is exact, but not along these rows: they are not equally far apart, or an input between them is
 /// no straight line, or no constant where the equations read it other than linearly.
 void require_exact_steps(Experiment const& experiment, DataBlock const& block, Model const& model, SolverSettings const& solver);

@@ -102,6 +102,7 @@ struct InformationPage {
   std::string refinement;                             // "half the step"
   std::vector<std::pair<std::string, double>> moves;  // solver, largest move of a parameter [sd] when it is refined
   std::string taken;                                  // the one that the task goes on with; empty: the fit chooses
+  std::string exact;                                  // one that makes no error, in use or not; empty: there is none
   std::optional<double> found_move;  // of a mode that was found from the nearest draws, with the stated solver, when refined [sd]
   std::string advised;               // the first that no longer moves the result; empty: none that was tried
   std::optional<double> response_move;  // of a candidate: of the middle response, as a part of its sd, when refined

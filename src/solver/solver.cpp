@@ -124,6 +124,10 @@ SolverRow const& implicit_solver() {
   return first_solver([](SolverRow const& row) { return row.implicit; });
 }
 
+SolverRow const& exact_solver() {
+  return first_solver([](SolverRow const& row) { return row.exact; });
+}
+
 SolverRow const& SolverSettings::row() const {
   SolverRow const* found = find_solver(method);
   if (found == nullptr) throw InternalError(fmt::format("there is no solver `{}`", method));

@@ -48,6 +48,8 @@ SolverRow const* find_solver(std::string_view name);
 SolverRow const& adaptive_solver();
 SolverRow const& stiff_solver();
 SolverRow const& implicit_solver();
+/// Of linear equations.
+SolverRow const& exact_solver();
 
 /// Stands for the size of a state that has never moved, so that its error of 0 may be divided by something: far below any quantity
 /// in any unit, with squares of its inverse still finite.

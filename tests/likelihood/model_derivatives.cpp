@@ -67,7 +67,7 @@ Experiment experiment(int which) {
 }
 
 std::unique_ptr<ModelTarget> target_of(std::string const& source, bool free_start, std::string const& method,
-                                       ExecutionOptions execution = {}) {
+                                       ExecutionOptions execution = {}, double relative = SolverSettings{}.relative) {
   Model const model = model_of(source);
   std::vector<ExperimentMember> members;
   std::vector<Experiment> records;
@@ -78,6 +78,7 @@ std::unique_ptr<ModelTarget> target_of(std::string const& source, bool free_star
   TargetOptions options;
   options.start_rows = free_start ? 8 : 0;
   options.solver.method = method;
+  options.solver.relative = relative;
   options.execution = execution;
   return std::make_unique<ModelTarget>(compile(model, free_start, method), std::make_shared<ParameterSpace const>(model, members),
                                        records, options);
@@ -174,7 +175,10 @@ TEST_CASE("differences experiment by experiment are those of any target") {
 }
 
 TEST_CASE("exact derivatives are near differences, at 0 of every coordinate too") {
-  auto const target = target_of(text, false, "rk4");
+  std::string method = "rk4";
+  SUBCASE("fixed steps") {}
+  SUBCASE("exact steps") { method = "exponential"; }
+  auto const target = target_of(text, false, method);
   CHECK(target->derivatives() == DerivativeSource::exact);
   LaneArray theta = draws(*target, 3);
   for (int p = 0; p < theta.rows(); ++p)
@@ -193,6 +197,21 @@ TEST_CASE("exact derivatives are near differences, at 0 of every coordinate too"
     CHECK(furthest(found.step, expected.step) <= 1e-6 * largest(expected.step));
     CHECK(furthest(found.curvature, expected.curvature) <= 1e-6 * largest(expected.curvature));
     CHECK(furthest(found.gradient, found.step) <= 1e-11 * largest(found.step));
+  }
+}
+
+TEST_CASE("exact steps give the likelihood that small steps tend to") {
+  for (bool const free_start : {false, true}) {
+    auto const exact = target_of(text, free_start, "exponential"), adaptive = target_of(text, free_start, "dopri5", {}, 1e-12);
+    LaneArray const theta = draws(*exact, 20);
+    std::vector<double> found(20), expected(20);
+    Ledger ledger;
+    exact->log_likelihood(theta, found, ledger);
+    adaptive->log_likelihood(theta, expected, ledger);
+    for (std::size_t w = 0; w < 20; ++w) {
+      REQUIRE(std::isfinite(expected[w]));
+      CHECK(found[w] == doctest::Approx(expected[w]).epsilon(1e-8));
+    }
   }
 }
 
@@ -230,7 +249,10 @@ TEST_CASE("of more parameters than pay, steps of least squares take differences,
             (i == 1 ? "x" : numbered("y", i - 1)) + " - " + numbered("y", i) + ")\n";
   }
   lags += "  observe position ~ normal(y9, sd = 0.1)\n  observe speed ~ normal(y3, sd = 0.1)\n}\n";
-  auto const target = target_of(lags, false, "rk4");
+  std::string method = "rk4";
+  SUBCASE("fixed steps") {}
+  SUBCASE("exact steps") { method = "exponential"; }
+  auto const target = target_of(lags, false, method);
   CHECK(target->derivatives() == DerivativeSource::mixed);
   CHECK(target->compiled()->adjoint);
   LaneArray const theta = draws(*target, 2);
@@ -284,9 +306,11 @@ model turn {
 
 TEST_CASE("derivatives are the same bytes for any threads, lanes and neighbours") {
   bool free_start = false;  // exact derivatives; differences
+  std::string method = "rk4";
   SUBCASE("exact") {}
+  SUBCASE("exact steps") { method = "exponential"; }
   SUBCASE("differences") { free_start = true; }
-  auto const one = target_of(text, free_start, "rk4"), two = target_of(text, free_start, "rk4", {.lanes = 4, .threads = 2});
+  auto const one = target_of(text, free_start, method), two = target_of(text, free_start, method, {.lanes = 4, .threads = 2});
   LaneArray const theta = draws(*one, 5);
   Ledger ledger;
   Slopes const first = by_experiments(*one, theta, ledger), second = by_experiments(*two, theta, ledger);

@@ -49,6 +49,7 @@ TEST_CASE("solvers that are chosen by what they can do") {
   CHECK(adaptive_solver().name == "dopri5");
   CHECK(stiff_solver().name == "cvode");
   CHECK(implicit_solver().name == "ida");
+  CHECK(exact_solver().name == "exponential");
 }
 
 TEST_CASE("a solver is spelt as a task states it") {

@@ -139,7 +139,12 @@ Findings check_method(Session const& session, FitTask const& what) {
 }
 
 void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::vector<LocalResponse> const& responses) {
+  InformationPage& information = *preflight.page.information;
+  if (std::ranges::all_of(preflight.experiments,
+                          [&](Experiment const& each) { return allows_exact_steps(each, preflight.model()); }))
+    information.exact = exact_solver().name;
   std::vector<double> moves(preflight.solvers.size() - 1, 0.0), response_moves, shifts;
+  if (preflight.what.solver.row().exact) information.taken = preflight.what.solver.text();
   if (moves.empty()) return;
   for (LocalResponse const& each : responses) {
     for (std::size_t level = 0; level < moves.size(); ++level)
@@ -147,7 +152,6 @@ void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::
     response_moves.push_back(each.moved);
     shifts.push_back(each.shift);
   }
-  InformationPage& information = *preflight.page.information;
   information.refinement = preflight.what.solver.finer_words();
   if (!preflight.refines_solver()) information.taken = preflight.what.solver.text();
   for (std::size_t level = 0; level < moves.size(); ++level) {

@@ -29,7 +29,7 @@ Diagnostic solver_of_linear_equations(Span option, std::string const& solver, st
                     {},
                     std::string(other_solvers)};
   result.names.push_back(solver);
-  if (part) result.secondary.push_back({*part, varies ? "changes in time" : "not linear"});
+  if (part) result.secondary.push_back({*part, varies ? "its coefficient changes in time" : "not linear"});
   return result;
 }
 

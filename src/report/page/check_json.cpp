@@ -107,6 +107,7 @@ Json information_object(InformationPage const& page) {
           {"ridges", page.ridges},
           {"solvers", moves},
           {"taken_solver", page.taken},
+          {"exact_solver", page.exact},
           {"advised_solver", page.advised},
           {"found_move_sd", page.found_move ? Json(*page.found_move) : Json(nullptr)},
           {"response_move", page.response_move ? Json(*page.response_move) : Json(nullptr)}};

@@ -169,6 +169,10 @@ std::string information_text(InformationPage const& page) {
                          page.advised.empty() ? "none of these is accurate enough"
                          : page.taken.empty() ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
                                               : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
+  if (!page.exact.empty() && page.exact == page.taken) out += entry("solver", {fmt::format("{} is exact", page.exact)});
+  if (!page.exact.empty() && page.exact != page.taken)
+    out += entry(moves.empty() ? "solver" : "",
+                 {fmt::format("`solver = {}` would be exact, as the equations are linear", page.exact)});
   if (page.found_move)
     out += entry("", {fmt::format("the mode that {} finds from these draws moves by {} sd with {}", page.moves.front().first,
                                   significant(*page.found_move, 2), page.refinement)});
