@@ -17,9 +17,11 @@ namespace sysid {
 namespace {
 
 constexpr int doublings = 20;
-constexpr int degree = 15;           // of phi_2's series: what is left out is below rounding for |z| < 1
-constexpr double most_scaled = 0.5;  // |z| after scaling, as the root of a power
-constexpr int power_of_check = 8;    // of which power: units of states that differ by 1e8 count 10 then
+constexpr int degree = 15;  // of the series of phi_2; what it leaves out is below rounding where the scaled matrix is below 1
+// The size of the scaled matrix is that of a high power of it, so that the units of the states hardly matter: a factor of 1e8
+// between entries that multiply to the same rate counts 10.
+constexpr double most_scaled = 0.5;
+constexpr int power_of_check = 8;
 
 /// Entries that are zero are a constant zero, which is what products skip.
 class Matrix {
