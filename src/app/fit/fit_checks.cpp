@@ -42,15 +42,22 @@ std::string without_timing(FinishedFit const& fit) {
   return explains ? "" : "the fit explains nothing of a channel";
 }
 
+// An exact step suits some rules between samples alone.
+SolverSettings solver_along(FinishedFit const& fit, std::vector<Experiment> const& experiments) {
+  SolverSettings const& solver = fit.preparation.solver;
+  bool const suits = !solver.row().exact || std::ranges::all_of(experiments, [&](Experiment const& each) {
+    return allows_exact_steps(each, fit.likelihood.model());
+  });
+  return suits ? solver : SolverSettings{.method = std::string(adaptive_solver().name)};
+}
+
 Findings input_timing(FinishedFit& fit) {
-  // An exact step suits some rules between samples alone.
-  SolverSettings const& fitted = fit.preparation.solver;
-  SolverSettings const solver = fitted.row().exact ? SolverSettings{.method = std::string(adaptive_solver().name)} : fitted;
   FitOfExperiments const remade{[&](std::vector<Experiment> experiments) {
+                                  SolverSettings const solver = solver_along(fit, experiments);
                                   return fit.likelihood.make_target(std::move(experiments), solver, fit.session.interruptible());
                                 },
                                 [&](std::vector<Experiment> const& experiments, std::vector<double> const& sampled) {
-                                  return fit.likelihood.log_densities(experiments, solver, sampled);
+                                  return fit.likelihood.log_densities(experiments, solver_along(fit, experiments), sampled);
                                 }};
   return check_inputs(remade, fit.likelihood.model(), experiments_of(fit.data), fit.objective_kind, fit.preparation.modes.front(),
                       fit.seed, fit.extra);

@@ -46,19 +46,15 @@ class IndependentLikelihood : public FitLikelihood {
 
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {
-    auto const compiled =
-        solver.method == what_.solver.method
-            ? compiled_
-            : session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, solver.method, what_.prediction);
-    return make_fit_target(session_, what_, compiled, space_, std::move(experiments), solver, execution);
+    return make_fit_target(session_, what_, compiled_for(solver), space_, std::move(experiments), solver, execution);
   }
 
   std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,
                                                  std::vector<double> const& sampled) const override {
     std::vector<std::vector<double>> all;
     for (int e = 0; e < static_cast<int>(experiments.size()); ++e) {
-      PointwiseLikelihood const pointwise(compiled_, experiments[static_cast<std::size_t>(e)], solver, start_rows(what_.start),
-                                          session_.interruptible());
+      PointwiseLikelihood const pointwise(compiled_for(solver), experiments[static_cast<std::size_t>(e)], solver,
+                                          start_rows(what_.start), session_.interruptible());
       for (auto& channel : pointwise.run(parameters_at(sampled, e))) all.push_back(std::move(channel.front()));
     }
     return all;
@@ -129,6 +125,11 @@ class IndependentLikelihood : public FitLikelihood {
   Facts settings() const override { return {}; }
 
  private:
+  std::shared_ptr<CompiledModel const> compiled_for(SolverSettings const& solver) const {
+    if (solver.method == what_.solver.method) return compiled_;
+    return session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, solver.method, what_.prediction);
+  }
+
   Experiment const& experiment(int e) const { return data_[static_cast<std::size_t>(e)].experiment; }
 
   static std::vector<double> best_of(FitResult const& result) {
