@@ -39,13 +39,13 @@ data bench {{
                      made, hold, tasks);
 }
 
-json const* finding(json const& summary, std::string const& code) {
+json const* finding_of(json const& summary, std::string const& code) {
   for (json const& each : summary.at("findings"))
     if (each.at("code") == code) return &each;
   return nullptr;
 }
 
-json check(json const& summary, std::string const& name) {
+json check_row(json const& summary, std::string const& name) {
   for (json const& each : summary.at("checks"))
     if (each.at("name") == name) return each;
   return {};
@@ -70,9 +70,9 @@ forecast = predict exact on bench)"),
     CHECK(std::abs(found.at("mean").get<double>() - expected.at("mean").get<double>()) < 0.01 * sd);
     CHECK(found.at("sd").get<double>() == doctest::Approx(sd).epsilon(0.01));
   }
-  CHECK(check(exact, "solver_accuracy").at("reason").get<std::string>().find("is exact") != std::string::npos);
-  CHECK(check(small, "solver_accuracy").at("ran") == true);
-  CHECK(finding(exact, "input_rule") == nullptr);
+  CHECK(check_row(exact, "solver_accuracy").at("reason").get<std::string>().find("is exact") != std::string::npos);
+  CHECK(check_row(small, "solver_accuracy").at("ran") == true);
+  CHECK(finding_of(exact, "input_rule") == nullptr);
 }
 
 TEST_CASE("rules between samples that an exact step does not suit are tried by another solver") {
@@ -81,7 +81,7 @@ TEST_CASE("rules between samples that an exact step does not suit are tried by a
           "input x = multisine(sd = 3 [N], lowest = 1 [Hz], highest = 20 [Hz], hold = cubic), solver = dopri5(relative = 1e-10)",
           "zero_order", "held = fit oscillator to bench with map, solver = exponential, seed = 1"),
       {});
-  json const* const told = finding(run.summary("held"), "input_rule");
+  json const* const told = finding_of(run.summary("held"), "input_rule");
   REQUIRE(told != nullptr);
   CHECK(told->at("help").get<std::string>().find("hold cubic") != std::string::npos);
 }
