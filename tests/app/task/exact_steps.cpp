@@ -81,7 +81,8 @@ TEST_CASE("rules between samples that an exact step does not suit are tried by a
           "input x = multisine(sd = 3 [N], lowest = 1 [Hz], highest = 20 [Hz], hold = cubic), solver = dopri5(relative = 1e-10)",
           "zero_order", "held = fit oscillator to bench with map, solver = exponential, seed = 1"),
       {});
-  json const* const told = finding_of(run.summary("held"), "input_rule");
+  json const held = run.summary("held");
+  json const* const told = finding_of(held, "input_rule");
   REQUIRE(told != nullptr);
   CHECK(told->at("help").get<std::string>().find("hold cubic") != std::string::npos);
 }
