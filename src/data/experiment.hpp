@@ -98,7 +98,7 @@ struct Experiment {
 /// [s] time: [N], N >= 2.
 double mean_step(std::span<double const> time);
 /// The first sample whose step from the one before differs from the mean by more than a part in a million; 0: none.
-std::size_t unequal_step(std::span<double const> time);
+std::size_t unequal_step(std::span<double const> time, double tolerance = 1e-6);
 
 /// The sample of a channel at `row`, which may lie before the first; NaN where it is missing or was not recorded.
 double measured_sample(Experiment const& experiment, int channel, int row);

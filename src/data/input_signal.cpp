@@ -11,8 +11,7 @@ namespace sysid {
 
 double mean_step(std::span<double const> time) { return (time.back() - time.front()) / static_cast<double>(time.size() - 1); }
 
-std::size_t unequal_step(std::span<double const> time) {
-  constexpr double tolerance = 1e-6;
+std::size_t unequal_step(std::span<double const> time, double tolerance) {
   double const usual = mean_step(time);
   for (std::size_t i = 1; i < time.size(); ++i)
     if (!(std::fabs(time[i] - time[i - 1] - usual) <= tolerance * usual)) return i;

@@ -191,6 +191,22 @@ std::vector<NodeId> derivatives_of(Model const& model) {
   return derivatives;
 }
 
+/// The step that differs most from the median, and the row at its end.
+struct OddStep {
+  std::size_t row;
+  double step, median;
+};
+OddStep oddest_step(std::vector<double> const& time) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
+  std::vector<double> sorted = steps;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  double const median = sorted[sorted.size() / 2];
+  auto const odd = std::max_element(steps.begin(), steps.end(),
+                                    [&](double a, double b) { return std::fabs(a - median) < std::fabs(b - median); });
+  return {static_cast<std::size_t>(odd - steps.begin()) + 1, *odd, median};
+}
+
 /// An input that is neither held nor, where the equations read all inputs linearly, a straight line between its samples.
 struct CurvedInput {
   std::size_t index;
@@ -215,18 +231,21 @@ bool allows_exact_steps(Experiment const& experiment, Model const& model) {
 
 void require_exact_steps(Experiment const& experiment, DataBlock const& block, Model const& model, SolverSettings const& solver) {
   if (!model.integrated() || !solver.row().exact) return;
-  if (std::size_t const row = unequal_step(experiment.time); row > 0)
+  if (unequal_step(experiment.time) > 0) {
+    OddStep const odd = oddest_step(experiment.time);
     throw UserError(
         {Severity::error,
          "E4205",
-         fmt::format("row {} of `{}` is {:.9g} s after the row before, but the mean step is {:.9g} s: `{}` needs equal steps",
-                     experiment.first_row + static_cast<int>(row), block.path, experiment.time[row] - experiment.time[row - 1],
-                     mean_step(experiment.time), solver.method),
+         fmt::format("row {} of `{}` is {:.9g} s after the row before, but the median step is {:.9g} s: `{}` needs equal steps",
+                     experiment.first_row + static_cast<int>(odd.row), block.path, odd.step, odd.median, solver.method),
          Label{block.time ? block.time->span : block.span, {}},
          {},
-         "use another solver; if the sampling was regular and the printed times are rounded, give `rate` instead of "
-         "the time column",
+         std::fabs(odd.step - odd.median) < 0.1 * odd.median
+             ? "use another solver; if the sampling was regular and the printed times are rounded, give `rate` instead of the time "
+               "column"
+             : "use another solver, or split the record at this row and fit the parts as several experiments",
          {solver.method}});
+  }
   std::optional<CurvedInput> const curved = curved_input(experiment, model);
   if (!curved) return;
   std::string const& name = model.inputs[curved->index].name;

@@ -16,7 +16,7 @@
 namespace sysid {
 namespace {
 
-constexpr int doublings = 20;
+constexpr int doublings = 30;
 constexpr int degree = 15;  // of the series of phi_2; what it leaves out is below rounding where the scaled matrix is below 1
 // The size of the scaled matrix is that of a high power of it, so that the units of the states hardly matter: a factor of 1e8
 // between entries that multiply to the same rate counts 10.

@@ -159,7 +159,8 @@ std::string SolverSettings::finer_words() const { return fixed_step() ? "half th
 
 std::string SolverSettings::other_methods() const {
   std::string const stiff = fmt::format("`solver = {}`", stiff_solver().name);
-  if (row().stiff || row().exact) return {};
+  if (row().stiff) return {};
+  if (row().exact) return stiff;
   if (row().adaptive) return stiff + " if the model is stiff";
   return fmt::format("`solver = {}`, or {} if the model is stiff", adaptive_solver().name, stiff);
 }

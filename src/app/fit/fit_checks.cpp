@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/fit/hierarchies.hpp"
 #include "app/session/fit_end.hpp"
@@ -11,6 +12,8 @@
 #include "diagnostics/input_checks.hpp"
 #include "diagnostics/model_checks.hpp"
 #include "diagnostics/prior_checks.hpp"
+#include "search/laplace.hpp"
+#include "search/objective.hpp"
 
 namespace sysid {
 namespace {
@@ -42,13 +45,24 @@ std::string without_timing(FinishedFit const& fit) {
   return explains ? "" : "the fit explains nothing of a channel";
 }
 
-// An exact step suits some rules between samples alone.
+bool solves_at_mode(FinishedFit const& fit, std::vector<Experiment> const& experiments, SolverSettings const& solver) {
+  std::vector<double> log_likelihood(1);
+  Ledger untold;
+  fit.likelihood.make_target(experiments, solver, fit.session.interruptible())
+      ->log_likelihood(to_lanes({theta_of(fit.preparation.modes.front())}), log_likelihood, untold);
+  return std::isfinite(log_likelihood.front());
+}
+
+// An exact step suits some rules between samples alone; the others are tried with adaptive steps, implicit ones where the model is
+// stiff.
 SolverSettings solver_along(FinishedFit const& fit, std::vector<Experiment> const& experiments) {
   SolverSettings const& solver = fit.preparation.solver;
   bool const suits = !solver.row().exact || std::ranges::all_of(experiments, [&](Experiment const& each) {
     return allows_exact_steps(each, fit.likelihood.model());
   });
-  return suits ? solver : SolverSettings{.method = std::string(adaptive_solver().name)};
+  if (suits) return solver;
+  SolverSettings const adaptive{.method = std::string(adaptive_solver().name)};
+  return solves_at_mode(fit, experiments, adaptive) ? adaptive : SolverSettings{.method = std::string(stiff_solver().name)};
 }
 
 Findings input_timing(FinishedFit& fit) {

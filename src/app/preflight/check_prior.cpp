@@ -42,7 +42,7 @@ PriorPage counts(Preflight const& preflight, PriorSimulations const& simulations
   auto const label = [&](SolverRow const& row) {
     return std::string(row.name) + (row.name == stated.name ? " and more steps" : "");
   };
-  if (!stated.stiff) page.explicit_solver = label(adaptive_solver());
+  if (!stated.stiff && !stated.exact) page.explicit_solver = label(adaptive_solver());
   page.stiff_left = simulations.stiff_left;
   page.stiff_tried = simulations.stiff_tried;
   page.stiff_followed = simulations.stiff_followed;
@@ -70,12 +70,21 @@ void check_stiffness(Preflight const& preflight, double share) {
   if (preflight.what.solver.row().stiff || share <= many_failures) return;
   std::string const followed =
       page.failed == 0 ? "all" : fmt::format("about {:.0f} %", 100 * share * page.draws / page.failed_explicit);
+  if (preflight.what.solver.row().exact)
+    return preflight.add(
+        FindingCode::stiff_prior, Severity::warning, {},
+        fmt::format("{:.0f} % of the prior draws move too fast for {}, and {} succeeds on {} of these",
+                    100.0 * page.failed_explicit / page.draws, page.stated, page.stiff_solver, followed),
+        fmt::format("use `solver = {}`, or narrow the priors if such fast motion is not intended", page.stiff_solver));
+  std::string const exact = preflight.exact_steps
+                                ? fmt::format("`solver = {}`, which is exact for these equations", exact_solver().name)
+                                : fmt::format("`solver = {}`", page.stiff_solver);
   preflight.add(
       FindingCode::stiff_prior, Severity::warning, {},
       fmt::format("explicit steps ({}, {}) fail on {:.0f} % of the prior draws, and {} succeeds on {} of these: the model "
                   "is stiff there",
                   page.stated, page.explicit_solver, 100.0 * page.failed_explicit / page.draws, page.stiff_solver, followed),
-      fmt::format("use `solver = {}`, or narrow the priors if such fast motion is not intended", page.stiff_solver));
+      fmt::format("use {}, or narrow the priors if such fast motion is not intended", exact));
 }
 
 std::string finer_advice(SolverSettings const& solver) {

@@ -140,9 +140,7 @@ Findings check_method(Session const& session, FitTask const& what) {
 
 void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::vector<LocalResponse> const& responses) {
   InformationPage& information = *preflight.page.information;
-  if (std::ranges::all_of(preflight.experiments,
-                          [&](Experiment const& each) { return allows_exact_steps(each, preflight.model()); }))
-    information.exact = exact_solver().name;
+  if (preflight.exact_steps) information.exact = exact_solver().name;
   std::vector<double> moves(preflight.solvers.size() - 1, 0.0), response_moves, shifts;
   if (preflight.what.solver.row().exact) information.taken = preflight.what.solver.text();
   if (moves.empty()) return;

@@ -79,6 +79,7 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
       sticking(sticking_advice(compiled->model, data)) {
   std::size_t longest = 0;
   for (ExperimentData const& each : data) {
+    exact_steps = exact_steps && allows_exact_steps(each.experiment, model());
     experiments.push_back(shortened_to_scored(each.experiment));
     longest = std::max(longest, experiments.back().time.size());
     shortened = shortened || experiments.back().time.size() < each.experiment.time.size();

@@ -34,7 +34,8 @@ class Preflight {
   std::shared_ptr<ParameterSpace const> space;
   std::string sticking;  // what to do about dry friction, in place of advice on solvers; empty without
   std::vector<Experiment> experiments;
-  bool shortened = false;  // to their first `most_scored` scored rows
+  bool exact_steps = true;  // suit all experiments, whole
+  bool shortened = false;   // to their first `most_scored` scored rows
   Effort effort;
   double step_work = 0;                 // operations of the equations at the steps of one trajectory, with the stated solver
   std::vector<SolverSettings> solvers;  // as stated, then ever finer

@@ -156,16 +156,16 @@ PriorSimulations simulate_prior(Session& session, FitTask const& what, std::shar
   stated.centres(points, result.centres);
   for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(result.density[w]);
   result.failed_as_stated = static_cast<int>(std::count(result.followed.begin(), result.followed.end(), false));
-  if (what.solver.row().exact) result.failed_explicit = result.failed_as_stated;  // what it loses is lost to all
   Model const& model = compiled->model;
   PriorSimulation simulation(session, what, space, experiments, compiled, theta, points, result);
   bool const lost = result.failed_as_stated > 0;
-  if (model.integrated() && !model.implicit && !what.solver.row().exact && (lost || what.solver.fixed_step())) {
+  bool const exact = what.solver.row().exact;  // what it loses explicit steps lose, too
+  if (model.integrated() && !model.implicit && (lost || (what.solver.fixed_step() && !exact))) {
     // Where adaptive steps begin they take a Jacobian, which many states make dear: there only what fixed steps lose is tried.
     std::vector<int> lanes(width);
     std::iota(lanes.begin(), lanes.end(), 0);
     if (model.states.size() > many_states || !what.solver.fixed_step()) lanes = simulation.open();
-    if (!what.solver.row().stiff) simulation.attempt(adaptive_solver(), explicit_steps, lanes);
+    if (!what.solver.row().stiff && !exact) simulation.attempt(adaptive_solver(), explicit_steps, lanes);
     result.failed_explicit = static_cast<int>(simulation.open().size());
     simulation.attempt_stiff();
   }

@@ -224,7 +224,8 @@ class Simulate {
       throw failed(
           fmt::format("the simulation `{}` {}", task_.name,
                       functions_ ? "does not stay finite" : first_failure(session_, what_, *compiled_, experiment_, parameters_)),
-          what_.solver.row().exact    ? std::string("use other values")
+          what_.solver.row().exact    ? fmt::format("use other values, or {} if the motion is too fast for `{}`",
+                                                    what_.solver.other_methods(), what_.solver.method)
           : what_.solver.fixed_step() ? fmt::format("use smaller steps (`{}`), {}, or other values",
                                                     smaller_steps(what_.solver).option(), what_.solver.other_methods())
           : what_.solver.other_methods().empty()
