@@ -146,6 +146,34 @@ TEST_CASE("time constants decades below the samples, beside slow ones") {
     }
 }
 
+// 1.2 parts in a million from the mean of the part, 0.9 from that of the whole.
+TEST_CASE("a part of a record whose steps are equal suits exact steps, one of unequal steps does not") {
+  std::vector<double> time{0};
+  for (int i = 1; i < 200; ++i) time.push_back(time.back() + (i < 100 ? 1 + 0.9e-6 : 1 - 0.9e-6));
+  REQUIRE(unequal_step(time) == 0);
+  time.resize(150);
+  REQUIRE(unequal_step(time) > 0);
+  CHECK(simulated(two_lags(), testing::experiment(time, {&one}, {}, InputRule::linear), {0.5, 2}).ok);
+  time.back() += 1e-3;
+  CHECK_THROWS_AS(simulated(two_lags(), testing::experiment(time, {&one}, {}, InputRule::linear), {0.5, 2}), InternalError);
+}
+
+// Such an entry is as large as the units make it, and how fast powers of the matrix grow does not depend on it.
+TEST_CASE("a gain on the way from one state to another does not count for the reach") {
+  for (double const gain : {1e-15, 1e15, 1e30}) {
+    CAPTURE(gain);
+    SimulationSource source = two_lags();
+    Graph& g = source.graph;
+    NodeId const y = g.leaf(LeafKind::state, 0), z = g.leaf(LeafKind::state, 1);
+    source.derivative[1] = g.divide(g.subtract(g.multiply(g.constant(gain), y), z), g.leaf(LeafKind::parameter, 1));
+    Run const run = simulated(source, record(30, 0.2, &one), {0.5, 2}),
+              plain = simulated(two_lags(), record(30, 0.2, &one), {0.5, 2});
+    REQUIRE(run.ok);
+    for (std::size_t i = 1; i < plain.values.size(); i += 2)
+      CHECK(run.values[i] / gain == doctest::Approx(plain.values[i]).epsilon(1e-13));
+  }
+}
+
 TEST_CASE("a matrix beyond the reach of the series fails, and never gives a wrong number") {
   int failed = 0, right = 0;
   for (double rate = 1e-6; rate < 1e12; rate *= 3.7) {

@@ -3,10 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
+#include "app/tables.hpp"
 
 using namespace sysid;
 using nlohmann::json;
@@ -57,7 +60,16 @@ TEST_CASE("a fit by exact steps is that of many small ones, and says why it has 
   CaseRun const run(oscillator("input x = gaussian(sd = 1, hold = linear), solver = exponential", "linear", R"(
 exact = fit oscillator to bench with map, solver = exponential, seed = 1
 small = fit oscillator to bench with map, solver = rk4(substeps = 64), seed = 1
-forecast = predict exact on bench)"),
+other = simulate oscillator with values(m = 1, c = 3, k = 900, sigma = 1e-5), input x = gaussian(sd = 1, hold = linear), noise = model,
+    samples = 200, rate = 37 [Hz], seed = 2
+data slower {
+  file "results/other/other.csv"
+  time t [s]
+  input x = x [N] hold linear
+  measure displacement = displacement [m]
+}
+forecast = predict exact on slower, seed = 1
+by_small = predict small on slower, seed = 1)"),
                     {});
   CHECK(run.result.exit == 0);
   json const exact = run.summary("exact"), small = run.summary("small");
@@ -73,6 +85,11 @@ forecast = predict exact on bench)"),
   CHECK(check_row(exact, "solver_accuracy").at("reason").get<std::string>().find("is exact") != std::string::npos);
   CHECK(check_row(small, "solver_accuracy").at("ran") == true);
   CHECK(finding_of(exact, "input_rule") == nullptr);
+  // With a step of its own.
+  std::vector<double> const forecast = column(run.file("forecast/predict.csv"), "displacement_mean"),
+                            by_small = column(run.file("by_small/predict.csv"), "displacement_mean");
+  REQUIRE(forecast.size() == 200);
+  for (std::size_t i = 0; i < forecast.size(); ++i) CHECK(std::abs(forecast[i] - by_small[i]) < 2e-6);
 }
 
 TEST_CASE("rules between samples that an exact step does not suit are tried by another solver") {
