@@ -22,7 +22,7 @@ DistributionRow flat_distribution() {
           .log_density = &log_density,
           .cumulative = &cumulative,
           .refuse = &refuse,
-          .summary = "improper constant density; allows no evidence and no prior draws"};
+          .summary = "improper constant density; has no prior draws, so no back end accepts it"};
 }
 
 }  // namespace sysid

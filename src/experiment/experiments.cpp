@@ -254,8 +254,7 @@ void require_exact_steps(Experiment const& experiment, DataBlock const& block, M
       {Severity::error,
        "E4205",
        curved->to_be_held
-           ? fmt::format("`{}` is exact only if `{}`, which the equations do not read linearly, is constant between "
-                         "its samples",
+           ? fmt::format("`{}` is exact only if `{}`, which enters the equations nonlinearly, is constant between its samples",
                          solver.method, name)
            : fmt::format("`{}` is exact only if `{}` is constant or a straight line between its samples", solver.method, name),
        Label{bound == block.inputs.end() ? block.span : bound->rule_span, {}},

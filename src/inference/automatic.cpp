@@ -60,9 +60,12 @@ Choice choose(Target const& target, std::vector<Mode> const& modes, std::uint64_
   if (worth < worth_enough)
     return {"nuts",
             fmt::format("{} parameters, whose posterior is not normal: draws from the normal distribution at the mode are worth "
-                        "{:.2g} % of independent ones",
+                        "{:.2g} % as many independent draws from the posterior",
                         count, 100 * worth)};
-  return {"mh", fmt::format("draws from the normal distribution at the mode are worth {:.0f} % of independent ones", 100 * worth)};
+  return {
+      "mh",
+      fmt::format("draws from the normal distribution at the mode are worth {:.0f} % as many independent draws from the posterior",
+                  100 * worth)};
 }
 
 FitResult run(Target const& target, Settings const& settings, RunContext& context) {

@@ -31,7 +31,7 @@ struct PopulationRecord {
   };
   std::vector<OfModel> models;
 
-  /// Worden et al. (8.21): a part of the particles, which is no probability after the second population.
+  /// Worden et al. (8.21): the share of the particles, a probability in population 1 alone.
   double share(int model) const;
   /// Accepted part of the proposals; 1 before the first.
   double acceptance() const;

@@ -50,9 +50,9 @@ Diagnostic input_of_exact_solver(Span input, std::string const& name, Span optio
   Diagnostic result{
       Severity::error,
       "E3020",
-      held ? fmt::format("`{}` needs an input `{}` that is constant between its samples, as the equations do not read "
-                         "it linearly",
-                         solver, name)
+      held ? fmt::format(
+                 "`{0}` needs an input `{1}` that is constant between its samples, because `{1}` enters the equations nonlinearly",
+                 solver, name)
            : fmt::format("`{}` needs an input `{}` that is constant or a straight line between its samples", solver, name),
       Label{input, {}},
       {},

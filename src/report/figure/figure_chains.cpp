@@ -160,8 +160,8 @@ Figure rank_figure(Draws const& draws) {
   Figure out{"ranks", "Rank plots", "", script(drawing), Topic::chains};
   out.caption =
       "Rank plot: all draws are sorted by value and divided into twenty equal groups; the plot shows how many draws of each chain "
-      "fall into each group (ranks as fractions). Converged chains are level and inside the band, which holds for independent "
-      "draws. A slope shows a chain at another level than the rest; a "
+      "fall into each group (ranks as fractions). Converged chains are level and inside the band, which is computed for "
+      "independent draws. A slope shows a chain at another level than the rest; a "
       "hump shows a chain with another spread." +
       multiples_excluded(draws.names.size());
   return out;

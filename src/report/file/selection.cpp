@@ -39,8 +39,8 @@ ReportTable model_table(SelectionReport const& selection) {
   bool const checked = compared > 0;
   auto* const by_likelihood = compared > 1 ? &compared_probability_text : &model_probability_text;
   ReportTable table{"models",
-                    "Probability: sum of the particles' weights. Share: fraction of the particles, Worden et al. (8.21), which is "
-                    "not a probability after the second population.",
+                    "Probability: sum of the particles' weights. Share: fraction of the particles (Worden et al., eq. 8.21); it "
+                    "is a probability only in population 1.",
                     {"model", "prior", "probability", "share", "died in population"},
                     {}};
   if (checked) table.header.push_back("by likelihood");
