@@ -97,7 +97,7 @@ constexpr std::array<Situation, 35> situations{{
        return g.wanted == wanted::preposition_or_end && found_kind(g, TokenKind::word) &&
               !words::contains(means_with, g.found->text);
      },
-     "a model is fitted `to` data, a fit predicts `on` data: `fit MODEL to DATA`"},
+     "a model is fitted `to` data, a fit predicts `on` data: `fit MODEL to DATA`, `predict FIT on DATA`"},
     {[](Gap const& g) {
        return (g.wanted == wanted::with_or_end || g.wanted == wanted::preposition_or_end) && found_kind(g, TokenKind::word) &&
               words::contains(means_with, g.found->text);

@@ -213,6 +213,7 @@ std::string in_options(Gap const& gap) {
   // `mh samples = 100`: settings of a back end without parentheses.
   bool const settings = side_by_side && gap.at == with + 2 && is_word(gap.before()) && is_word(gap.found) &&
                         gap.next() != nullptr && gap.next()->is("=");
+  if (settings && found.is("seed")) return fmt::format("write a comma: `with {}, {}`", gap.before()->text, gap.rest());
   if (settings) {
     std::size_t const end = gap.find("seed", gap.at);
     std::size_t const last =

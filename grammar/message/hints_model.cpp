@@ -19,6 +19,8 @@ constexpr std::array<std::string_view, 8> start_words{"start", "init", "initial"
 constexpr std::array<std::string_view, 3> definitions{"let", "derive", "constant"};
 
 std::string no_start(std::string_view rest) {
+  for (std::string_view const bound : {"lower", "upper", "min", "max", "bounds"})
+    if (rest.find(bound) < 3) return "bounds are arguments of the prior: `normal(0, sd = 1, lower = 0, upper = 1)`";
   return fmt::format("remove `{}`: a parameter has no start value, the search begins at draws of the prior", rest);
 }
 

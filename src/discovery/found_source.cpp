@@ -42,7 +42,8 @@ std::string FoundSource::text(std::vector<FoundStructure> const& structures) con
   std::string out = fmt::format("# found by `discover {} from {}` with {}, seed {}\n", dictionary.name,
                                 data_names(file, what.experiments), what.selector, seed);
   out +=
-      "# sd of each prior: ten times that of the regression, at least a tenth of the coefficient; wide, because the fit uses the "
+      "# sd of the prior of each coefficient: ten times that of the regression, at least a tenth of the coefficient; wide, because "
+      "the fit uses the "
       "same record again\n\n";
   std::vector<std::string> models;
   std::set<std::string> inputs, channels;

@@ -60,7 +60,7 @@ PriorPage counts(Preflight const& preflight, PriorSimulations const& simulations
 // What a data block may have in a wrong unit so that simulations fail.
 std::string units_that_scale(Model const& model) {
   std::string const time = "the unit of time in the data block";
-  return model.inputs.empty() ? time : "the units of the " + plural("input", model.inputs.size()) + ", " + time;
+  return model.inputs.empty() ? "and " + time : "the units of the " + plural("input", model.inputs.size()) + ", and " + time;
 }
 
 // Draws that only an implicit method follows. Fixed explicit steps as short as the motion asks for would follow them, too, but
@@ -101,7 +101,7 @@ void check_failures(Preflight const& preflight) {
   if (page.failed == page.draws)
     preflight.add(FindingCode::prior_fails, Severity::error, {},
                   fmt::format("all {} prior draws fail: the simulation or its likelihood is not finite", page.draws),
-                  fmt::format("check the named expression (can it be a noise sd of 0?), the priors and {}",
+                  fmt::format("check the named expression (can it be a noise sd of 0?), the priors, {}",
                               units_that_scale(preflight.model())));
   else if (share > many_failures)
     preflight.add(

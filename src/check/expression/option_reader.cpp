@@ -95,7 +95,8 @@ std::optional<double> OptionReader::number(ast::Expression const& tree, std::str
     diagnostics_.add(errors::constant_needed(tree.span, errors::named(name)));
     return std::nullopt;
   }
-  if (whole && *constant != std::floor(*constant)) {
+  bool const scaled = value->kind == Typed::Kind::known && value->unit.scale != 1;  // 100 [percent] is no count
+  if (whole && (scaled || *constant != std::floor(*constant))) {
     diagnostics_.add(
         errors::option_kind(tree.span, name, {"a whole number"}, fmt::format("{} = {:.0f}", name, std::round(*constant))));
     return std::nullopt;

@@ -34,10 +34,13 @@ Diagnostic solver_of_linear_equations(Span option, std::string const& solver, st
 }
 
 Diagnostic solver_that_reads_no_time(Span option, std::string const& solver, std::string const& model) {
-  return {
-      Severity::error,   "E3020", fmt::format("`{}` needs equations that do not read time, but those of `{}` do", solver, model),
-      Label{option, {}}, {},      fmt::format("make what depends on time an input of the model; or {}", other_solvers),
-      {solver, model}};
+  return {Severity::error,
+          "E3020",
+          fmt::format("`{}` needs equations that do not depend on time, but those of `{}` do", solver, model),
+          Label{option, {}},
+          {},
+          fmt::format("make what depends on time an input of the model; or {}", other_solvers),
+          {solver, model}};
 }
 
 Diagnostic solver_of_few_states(Span option, std::string const& solver, std::string const& model, std::size_t states, int most) {

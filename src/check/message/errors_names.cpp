@@ -138,6 +138,7 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
                  error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`"),
                  "function");
   auto const help = [&](std::string const& list) {
+    if (name.text == "pi") return std::string("write `pi`: it is a number");
     return guess_or(function_synonyms, name.text, known, "define it: `function f(a, b) = ...`; built-in ones: " + list);
   };
   Diagnostic result = about(

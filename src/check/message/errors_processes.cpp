@@ -264,9 +264,12 @@ Diagnostic process_beside_constraints(Span span, std::string const& model) {
             "write the equations in coordinates that satisfy the constraints, or fit the model without the process"));
 }
 Diagnostic process_feeds_back(Span span, std::string const& rule) {
-  return error("E3218", span, fmt::format("a Gaussian process cannot be fitted {}: its own values would be its inputs", rule),
-               "fit one step ahead, `prediction = one_step`, or use measured samples, `lag(measured(y), 1)`; a prediction can be a "
-               "free run");
+  return error(
+      "E3218", span,
+      fmt::format("a Gaussian process cannot be fitted if its arguments are past samples {}: its own values would be its inputs",
+                  rule),
+      "fit one step ahead, `prediction = one_step`, or use measured samples, `lag(measured(y), 1)`; a prediction can be a "
+      "free run");
 }
 Diagnostic condition_moves(Span span, std::string const& name, std::string const& what) {
   return about({name}, error("E3225", span, fmt::format("`{}` is a point and cannot depend on {}", name, what),

@@ -65,7 +65,8 @@ constexpr Synonym option_synonyms[] = {
 constexpr std::string_view of_threads = "threads are an option of the command: `sysid run FILE --threads 4`",
                            of_folder = "the folder of results is an option of the command: `sysid run FILE -o DIR`",
                            of_backend = "write the back end directly after `with`: `with mh`",
-                           of_tolerance = "tolerances are settings of a solver: `solver = dopri5(relative = 1e-8)`",
+                           of_tolerance =
+                               "tolerances are settings of a solver, `relative` and `absolute`: `solver = dopri5(relative = 1e-8)`",
                            of_step = "the solver step follows from the number of steps in each sampling interval: `substeps = 10`",
                            of_duration = "write the number of rows: `samples` is the duration times the rate";
 /// What is no option of a task, and where it is written.
@@ -167,7 +168,7 @@ Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::stri
 }
 
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
-  std::string help = guess_or(option_synonyms, option, known, known.empty() ? std::string() : place_of_option(option));
+  std::string help = guess_or(option_synonyms, option, known, place_of_option(option));
   if (help.empty())
     help = known.empty() ? std::string("it has none")
                          : fmt::format("{} {}", known.size() == 1 ? "its option is" : "its options are", quoted(known));

@@ -75,7 +75,7 @@ void TaskChecker::suit_processes(FitTask const& task, Model const& model) {
   auto const ruled = with_prediction(model, task.prediction);
   if (ruled && feeds_back(*ruled))
     diagnostics_.add(errors::process_feeds_back(
-        tree_.subject.span, task.prediction == PredictionRule::free_run ? "in free run" : "from simulated samples"));
+        tree_.subject.span, task.prediction == PredictionRule::free_run ? "of a free run" : "that the model simulates"));
 }
 
 }  // namespace sysid

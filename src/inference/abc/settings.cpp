@@ -19,7 +19,9 @@ constexpr SettingRow rows[] = {
      "how a particle moves; gaussian: normal with the population's covariance; component_gaussian: normal with its diagonal; "
      "uniform: uniform over its range; nearest_neighbours: normal with the covariance of the nearest neighbours"},
     {"kernel_scale", SettingKind::real, "0", 0, 1e12, "",
-     "factor on the covariance or range of the kernel; 0: 2 for gaussian and component_gaussian, 1 for the others", 1e-6},
+     "factor on the covariance or range of the kernel; 0 stands for 2 with gaussian and component_gaussian, and for 1 with the "
+     "others",
+     1e-6},
     {"neighbours", SettingKind::integer, "50", 2, 1e7, "", "number of neighbours in the kernel `nearest_neighbours`"},
     {"coordinates", SettingKind::word, "natural", 0, 0, "natural declared unconstrained",
      "what the kernel moves; natural: logarithms where the prior spans decades, declared values elsewhere; declared: declared "

@@ -21,7 +21,8 @@ constexpr SettingRow rows[] = {
     {"g", SettingKind::real, "0", 0, 1e300, "",
      "for unit_information and zellner: prior variance divided by that of the estimate; 0: the number of rows"},
     {"sizes", SettingKind::word, "beta_binomial", 0, 0, "beta_binomial uniform",
-     "prior of the number of terms; beta_binomial: every number of terms is equally probable; uniform: every set of terms is"},
+     "prior of the number of terms; beta_binomial: every number of terms is equally probable; uniform: every set of terms is "
+     "equally probable"},
     {"keep", SettingKind::real, "0.5", 0, 1, "", "inclusion probability above which a term is kept"},
     {"enumerate", SettingKind::integer, "16", 0, 24, "",
      "largest number of selectable terms for which all sets of terms are evaluated"},

@@ -130,9 +130,10 @@ std::string prior_text(PriorPage const& prior, std::string const& time_unit, dou
   if (prior.untraced > 0)
     lines.push_back(fmt::format("  {} x place not determined: it is determined for the first eight failures only", prior.untraced));
   for (PriorPage::Channel const& channel : prior.channels)
-    lines.push_back(fmt::format("{}: 90 % of the draws predict a range of {} to {}, median {}; measured {}", channel.name,
-                                significant(channel.low, 2), significant(channel.high, 2), significant(channel.middle, 2),
-                                number_with_unit(significant(channel.measured, 2), channel.unit)));
+    lines.push_back(
+        fmt::format("{}: in 90 % of the draws its range (largest minus smallest) is between {} and {}, median {}; measured {}",
+                    channel.name, significant(channel.low, 2), significant(channel.high, 2), significant(channel.middle, 2),
+                    number_with_unit(significant(channel.measured, 2), channel.unit)));
   return entry("prior draws", lines);
 }
 
