@@ -154,5 +154,6 @@ TEST_CASE("simulations that fail without an input are not blamed on the unit of 
   auto const failing =
       std::find_if(findings.begin(), findings.end(), [](Finding const& each) { return each.code == FindingCode::prior_fails; });
   REQUIRE(failing != findings.end());
-  CHECK(failing->help == "check the priors, the unit of time in the data block and the named part of the equation");
+  CHECK(failing->help ==
+        "check the named expression (can it be a noise sd of 0?), the priors, and the unit of time in the data block");
 }

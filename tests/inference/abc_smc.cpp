@@ -207,7 +207,7 @@ TEST_CASE("degenerate cases end in words") {
     REQUIRE(result.failure);
     CHECK(result.failure->message ==
           "10 of 10 draws from the priors could be simulated, but the first population needs 1000: `simulations = 10` is reached");
-    CHECK(result.failure->help == "allow more, or use fewer `particles`");
+    CHECK(result.failure->help == "raise the limit that was reached (`simulations`, `wall_time`), or use fewer `particles`");
   }
   SUBCASE("nothing can be simulated") {
     Toy const toy({{"broken", 1, {{Prior::uniform, -1, 1}}, [](std::span<double const>) { return std::nan(""); }}});

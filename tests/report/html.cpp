@@ -302,8 +302,8 @@ TEST_CASE("a posterior beyond its prior's 90 % is seen and said to be there") {
   CHECK((!holds(above, "<rect class=\"narrow\"") && !holds(above, "class=\"mean\"") && holds(above, "v10l8-5z")));
   CHECK((!holds(below, "<rect class=\"narrow\"") && !holds(below, "class=\"mean\"") && holds(below, "v10l-8-5z")));
   CHECK_FALSE(holds(page(0.2 - 1e-6, 1.2 + 1e-6, 0.7), "<path"));
-  CHECK(holds(above, ">above the prior's 90 % interval, by 2.0 of its width<"));
-  CHECK(holds(below, ">below the prior's 90 % interval, by 0.20 of its width<"));
+  CHECK(holds(above, ">above the prior's 90 % interval, by 2.0 times its width<"));
+  CHECK(holds(below, ">below the prior's 90 % interval, by 0.20 times its width<"));
   CHECK_FALSE(holds(across, "the prior's 90 % interval"));
 }
 

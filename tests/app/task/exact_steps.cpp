@@ -68,8 +68,8 @@ data slower {
   input x = x [N] hold linear
   measure displacement = displacement [m]
 }
-forecast = predict exact on slower, seed = 1
-by_small = predict small on slower, seed = 1)"),
+forecast = predict exact on slower with seed = 1
+by_small = predict small on slower with seed = 1)"),
                     {});
   CHECK(run.result.exit == 0);
   json const exact = run.summary("exact"), small = run.summary("small");
