@@ -373,5 +373,5 @@ TEST_CASE("what stands in the target of a discovery is always kept, and the sour
   CHECK(discovery_tables(discovery)[0].rows[0][1] == "always kept");
   SelectionReport selection;
   selection.result.models.resize(1);
-  CHECK(selection_tables(selection)[0].caption.find("Worden et al. (8.21)") != std::string::npos);
+  CHECK(selection_tables(selection)[0].caption.find("Worden et al., eq. 8.21") != std::string::npos);
 }
