@@ -168,7 +168,8 @@ Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::stri
 }
 
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
-  std::string help = guess_or(option_synonyms, option, known, place_of_option(option));
+  std::string help =
+      guess_or(option_synonyms, option, known, known.empty() && !among(of_tasks, option) ? std::string() : place_of_option(option));
   if (help.empty())
     help = known.empty() ? std::string("it has none")
                          : fmt::format("{} {}", known.size() == 1 ? "its option is" : "its options are", quoted(known));
