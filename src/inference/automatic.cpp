@@ -58,14 +58,12 @@ Choice choose(Target const& target, std::vector<Mode> const& modes, std::uint64_
     return {"mh", fmt::format("one well-defined mode in {} parameters, where its moves are cheapest", count)};
   double const worth = worth_of_normals(target, modes, seed, ledger);
   if (worth < worth_enough)
-    return {"nuts",
-            fmt::format("{} parameters, whose posterior is not normal: draws from the normal distribution at the mode are worth "
-                        "{:.2g} % as many independent draws from the posterior",
-                        count, 100 * worth)};
-  return {
-      "mh",
-      fmt::format("draws from the normal distribution at the mode are worth {:.0f} % as many independent draws from the posterior",
-                  100 * worth)};
+    return {"nuts", fmt::format("{} parameters, whose posterior is not normal: 100 draws from the normal distribution at the mode "
+                                "count as only {:.2g} independent draws from the posterior",
+                                count, 100 * worth)};
+  return {"mh",
+          fmt::format("100 draws from the normal distribution at the mode count as {:.0f} independent draws from the posterior",
+                      100 * worth)};
 }
 
 FitResult run(Target const& target, Settings const& settings, RunContext& context) {

@@ -60,7 +60,7 @@ constexpr KeywordRow keyword_rows[] = {
     {"per", "parameter k per experiment [N/m] ~ normal(mu, sd = tau)", "a parameter with a separate value in each experiment"},
     {"experiment", "parameter k per experiment [N/m] ~ normal(mu, sd = tau)", "each of the records that are fitted together"},
     {"lag", "lag(measured(level), 1)", "in discrete time: the value that a quantity had the given number of samples earlier"},
-    {"lags", "lags(U, 0..4)", "a list of lags, as input of a Gaussian process"},
+    {"lags", "lags(U, 0..4)", "in discrete time: the values that a quantity had at several lags, as arguments of a function"},
     {"since_last", "poisson(since_last(-S))", "the change of a quantity since the previous row"},
     {"gp", "function d(u) ~ gp(squared_exponential(amplitude = s, length = l))",
      "a Gaussian process with its covariance (`list kernels`)"},

@@ -101,7 +101,7 @@ TEST_CASE("many parameters are sampled by mh where their posterior is normal, el
   auto const at_mode = [&](Target const& target) { return search(target, ObjectiveKind::posterior, bench.context).modes; };
   auto const by_mh = choose(normal, at_mode(normal));
   CHECK(by_mh.backend == "mh");
-  CHECK(contains(by_mh.reason, "as many independent draws"));
+  CHECK(contains(by_mh.reason, "independent draws from the posterior"));
   auto const by_nuts = choose(bent, {mode(30, 1)});
   CHECK(by_nuts.backend == "nuts");
   CHECK(contains(by_nuts.reason, "not normal"));

@@ -222,13 +222,14 @@ Findings check_exchange(Plan const& plan, Ladder const& ladder) {
   if (least >= least_exchange) return {};
   // Twice the barrier: neighbours are then exchanged about half of the time.
   int const enough = std::max(plan.rungs + 1, static_cast<int>(std::ceil(2 * ladder.barrier())) + 1);
-  return {{FindingCode::replicas_do_not_mix,
-           Severity::warning,
-           {},
-           fmt::format("states hardly move between the prior and the posterior: between two neighbouring temperatures, only a "
-                       "fraction of {:.2g} of the exchanges is accepted",
-                       least),
-           fmt::format("use temperatures = {}", std::min(enough, 512))}};
+  return {
+      {FindingCode::replicas_do_not_mix,
+       Severity::warning,
+       {},
+       fmt::format("the replicas hardly move between the prior and the posterior: between two neighbouring temperatures, only a "
+                   "fraction of {:.2g} of the exchanges is accepted",
+                   least),
+       fmt::format("use temperatures = {}", std::min(enough, 512))}};
 }
 
 }  // namespace
