@@ -166,7 +166,8 @@ Findings check_reach(Model const& model, std::vector<RunsAlong> const& fitted, R
                      significant(input.from_si(reached.high), 3),
                      input.unit ? fmt::format(" [{}]", input.unit->text) : std::string(),
                      significant(input.from_si(visited.low), 3), significant(input.from_si(visited.high), 3)),
-         "there the values and the band follow from the prior of the kernel, not from data: fit a record that covers this range"});
+         "there the values and the band follow from the prior of the function, not from data: fit a record that covers this "
+         "range"});
   }
   return findings;
 }

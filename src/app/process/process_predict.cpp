@@ -92,8 +92,8 @@ class ProcessPredict {
            {each.process, each.input},
            fmt::format("the input `{}` of `{}` lies outside its fitted range by up to {:.2g} times the width of that range{}",
                        each.input, each.process, each.widths, where),
-           "do not rely on the band there: the process returns to zero, and its band follows from the prior of the kernel, not "
-           "from data"});
+           "do not rely on the band there: the process returns to zero, and its band follows from its prior, not from "
+           "data"});
   }
 
   Session& session_;

@@ -79,15 +79,14 @@ std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
     for (Feedback& feedback : feedbacks) changed = feedback(result, experiment) || changed;
     if (!changed) return result;
   }
-  throw UserError(
-      {Severity::error,
-       "E5001",
-       fmt::format(
-           "the simulation `{}` does not converge: the samples that the model uses as its own input change with every repetition",
-           task.name),
-       Label{task.span, {}},
-       {},
-       "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values"});
+  throw UserError({Severity::error,
+                   "E5001",
+                   fmt::format("the simulation `{}` does not converge: the model uses its own output as input, so the record is "
+                               "computed again and again until it no longer changes, but it keeps changing",
+                               task.name),
+                   Label{task.span, {}},
+                   {},
+                   "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values"});
 }
 
 }  // namespace sysid
