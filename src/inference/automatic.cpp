@@ -47,7 +47,7 @@ Choice choose(Target const& target, std::vector<Mode> const& modes, std::uint64_
     return {"tempering", modes_of_weight + ", and replicas cross between them"};
   }
   if (!modes.front().flat.empty())
-    return {"mh", "the posterior is flat in a direction at its mode, and moves along ridges follow it"};
+    return {"mh", "at its mode the posterior is flat in one direction, and mh has proposals that follow this direction"};
   if (target.derivatives() == DerivativeSource::differences)
     return {
         "mh",
