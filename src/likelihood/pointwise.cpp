@@ -23,22 +23,29 @@ PointwiseLikelihood::PointwiseLikelihood(std::shared_ptr<CompiledModel const> co
       if (simulator_.schedule().summed(static_cast<int>(c), i)) samples_[c].push_back(i);
 }
 
-std::vector<std::vector<std::vector<double>>> PointwiseLikelihood::run(ConstLanes parameters) const {
-  std::vector<std::vector<std::vector<double>>> values(samples_.size());
-  int const channels = static_cast<int>(samples_.size()), last = simulator_.schedule().last_summed();
+void PointwiseLikelihood::records(ConstLanes parameters, int first_row, int last_row, Lanes out) const {
   for (int first = 0; first < parameters.width(); first += densities_at_once) {
     int const width = std::min(densities_at_once, parameters.width() - first);
     LaneArray block(compiled_->parameter_rows(), width);
     for (int r = 0; r < parameters.rows(); ++r)
       for (int w = 0; w < width; ++w) block(r, w) = parameters(r, first + w);
     if (start_) start_->estimate(block);
-    LaneArray records(last * channels, width);
     std::vector<Outcome> outcome(static_cast<std::size_t>(width));
-    simulator_.records(block, 0, last, records, outcome);
-    for (int c = 0; c < channels; ++c)
+    simulator_.records(block, first_row, last_row, out.columns(first, width), outcome);
+  }
+}
+
+std::vector<std::vector<std::vector<double>>> PointwiseLikelihood::run(ConstLanes parameters) const {
+  std::vector<std::vector<std::vector<double>>> values(samples_.size());
+  int const last = simulator_.schedule().last_summed();
+  for (int first = 0; first < parameters.width(); first += densities_at_once) {
+    int const width = std::min(densities_at_once, parameters.width() - first);
+    LaneArray out(last * channels(), width);
+    records(parameters.columns(first, width), 0, last, out);
+    for (int c = 0; c < channels(); ++c)
       for (int w = 0; w < width; ++w) {
         values[static_cast<std::size_t>(c)].emplace_back();
-        for (int const i : samples(c)) values[static_cast<std::size_t>(c)].back().push_back(records(i * channels + c, w));
+        for (int const i : samples(c)) values[static_cast<std::size_t>(c)].back().push_back(out(i * channels() + c, w));
       }
   }
   return values;

@@ -21,6 +21,11 @@ class PointwiseLikelihood {
   /// is the log likelihood of the experiment. NaN throughout where the solve fails. parameters: of the model, SI [parameters x W].
   std::vector<std::vector<std::vector<double>>> run(ConstLanes parameters) const;
 
+  int channels() const { return static_cast<int>(samples_.size()); }
+  /// The same numbers as they are recorded, of rows [first, last): channel c at row i is row (i - first) * channels() + c of out
+  /// [.. x W]. Simulated from the beginning of the record; NaN in lanes whose solve fails before `last`.
+  void records(ConstLanes parameters, int first, int last, Lanes out) const;
+
  private:
   std::shared_ptr<CompiledModel const> compiled_;
   Simulator simulator_;

@@ -9,6 +9,7 @@
 
 #include "core/setting/settings.hpp"
 #include "core/system/ledger.hpp"
+#include "result/criteria.hpp"
 #include "result/discovery.hpp"
 #include "result/draws.hpp"
 #include "result/evidence.hpp"
@@ -114,6 +115,7 @@ struct Report {
   /// are integrated out have draws and are not among them.
   std::vector<std::string> sampled_names = {};
   std::optional<Evidence> evidence;       // of a fit that has come to its end
+  std::optional<Criteria> criteria;       // the same
   std::vector<std::string> noise;         // of a fit: its parameters that only the noise reads
   std::vector<FunctionReport> functions;  // unknown ones of the equations
   std::vector<RestoringForce> forces;     // of each experiment and oscillator that has one

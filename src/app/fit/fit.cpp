@@ -9,6 +9,7 @@
 
 #include "app/fit/advice.hpp"
 #include "app/fit/fit_checks.hpp"
+#include "app/fit/fit_criteria.hpp"
 #include "app/fit/fit_preparation.hpp"
 #include "app/fit/hierarchies.hpp"
 #include "app/session/fit_end.hpp"
@@ -219,6 +220,7 @@ class Fit {
     if (!interrupted) {
       report.functions = likelihood_->functions(result, report.draws);
       report.evidence = laplace_evidence(target, backend_->objective_kind, preparation_.modes, seed_, finished.extra);
+      report.criteria = criteria_of(finished);
       report.noise = noise_parameters(likelihood_->space());
     }
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);

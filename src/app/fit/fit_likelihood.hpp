@@ -9,6 +9,7 @@
 #include "experiment/experiments.hpp"
 #include "inference/backend/backend.hpp"
 #include "likelihood/parameter_space.hpp"
+#include "likelihood/pointwise.hpp"
 #include "likelihood/target.hpp"
 #include "result/report.hpp"
 
@@ -42,6 +43,9 @@ class FitLikelihood {
   /// values of the sampled parameters, declared; empty where samples are not independent given the trajectory.
   virtual std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,
                                                          std::vector<double> const& sampled) const = 0;
+  /// The same of one of the fit's own experiments, for any draws and rows; null where samples are not independent given the
+  /// trajectory.
+  virtual std::unique_ptr<PointwiseLikelihood> pointwise(int experiment) const = 0;
   /// The target of the fit's own experiments, which the functions below read.
   virtual Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) = 0;
 

@@ -12,7 +12,6 @@
 #include "diagnostics/function_ranges.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/table.hpp"
-#include "likelihood/pointwise.hpp"
 #include "likelihood/trajectory.hpp"
 #include "mechanics/restoring_force.hpp"
 
@@ -58,6 +57,11 @@ class IndependentLikelihood : public FitLikelihood {
       for (auto& channel : pointwise.run(parameters_at(sampled, e))) all.push_back(std::move(channel.front()));
     }
     return all;
+  }
+
+  std::unique_ptr<PointwiseLikelihood> pointwise(int e) const override {
+    return std::make_unique<PointwiseLikelihood>(compiled_, experiment(e), solver_, start_rows(what_.start),
+                                                 session_.interruptible());
   }
 
   Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) override {

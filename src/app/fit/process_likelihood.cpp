@@ -59,6 +59,8 @@ class ProcessLikelihood : public FitLikelihood {
     return {};
   }
 
+  std::unique_ptr<PointwiseLikelihood> pointwise(int) const override { return nullptr; }
+
   Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) override {
     solver_ = solver;
     target_ = process_target(what_, model_, experiments_of(data_), solver, execution);

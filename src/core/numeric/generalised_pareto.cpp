@@ -14,11 +14,11 @@ namespace {
 constexpr double none = std::numeric_limits<double>::infinity();
 constexpr int shortest_tail = 5;
 
-// Mean of log(1 - theta x), which is the k that is likeliest with this theta = -k / sigma.
-double shape_given(double theta, std::span<double const> x) {
-  double sum = 0;
-  for (double const each : x) sum += elementary::log1p(-theta * each);
-  return sum / static_cast<double>(x.size());
+// Mean of log(1 - theta x), which is the k that is likeliest with this theta = -k / sigma. terms: [x.size()] to work in.
+double shape_given(double theta, std::span<double const> x, std::vector<double>& terms) {
+  for (std::size_t i = 0; i < x.size(); ++i) terms[i] = -theta * x[i];
+  elementary::log1p_lanes(terms.data(), terms.data(), static_cast<int>(terms.size()));
+  return std::accumulate(terms.begin(), terms.end(), 0.0) / static_cast<double>(x.size());
 }
 
 // Ten observations' worth of belief in k = 1/2.
@@ -40,10 +40,10 @@ GeneralisedPareto fit_generalised_pareto(std::span<double const> rising) {
   int const points = 30 + static_cast<int>(std::sqrt(n));
   double const quartile = rising[static_cast<std::size_t>(n / 4 + 0.5) - 1];
   if (!(quartile > 0)) return {none, 0};
-  std::vector<double> theta, log_likelihood;
+  std::vector<double> theta, log_likelihood, terms(rising.size());
   for (int j = 1; j <= points; ++j) {
     theta.push_back(1 / rising.back() + (1 - std::sqrt(points / (j - 0.5))) / prior / quartile);
-    double const k = shape_given(theta.back(), rising);
+    double const k = shape_given(theta.back(), rising, terms);
     log_likelihood.push_back(n * (elementary::log(-theta.back() / k) - k - 1));
   }
   double const largest = *std::max_element(log_likelihood.begin(), log_likelihood.end());
@@ -53,7 +53,7 @@ GeneralisedPareto fit_generalised_pareto(std::span<double const> rising) {
     weights += weight;
     sum += weight * theta[j];
   }
-  double const k = shape_given(sum / weights, rising);
+  double const k = shape_given(sum / weights, rising, terms);
   GeneralisedPareto const fit{towards_a_half(k, n), -k / (sum / weights)};
   return std::isfinite(fit.k) && fit.sigma > 0 ? fit : GeneralisedPareto{none, 0};
 }

@@ -23,6 +23,7 @@ enum class Purpose : std::uint32_t {
   supports = 13,     // moves between supports of a dictionary
   coefficient = 14,  // coefficients that a likelihood integrated out
   exchange = 15,     // exchanges between replicas of a chain
+  bootstrap = 16,    // weights of samples in a Bayesian bootstrap
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

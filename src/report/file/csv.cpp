@@ -126,4 +126,21 @@ std::string predict_csv(Report const& report, Prediction const& prediction) {
   return out;
 }
 
+std::string pointwise_csv(Report const& report) {
+  std::string out = csv_head(report);
+  std::vector<PointwiseScores> const& all = report.criteria->pointwise;
+  for (std::size_t s = 0; s < all.size(); ++s)
+    out += fmt::format("# series {} = {} on {}\n", s + 1, one_line(all[s].channel), one_line(all[s].experiment));
+  out += "series,row,log_density,p_waic,elpd_loo,pareto_k,elpd_block,elpd_future\n";
+  for (std::size_t s = 0; s < all.size(); ++s)
+    for (std::size_t i = 0; i < all[s].rows.size(); ++i) {
+      fmt::format_to(std::back_inserter(out), "{},{},", s + 1, all[s].rows[i]);
+      for (auto* const column :
+           {&all[s].log_density, &all[s].p_waic, &all[s].elpd_loo, &all[s].pareto_k, &all[s].elpd_block, &all[s].elpd_future})
+        add_cell(out, (*column)[i]);
+      out.back() = '\n';
+    }
+  return out;
+}
+
 }  // namespace sysid

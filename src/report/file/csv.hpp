@@ -22,4 +22,8 @@ std::string draws_csv(Report const& report, int chain);
 /// t, then per quantity NAME_mean, _sd, _q2.5, _q97.5, with noise NAME_noisy_mean, ..., NAME_measured; last `scored` (0 or 1).
 std::string predict_csv(Report const& report, Prediction const& prediction);
 
+/// The scored samples, one a line: which series (channel of an experiment, named in the head), row of the file, and what the sample
+/// contributes to each predictive score. The report has criteria.
+std::string pointwise_csv(Report const& report);
+
 }  // namespace sysid

@@ -81,6 +81,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, name, unit, mean, median, sd, mad, q
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Mode, declared, sd, log_density, log_mass, share, hits)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SampledEvidence, state, above, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evidence, log_evidence, reason, along_axes, modes, of_likelihood, sampled)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LogScore, sum, error, samples, monte_carlo_error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScoreAtMode, log_likelihood, parameters, samples, of_likelihood)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deviance, mean, variance, at_mean)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOutBlocks, experiment, pareto_k, asked, first_row, last_row)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Criteria, at_mode, deviance, reason, draws, waic, loo, block, future, p_waic, p_loo,
+                                   unstable_waic, pareto_counts, worst_k, in_time, blocks, futures)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, kind, where, count, time, example, names)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FunctionPoint, inputs, mean, sd, q5, q95)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PredictedInput, name, unit, values)
@@ -254,8 +260,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measu
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, verb, prediction_rule, measured_past, lags, model_name, model_title,
                                    equations, formulas, model_text, resolved_text, priors, fixed, data, draws, summary, verdict,
-                                   findings, fit, predictions, modes, sampled_names, evidence, noise, functions, forces, tables,
-                                   selection, discovery, ledger, seed, place, command, unseeded, settings, versions)
+                                   findings, fit, predictions, modes, sampled_names, evidence, criteria, noise, functions, forces,
+                                   tables, selection, discovery, ledger, seed, place, command, unseeded, settings, versions)
 
 namespace {
 

@@ -89,6 +89,53 @@ Json evidence(Evidence const& evidence) {
   return out;
 }
 
+Json log_score(LogScore const& score) {
+  return {{"elpd", score.sum}, {"error", score.error}, {"monte_carlo_error", score.monte_carlo_error}, {"samples", score.samples}};
+}
+
+Json left_out(LogScore const& score, std::vector<LeftOutBlocks> const& blocks) {
+  Json out = log_score(score);
+  for (LeftOutBlocks const& each : blocks)
+    out["records"].push_back({{"name", each.experiment},
+                              {"first_row", each.first_row},
+                              {"last_row", each.last_row},
+                              {"blocks", each.asked},
+                              {"pareto_k", each.pareto_k}});
+  return out;
+}
+
+/// Predictive scores and information criteria: the latter on the scale of the deviance, the former in nats.
+Json criteria(Criteria const& criteria) {
+  Json out = Json::object();
+  if (auto const& mode = criteria.at_mode)
+    out = {{"at", mode->of_likelihood ? "maximum of the likelihood" : "mode of the posterior"},
+           {"log_likelihood", mode->log_likelihood},
+           {"parameters", mode->parameters},
+           {"samples", mode->samples},
+           {"aic", mode->aic()},
+           {"bic", mode->bic()}};
+  if (auto const& deviance = criteria.deviance) {
+    auto const p_d = deviance->p_d();
+    out["dic"] = {{"value", p_d ? Json(deviance->mean + *p_d) : Json(nullptr)},
+                  {"p_d", p_d ? Json(*p_d) : Json(nullptr)},
+                  {"value_by_variance", deviance->mean + deviance->p_v()},
+                  {"p_v", deviance->p_v()}};
+  }
+  if (!criteria.reason.empty()) out["reason"] = criteria.reason;
+  if (!criteria.loo) return out;
+  out["draws"] = criteria.draws;
+  out["in_time"] = criteria.in_time;
+  ParetoCounts const& k = criteria.pareto_counts;
+  out["waic"] = {
+      {"elpd", criteria.waic->sum}, {"error", criteria.waic->error}, {"p", criteria.p_waic}, {"unstable", criteria.unstable_waic}};
+  out["loo"] = log_score(*criteria.loo);
+  out["loo"]["p"] = criteria.p_loo;
+  out["loo"]["pareto_k"] = {{"largest", criteria.worst_k}, {"to_0.5", k[0]}, {"to_0.7", k[1]}, {"to_1", k[2]}, {"above_1", k[3]}};
+  if (criteria.block) out["leave_block_out"] = left_out(*criteria.block, criteria.blocks);
+  if (!criteria.futures.empty()) out["leave_future_out"] = left_out(criteria.future.value_or(LogScore{}), criteria.futures);
+  return out;
+}
+
 Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
   Json failures = Json::array();
   for (Failure const& failure : ledger.failures())
@@ -165,6 +212,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
     out["parameter_count"] = report.draws.parameter_count;
     out["noise"] = report.noise;
   }
+  if (report.criteria) out["criteria"] = criteria(*report.criteria);
   for (ReportTable const& table : report.tables) out["tables"][table.title] = {{"header", table.header}, {"rows", table.rows}};
   out["ledger"] = ledger(report.ledger, report.sampled_names);
   out["seed"] = report.seed;

@@ -38,9 +38,9 @@ bool is_result_file(std::string const& name, std::string const& task) {
   };
   return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "report.cbor" ||
          name == "resolved.sysid" || name == "predict.csv" || name == "terms.csv" || name == "found.sysid" ||
-         name == "structures.csv" || name == "refit.csv" || name == "populations.csv" || between("draws_", ".csv") ||
-         between("function_", ".csv") || between("predict_", ".csv") || between("particles_", ".csv") ||
-         between("polished_", ".csv") || between("resolved_", ".sysid");
+         name == "structures.csv" || name == "pointwise.csv" || name == "refit.csv" || name == "populations.csv" ||
+         between("draws_", ".csv") || between("function_", ".csv") || between("predict_", ".csv") ||
+         between("particles_", ".csv") || between("polished_", ".csv") || between("resolved_", ".sysid");
 }
 
 bool is_figure_file(std::string const& name) {
@@ -128,6 +128,7 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p)
     write(prediction_names[p], predict_csv(report, report.predictions[p]));
+  if (report.criteria && !report.criteria->pointwise.empty()) write("pointwise.csv", pointwise_csv(report));
   // What an interrupted run left may have more tables than its end: chains of models that died later.
   for (fs::path const& file : earlier_tables)
     if (!digests.contains(file.filename().string())) remove_file(file);

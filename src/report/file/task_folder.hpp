@@ -24,7 +24,7 @@ void remove_result(std::filesystem::path const& folder);
 /// called by whoever holds the folder's lock.
 void remove_partial(std::filesystem::path const& folder);
 
-/// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), figures/, report.html, report.cbor, resolved.sysid,
+/// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), pointwise.csv, figures/, report.html, report.cbor, resolved.sysid,
 /// timing.json and, last of all, summary.json: where it stands, the result is whole. `pictures`: what figures are drawn as, beside
 /// their scripts; with none the page has none either. Returns what `write_figures` does; IoError names the file that could not be
 /// written.

@@ -23,6 +23,11 @@ std::string table_html(ReportTable const& table, std::size_t words = 1, TitleBeg
 /// Of one channel with what each score says; of several as a table, and what the worst of each score says behind it.
 std::string scores_html(Report const& report);
 
+// How well it would predict: report/page/html_criteria.
+
+/// Information criteria and predictive scores, with what says how far they can be trusted.
+std::string criteria_html(Report const& report);
+
 // Whether the computation can be believed: report/page/html_computation.
 
 std::string chains_html(Report const& report);

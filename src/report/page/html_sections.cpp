@@ -113,6 +113,7 @@ std::vector<HtmlSection> task_sections(Report const& report, std::vector<DrawnFi
   add("result", result_title(report), result_html(report) + pictures.of(plot::Topic::result));
   add("fit", report.draws.total() == 0 && !report.selection ? "Prediction" : "Fit",
       scores_html(report) + pictures.of(plot::Topic::fit));
+  add("criteria", "Predictive scores and information criteria", criteria_html(report));
   add("diagnostics", "Diagnostics of the chains", chains_html(report) + pictures.of(plot::Topic::chains));
   add("modes", "Modes", modes_html(report));
   add("simulations", "Simulations and failures", simulations_html(report));

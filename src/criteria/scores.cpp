@@ -1,0 +1,65 @@
+#include "criteria/scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/statistics.hpp"
+
+namespace sysid {
+namespace {
+
+BlockScore under(LeftOut const& weights, ConstLanes log_density, DrawInfluence& influence) {
+  BlockScore out{weights.pareto_k, {}};
+  for (int i = 0; i < log_density.rows(); ++i) {
+    out.elpd.push_back(log_mean(weights.log_weights, log_density.row(i)));
+    influence.add(weights, log_density.row(i), out.elpd.back());
+  }
+  return out;
+}
+
+void add_rows(ConstLanes log_density, std::vector<double>& sum) {
+  for (int i = 0; i < log_density.rows(); ++i)
+    for (int s = 0; s < log_density.width(); ++s) sum[static_cast<std::size_t>(s)] += log_density(i, s);
+}
+
+}  // namespace
+
+SampleScore score_sample(std::span<double const> log_density, int chains, DrawInfluence& influence) {
+  std::vector<double> const equal(log_density.size(), -elementary::log(static_cast<double>(log_density.size())));
+  LeftOut const weights = leave_out(log_density, chains);
+  SampleScore const out{log_mean(equal, log_density), sample_variance(log_density), log_mean(weights.log_weights, log_density),
+                        weights.pareto_k};
+  influence.add(weights, log_density, out.elpd_loo);
+  return out;
+}
+
+BlockScore leave_block_out(ConstLanes log_density, int chains, DrawInfluence& influence) {
+  std::vector<double> sum(static_cast<std::size_t>(log_density.width()), 0);
+  add_rows(log_density, sum);
+  return under(leave_out(sum, chains), log_density, influence);
+}
+
+BlockScore FutureOut::before(ConstLanes log_density, DrawInfluence& influence) {
+  add_rows(log_density, log_likelihood_);
+  LeftOut const weights = leave_out(log_likelihood_, chains_);
+  if (weights.pareto_k > largest_k) return {weights.pareto_k, {}};
+  return under(weights, log_density, influence);
+}
+
+LogScore sum_of(std::span<double const> values) {
+  std::vector<double> known;
+  for (double const each : values)
+    if (!std::isnan(each)) known.push_back(each);
+  auto const n = static_cast<double>(known.size());
+  return {n * (known.empty() ? 0 : mean(known)), std::sqrt(n * sample_variance(known)), static_cast<int>(known.size()), 0};
+}
+
+std::vector<int> block_ends(int rows, int blocks) {
+  std::vector<int> ends = {0};
+  for (int b = 1; b <= blocks; ++b)
+    if (int const end = static_cast<int>(static_cast<long long>(rows) * b / blocks); end > ends.back()) ends.push_back(end);
+  return ends;
+}
+
+}  // namespace sysid

@@ -1,0 +1,116 @@
+// Predictive scores beside what they would be as a deviance, and in words how far each can be trusted.
+#include "report/page/html_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text/number.hpp"
+#include "core/text/words.hpp"
+
+namespace sysid {
+
+namespace {
+
+std::string tenth(double value) { return std::isfinite(value) ? pretty_number(fmt::format("{:.1f}", value)) : "-"; }
+
+std::vector<std::string> score_row(std::string const& name, LogScore const& score, std::string const& effective) {
+  return {name, tenth(score.sum), tenth(score.error), effective, tenth(-2 * score.sum)};
+}
+
+/// Of a criterion on the scale of the deviance.
+std::vector<std::string> deviance_row(std::string const& name, double value, double effective) {
+  return {name, tenth(-value / 2), "", tenth(effective), tenth(value)};
+}
+
+/// Whether blocks were left out that weights do not reach.
+bool all_reached(std::vector<LeftOutBlocks> const& blocks) {
+  return std::ranges::all_of(blocks, [](LeftOutBlocks const& each) {
+    return std::ranges::all_of(each.pareto_k, [](double k) { return k <= largest_k; });
+  });
+}
+
+std::string rows_text(std::vector<LeftOutBlocks> const& blocks) {
+  std::string text;
+  for (LeftOutBlocks const& each : blocks)
+    if (each.first_row > 0)
+      text += fmt::format("{}{} to {}{}", text.empty() ? "" : "; ", each.first_row, each.last_row,
+                          blocks.size() > 1 ? " of " + each.experiment : "");
+  return text;
+}
+
+std::string pareto_words(Criteria const& criteria) {
+  int const doubtful = criteria.pareto_counts[2] + criteria.pareto_counts[3];
+  std::string words =
+      fmt::format("Leave-one-out: of {} samples, Pareto’s k is above 0.7 for {}{}. ", criteria.loo->samples, doubtful,
+                  doubtful == 0 ? fmt::format(" (largest {})", significant(criteria.worst_k, 2))
+                                : fmt::format(", above 1 for {}", criteria.pareto_counts[3]));
+  if (doubtful > 0)
+    words +=
+        "Without such a sample the posterior would be another; the weighted draws do not reach it, and the score is too high. ";
+  if (criteria.unstable_waic > 0)
+    words += fmt::format("WAIC: the log density of {} varies by more than 0.4 among the draws, so use leave-one-out instead. ",
+                         counted(criteria.unstable_waic, "sample"));
+  return words;
+}
+
+std::string time_words(Criteria const& criteria) {
+  std::string words =
+      "The rows follow one another in time. If one is left out, its neighbours remain, so leave-one-out and WAIC show how well the "
+      "model interpolates. Leave-block-out predicts each tenth of the record from the other nine, leave-future-out each of the "
+      "last "
+      "five tenths from the rows before it. ";
+  if (!all_reached(criteria.blocks))
+    words += "Leave-block-out: Pareto’s k of a block is above 0.7, and its score is not reliable. ";
+  if (!criteria.future)
+    words +=
+        "Leave-future-out: without its last tenth the record has another posterior, which the weighted draws do not reach "
+        "(Pareto’s k above 0.7). ";
+  else if (!all_reached(criteria.futures))
+    words += fmt::format("Leave-future-out covers only rows {}: for earlier ones Pareto’s k is above 0.7. ",
+                         rows_text(criteria.futures));
+  return words;
+}
+
+std::string none_words(Criteria const& criteria) {
+  return criteria.reason.empty() ? "" : fmt::format("No predictive scores: {}.", criteria.reason);
+}
+
+}  // namespace
+
+std::string criteria_html(Report const& report) {
+  if (!report.criteria) return "";
+  Criteria const& criteria = *report.criteria;
+  HtmlTable table{"Expected accuracy on new samples",
+                  {"criterion", "log score [nats]", "standard error", "effective parameters", "−2 log score"},
+                  {},
+                  1};
+  if (criteria.loo) table.rows.push_back(score_row("leave-one-out (PSIS-LOO)", *criteria.loo, tenth(criteria.p_loo)));
+  if (criteria.block) table.rows.push_back(score_row("leave-block-out", *criteria.block, ""));
+  if (criteria.future)
+    table.rows.push_back(score_row(fmt::format("leave-future-out, rows {}", rows_text(criteria.futures)), *criteria.future, ""));
+  if (criteria.waic) table.rows.push_back(score_row("WAIC", *criteria.waic, tenth(criteria.p_waic)));
+  if (auto const& deviance = criteria.deviance) {
+    if (auto const p_d = deviance->p_d())
+      table.rows.push_back(deviance_row("DIC, by the mean of the draws", deviance->mean + *p_d, *p_d));
+    table.rows.push_back(deviance_row("DIC, by the variance of the deviance", deviance->mean + deviance->p_v(), deviance->p_v()));
+  }
+  if (auto const& mode = criteria.at_mode) {
+    std::string const at = mode->of_likelihood ? "" : " at the posterior’s mode";
+    table.rows.push_back(deviance_row("AIC" + at, mode->aic(), mode->parameters));
+    table.rows.push_back(deviance_row("BIC" + at, mode->bic(), mode->parameters));
+  }
+  if (table.rows.empty()) return paragraph(none_words(criteria), "note");
+  std::string const out = html(table);
+  if (!criteria.loo) return out + paragraph(none_words(criteria), "note");
+  return out + paragraph((criteria.in_time ? time_words(criteria) : "") + pareto_words(criteria)) +
+         paragraph(
+             fmt::format("A log score is a sum of log densities of samples that the draws are made not to have seen, by {} "
+                         "draws; larger is better. It is meaningful only in comparison with another model of the same samples "
+                         "(`sysid compare`).",
+                         criteria.draws),
+             "note");
+}
+
+}  // namespace sysid
