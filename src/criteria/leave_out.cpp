@@ -86,6 +86,14 @@ double relative_efficiency(std::span<double const> values, int chains) {
   return 1 / std::max(tau, 1 / elementary::log10(total));
 }
 
+LeftOut weighted(std::span<double const> log_ratios, double relative_efficiency) {
+  int const tail = pareto_tail_length(static_cast<int>(log_ratios.size()), relative_efficiency);
+  SmoothedWeights smoothed = smooth_weights(log_ratios, tail);
+  double const sum = log_sum(smoothed.log_weights);
+  for (double& each : smoothed.log_weights) each -= sum;
+  return {std::move(smoothed.log_weights), smoothed.k, relative_efficiency};
+}
+
 LeftOut leave_out(std::span<double const> log_likelihood, int chains) {
   double const largest = *std::max_element(log_likelihood.begin(), log_likelihood.end());
   std::vector<double> ratios(log_likelihood.size()), likelihood(log_likelihood.size());
@@ -94,14 +102,7 @@ LeftOut leave_out(std::span<double const> log_likelihood, int chains) {
     likelihood[s] = log_likelihood[s] - largest;
   }
   elementary::exp_lanes(likelihood.data(), likelihood.data(), static_cast<int>(likelihood.size()));
-  LeftOut out;
-  out.relative_efficiency = relative_efficiency(likelihood, chains);
-  SmoothedWeights smoothed = smooth_weights(ratios, pareto_tail_length(static_cast<int>(ratios.size()), out.relative_efficiency));
-  double const sum = log_sum(smoothed.log_weights);
-  for (double& each : smoothed.log_weights) each -= sum;
-  out.log_weights = std::move(smoothed.log_weights);
-  out.pareto_k = smoothed.k;
-  return out;
+  return weighted(ratios, relative_efficiency(likelihood, chains));
 }
 
 double log_mean(std::span<double const> log_weights, std::span<double const> log_density) {
@@ -111,6 +112,7 @@ double log_mean(std::span<double const> log_weights, std::span<double const> log
 }
 
 void DrawInfluence::add(LeftOut const& weights, std::span<double const> log_density, double log_mean) {
+  if (!std::isfinite(log_mean)) return;  // no draw predicts the sample: more of them would not either
   std::vector<double> share(influence_.size()), weight(weights.log_weights);
   for (std::size_t s = 0; s < share.size(); ++s) share[s] = weight[s] + log_density[s] - log_mean;
   int const draws = static_cast<int>(share.size());

@@ -17,6 +17,9 @@ struct LeftOut {
   double relative_efficiency = 1;   // of the draws, for what was left out
 };
 
+/// log_ratios: densities that are wanted over those that the draws have, -infinity where they are not; some are finite.
+LeftOut weighted(std::span<double const> log_ratios, double relative_efficiency);
+
 /// log_likelihood: of what is left out, under each draw, chain after chain.         Vehtari, Gelman and Gabry 2017
 LeftOut leave_out(std::span<double const> log_likelihood, int chains);
 

@@ -34,6 +34,11 @@ SampleScore score_sample(std::span<double const> log_density, int chains, DrawIn
   return out;
 }
 
+BlockScore score_block(LeftOut const& weights, ConstLanes log_density, DrawInfluence& influence) {
+  if (weights.pareto_k > largest_k) return {weights.pareto_k, {}};
+  return under(weights, log_density, influence);
+}
+
 BlockScore leave_block_out(ConstLanes log_density, int chains, DrawInfluence& influence) {
   std::vector<double> sum(static_cast<std::size_t>(log_density.width()), 0);
   add_rows(log_density, sum);
@@ -42,9 +47,7 @@ BlockScore leave_block_out(ConstLanes log_density, int chains, DrawInfluence& in
 
 BlockScore FutureOut::before(ConstLanes log_density, DrawInfluence& influence) {
   add_rows(log_density, log_likelihood_);
-  LeftOut const weights = leave_out(log_likelihood_, chains_);
-  if (weights.pareto_k > largest_k) return {weights.pareto_k, {}};
-  return under(weights, log_density, influence);
+  return score_block(leave_out(log_likelihood_, chains_), log_density, influence);
 }
 
 LogScore sum_of(std::span<double const> values) {

@@ -28,7 +28,11 @@ struct BlockScore {
   std::vector<double> elpd;  // [samples]
 };
 
-/// log_density: [samples x draws].
+/// Of samples that the weighted draws have not seen; log_density: [samples x draws], -infinity where a draw predicts nothing.
+/// Without scores where k is above `largest_k`.
+BlockScore score_block(LeftOut const& weights, ConstLanes log_density, DrawInfluence& influence);
+
+/// log_density: [samples x draws]. Scored whatever k is.
 BlockScore leave_block_out(ConstLanes log_density, int chains, DrawInfluence& influence);
 
 /// Leaves out the end of a record, more and more of it: each block is predicted from the samples before it alone.

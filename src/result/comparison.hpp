@@ -34,9 +34,27 @@ struct ComparedPrediction {
   std::string samples;  // digest of what is predicted
 };
 
+/// What a fit predicts of samples that its draws are made not to have seen.
+struct ComparedScore {
+  std::string name, model;
+  double elpd = 0, error = 0;                   // nats, and one standard error
+  double difference = 0, difference_error = 0;  // from the best
+  double stacking = 0, pseudo_bma = 0;          // weights
+  int doubtful = 0;                             // samples with a Pareto k above 0.7, by leave-one-out
+};
+
+/// Of fits that have draws, by the same samples.
+struct ComparedScores {
+  bool future = false;  // by leave-future-out; else by leave-one-out
+  bool in_time = false;
+  int samples = 0;
+  std::vector<ComparedScore> fits;  // none, or two at least
+};
+
 struct Comparison {
   std::string data;  // of the fits: "flume.train, rows 101..500 (400)"
   std::vector<ComparedFit> fits;
+  ComparedScores scores;
   std::vector<ComparedPrediction> predictions;  // of the same samples one after another
   std::vector<std::string> notes;               // lines below the tables
 };

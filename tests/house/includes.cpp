@@ -130,7 +130,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
      {"core", "linear_algebra", "result", "data", "expression", "gaussian_process", "syntax", "simulate", "likelihood", "search",
       "check/expression", "diagnostics", "experiment", "discovery", "app/session", "app/process"}},
     {"app/fit",
-     {"core", "result", "criteria", "data", "likelihood", "search", "search/hierarchy", "diagnostics", "inference/backend", "inference",
+     {"core", "linear_algebra", "result", "criteria", "data", "likelihood", "search", "search/hierarchy", "diagnostics", "inference/backend", "inference",
       "experiment", "mechanics", "app/session", "app/process", "app/preflight"}},
     {"app/task",
      {"core", "data", "gaussian_process", "model", "syntax", "regression", "likelihood", "likelihood/process", "check/checked",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/fit/earlier_posterior.hpp"
 #include "core/numeric/statistics.hpp"
 #include "criteria/scores.hpp"
 #include "search/laplace.hpp"
@@ -75,6 +76,7 @@ class RecordScores {
   RecordScores(FinishedFit& fit, Criteria& criteria, int experiment, LaneArray const& draws)
       : fit_(fit),
         criteria_(criteria),
+        index_(experiment),
         experiment_(fit.data[static_cast<std::size_t>(experiment)].experiment),
         pointwise_(fit.likelihood.pointwise(experiment)),
         scored_(*pointwise_),
@@ -116,6 +118,8 @@ class RecordScores {
     }
     return true;
   }
+
+  double own_variance() const { return own_variance_; }
 
  private:
   void add_series(int channel) {
@@ -179,13 +183,42 @@ class RecordScores {
     if (!criteria_.in_time) return;
     BlockScore const without = leave_block_out(block, chains_, block_influence);
     keep(without, &PointwiseScores::elpd_block, b, left_out_);
-    if (!going_back_ || b < history) return;
-    BlockScore const before = future_.before(block, future_influence);
-    going_back_ = before.pareto_k <= largest_k;
+    if (going_back_ && b >= history) predict_from_past(b, block, future_influence);
+  }
+
+  void predict_from_past(int b, LaneArray const& block, DrawInfluence& influence) {
+    BlockScore before;
+    if (futures_.own_draws == 0) before = future_.before(block, influence);
+    if (before.elpd.empty()) {
+      before = by_own_draws(b);
+      going_back_ = !before.elpd.empty();
+      futures_.own_draws += going_back_ ? 1 : 0;
+    }
     if (going_back_)
       keep(before, &PointwiseScores::elpd_future, b, futures_);
     else
       futures_.pareto_k.push_back(before.pareto_k);
+  }
+
+  /// By draws of the posterior of the rows before the block.
+  BlockScore by_own_draws(int b) {
+    int const from = scored_.first_row(b), to = scored_.end_row(b);
+    auto const draws = earlier_draws(fit_, index_, from, parameters_.width());
+    if (!draws || fit_.session.interrupted()) return {std::numeric_limits<double>::infinity(), {}};
+    LaneArray parameters(parameters_.rows(), parameters_.width());
+    ParameterSpace const& space = fit_.likelihood.space();
+    space.select(space.values_of_declared(draws->declared), index_, parameters);
+    LaneArray densities((to - from) * pointwise_->channels(), parameters.width());
+    pointwise_->records(parameters, from, to, densities);
+    fit_.extra.add_solves(static_cast<std::uint64_t>(parameters.width()));
+    LaneArray block = samples_of(b, densities, from);
+    for (int i = 0; i < block.rows(); ++i)
+      for (double& each : block.row(i))
+        if (!std::isfinite(each)) each = -std::numeric_limits<double>::infinity();
+    DrawInfluence influence(static_cast<std::size_t>(parameters.width()));
+    BlockScore score = score_block(draws->weights, block, influence);
+    own_variance_ += influence.error() * influence.error();
+    return score;
   }
 
   void keep(BlockScore const& score, std::vector<double> PointwiseScores::*column, int b, LeftOutBlocks& blocks) {
@@ -197,6 +230,7 @@ class RecordScores {
 
   FinishedFit& fit_;
   Criteria& criteria_;
+  int index_;
   Experiment const& experiment_;
   std::unique_ptr<PointwiseLikelihood> pointwise_;
   ScoredRows scored_;
@@ -206,6 +240,7 @@ class RecordScores {
   std::size_t first_series_;
   bool going_back_ = false;
   LeftOutBlocks left_out_, futures_;
+  double own_variance_ = 0;    // of the Monte Carlo error of what has draws of its own
   std::vector<Place> places_;  // of the samples of a block
 };
 
@@ -258,17 +293,21 @@ void score_draws(FinishedFit& fit, Criteria& criteria) {
   criteria.in_time = fit.likelihood.model().dynamics != Dynamics::none;
   auto const width = static_cast<std::size_t>(draws.width());
   DrawInfluence loo(width), block(width), future(width);
-  for (int e = 0; e < static_cast<int>(fit.data.size()); ++e)
-    if (!RecordScores(fit, criteria, e, draws).run(loo, block, future)) {
+  double own_variance = 0;
+  for (int e = 0; e < static_cast<int>(fit.data.size()); ++e) {
+    RecordScores record(fit, criteria, e, draws);
+    if (!record.run(loo, block, future)) {
       criteria.pointwise.clear();
       criteria.reason = "a draw has no solution";
       return;
     }
+    own_variance += record.own_variance();
+  }
   add_waic_and_counts(criteria);
   criteria.loo = sum_over(criteria, &PointwiseScores::elpd_loo, loo.error());
   if (!criteria.in_time) return;
   criteria.block = sum_over(criteria, &PointwiseScores::elpd_block, block.error());
-  LogScore const ahead = sum_over(criteria, &PointwiseScores::elpd_future, future.error());
+  LogScore const ahead = sum_over(criteria, &PointwiseScores::elpd_future, std::hypot(future.error(), std::sqrt(own_variance)));
   if (ahead.samples > 0) criteria.future = ahead;
 }
 

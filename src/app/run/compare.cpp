@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/run/compare_scores.hpp"
 #include "app/session/made_from.hpp"
 #include "core/numeric/elementary.hpp"
 #include "core/system/files.hpp"
@@ -297,6 +298,10 @@ Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model
   }
   if (!fits.empty()) comparison.data = data_text(fits.front());
   add_probabilities(fits, comparison.fits);
+  std::vector<ScoredFit> scored;
+  for (StoredSummary const& each : fits)
+    if (auto found = scored_fit(each.name, each.model, each.folder, each.summary)) scored.push_back(std::move(*found));
+  comparison.scores = compare_scores(scored);
   for (std::string& note : models_of_one_name(fits)) comparison.notes.push_back(std::move(note));
   return comparison;
 }

@@ -84,7 +84,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evidence, log_evidence, reason, along_axes, m
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LogScore, sum, error, samples, monte_carlo_error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScoreAtMode, log_likelihood, parameters, samples, of_likelihood)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deviance, mean, variance, at_mean)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOutBlocks, experiment, pareto_k, asked, first_row, last_row)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOutBlocks, experiment, pareto_k, asked, first_row, last_row, own_draws)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Criteria, at_mode, deviance, reason, draws, waic, loo, block, future, p_waic, p_loo,
                                    unstable_waic, pareto_counts, worst_k, in_time, blocks, futures)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, kind, where, count, time, example, names)

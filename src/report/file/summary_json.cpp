@@ -100,6 +100,7 @@ Json left_out(LogScore const& score, std::vector<LeftOutBlocks> const& blocks) {
                               {"first_row", each.first_row},
                               {"last_row", each.last_row},
                               {"blocks", each.asked},
+                              {"own_draws", each.own_draws},
                               {"pareto_k", each.pareto_k}});
   return out;
 }

@@ -46,6 +46,29 @@ ReportTable fits_table(Comparison const& comparison) {
   return table;
 }
 
+/// Of fits with draws, by what each says of samples that it has not seen.
+ReportTable scores_table(ComparedScores const& scores) {
+  ReportTable table;
+  table.title = fmt::format("expected log predictive density (elpd) of {}, {}", counted(scores.samples, "sample"),
+                            scores.future ? "each predicted from the rows before its tenth of the record (leave-future-out)"
+                                          : "each left out (leave-one-out)");
+  table.header = {"fit", "model", "elpd", "error", "difference", "error of difference", "stacking weight", "pseudo-BMA+ weight"};
+  for (ComparedScore const& fit : scores.fits) {
+    table.rows.push_back({fit.name, fit.model, fmt::format("{:.1f}", fit.elpd), fmt::format("{:.1f}", fit.error),
+                          difference_text(fit.difference), fmt::format("{:.1f}", fit.difference_error),
+                          fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
+    if (fit.doubtful > 0 && !scores.future)
+      table.caption += fmt::format("{}{}: Pareto's k is above 0.7 for {}, so its elpd is too high",
+                                   table.caption.empty() ? "" : "\n", fit.name, counted(fit.doubtful, "sample"));
+  }
+  if (scores.in_time && !scores.future)
+    table.caption += fmt::format(
+        "{}the rows follow one another in time: leave-one-out shows how well a model interpolates, not how "
+        "well it predicts what comes next",
+        table.caption.empty() ? "" : "\n");
+  return table;
+}
+
 /// Of predictions of the same samples, which stand one after another.
 ReportTable predictions_table(std::span<ComparedPrediction const> predictions) {
   ReportTable table;
@@ -80,6 +103,7 @@ std::vector<std::vector<std::string>> stacked(std::vector<std::string> const& he
 std::vector<ReportTable> comparison_tables(Comparison const& comparison) {
   std::vector<ReportTable> tables;
   if (!comparison.fits.empty()) tables.push_back(fits_table(comparison));
+  if (!comparison.scores.fits.empty()) tables.push_back(scores_table(comparison.scores));
   auto const& all = comparison.predictions;
   for (auto first = all.begin(); first != all.end();) {
     auto const last = std::find_if(
@@ -119,6 +143,22 @@ std::string comparison_json(Comparison const& comparison) {
                   {"warnings", fit.warnings}};
     if (!fit.log_evidence) entry["reason"] = fit.without;
     out["fits"].push_back(std::move(entry));
+  }
+  if (ComparedScores const& scores = comparison.scores; !scores.fits.empty()) {
+    out["scores"] = {{"by", scores.future ? "leave_future_out" : "leave_one_out"},
+                     {"in_time", scores.in_time},
+                     {"samples", scores.samples},
+                     {"fits", Json::array()}};
+    for (ComparedScore const& fit : scores.fits)
+      out["scores"]["fits"].push_back({{"name", fit.name},
+                                       {"model", fit.model},
+                                       {"elpd", fit.elpd},
+                                       {"error", fit.error},
+                                       {"difference", fit.difference},
+                                       {"difference_error", fit.difference_error},
+                                       {"stacking", fit.stacking},
+                                       {"pseudo_bma", fit.pseudo_bma},
+                                       {"doubtful", fit.doubtful}});
   }
   for (ComparedPrediction const& each : comparison.predictions)
     out["predictions"].push_back({{"name", each.name},

@@ -54,9 +54,9 @@ std::string together(RunReport const& run) {
   std::string out;
   bool evidences = false;
   for (ReportTable const& table : run.comparisons) {
-    bool const fits = table.header.front() == "fit";
-    evidences = evidences || fits;
-    out += table_html(table, fits ? 3 : 2, fits ? TitleBegins::with_a_word : TitleBegins::with_a_name);
+    bool const fits = table.header.front() == "fit", scores = fits && table.header[2] == "elpd";
+    evidences = evidences || (fits && !scores);
+    out += table_html(table, fits && !scores ? 3 : 2, fits ? TitleBegins::with_a_word : TitleBegins::with_a_name);
   }
   if (evidences || !run.apart.empty())
     out += paragraph(

@@ -1,0 +1,30 @@
+// Fits weighed by what each says of samples that it has not seen.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "result/comparison.hpp"
+
+namespace sysid {
+
+/// A fit's pointwise scores, as its folder has them.
+struct ScoredFit {
+  std::string name, model;
+  bool in_time = false;
+  int doubtful = 0;                                // samples with k above 0.7
+  std::vector<std::pair<double, double>> samples;  // series and row of each
+  std::vector<double> elpd_loo, elpd_future;       // NaN where there is no score
+};
+
+/// Nothing of a fit without draws. summary: verified, with all its files. UserError (E6209) where the file is not as it is written.
+std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& model, std::filesystem::path const& folder,
+                                    nlohmann::json const& summary);
+
+/// Nothing of fewer than two; of records in time by leave-future-out over the rows that all reach, by leave-one-out where a fit
+/// reaches none. Fits whose samples are not those of the first are left out.
+ComparedScores compare_scores(std::vector<ScoredFit> const& fits);
+
+}  // namespace sysid
