@@ -119,10 +119,11 @@ Findings validation_findings(ValidationReport const& validation) {
                                        [](ValidatedStructure const& each) { return each.of_regression == 1; });
   if (regression != validation.structures.begin())
     add(FindingCode::simulation_prefers, Severity::warning, {best.terms, regression->terms},
-        fmt::format("simulation ranks `{}` first; the regression ranks `{}` first, which {}", best.terms, regression->terms,
+        fmt::format("simulation and regression rank different terms first: simulation `{}`; regression `{}`, {}", best.terms,
+                    regression->terms,
                     regression->failure.empty()
-                        ? fmt::format("has a probability of {} by the simulated motion", probability_text(regression->probability))
-                        : "could not be checked by simulation: " + regression->failure),
+                        ? fmt::format("whose probability by the simulated motion is {}", probability_text(regression->probability))
+                        : "which could not be checked by simulation: " + regression->failure),
         "use the model that simulation ranks first, which `found.sysid` contains; a record of another amplitude may decide");
   auto const costly = given_up(validation);
   if (costly) findings.push_back(*costly);

@@ -48,7 +48,8 @@ void check_steps(Record const& record, DataBlock const& block, Model const& mode
                    i + 1, block.path, step, wanted, model.name),
          Label{block.time ? block.time->span : block.span, {}},
          {},
-         "correct `time discrete`, or resample the record to equal steps; rounded times may differ by 1 %",
+         "correct `time discrete`, or resample the record to equal steps; differences of up to 1 % of the step, as of rounded "
+         "times, are accepted",
          {model.name}});
   }
 }

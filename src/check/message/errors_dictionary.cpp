@@ -55,14 +55,12 @@ Diagnostic generator_number(Span span, std::string const& option, int most, std:
 }
 
 Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters) {
-  return also_about(
-      parameters,
-      about({text},
-            error("E6604", target,
-                  fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
-                              parameters.size() == 1 ? "has" : "have"),
-                  "an unknown parameter must be a factor of a term: `m*y'' - x`; give parameters that are not such factors a "
-                  "value: `parameter NAME = 1`")));
+  return also_about(parameters,
+                    about({text}, error("E6604", target,
+                                        fmt::format("`{}` is not linear in {}, which {} no value", text, quoted(parameters),
+                                                    parameters.size() == 1 ? "has" : "have"),
+                                        "an unknown parameter must be a factor of a term: `m*y'' - x`; every other parameter "
+                                        "needs a value: `parameter NAME = 1`")));
 }
 
 Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter) {

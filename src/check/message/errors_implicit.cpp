@@ -66,17 +66,16 @@ Diagnostic input_of_exact_solver(Span input, std::string const& name, Span optio
 }
 
 Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input) {
-  return {
-      Severity::error,
-      "E3015",
-      fmt::format("this constraint prescribes a motion: the constraint force needs the second derivative of input `{}`", input),
-      Label{equation.span, {}},
-      {},
-      fmt::format(
-          "use the acceleration as the input, `y'' = acceleration`; or, if the constraint force is not needed, delete its equation "
-          "and write `{}` in place of the state",
-          input),
-      with_bare(input)};
+  return {Severity::error,
+          "E3015",
+          fmt::format("this constraint prescribes a motion: the constraint force needs the second derivative of input `{}`", input),
+          Label{equation.span, {}},
+          {},
+          fmt::format("use the acceleration as the input: write `y'' = acceleration` here; or, if the constraint force is not "
+                      "needed, delete this "
+                      "line and the equation of motion that contains the force, and write `{}` for the state that it prescribes",
+                      input),
+          with_bare(input)};
 }
 
 Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown) {

@@ -53,7 +53,7 @@ Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_sta
                      no_states ? "`since_last` needs consecutive rows, but this model has no states"
                                : "`since_last` can be used in `observe` and `derive`, but not in an equation",
                      no_states ? "without dynamics the rows are independent: add to the data a column that contains the change"
-                               : "write the time derivative itself: `y'`"));
+                               : "write the time derivative itself, as in `y' = -k*y`"));
 }
 Diagnostic own_sample(Span span, std::string const& channel) {
   return about({channel}, error("E3108", span, fmt::format("channel `{}` is predicted from its own present sample", channel),

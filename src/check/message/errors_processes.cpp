@@ -188,10 +188,12 @@ Diagnostic process_out_of_place(Span span, std::string const& what) {
                "add it to the mean of a channel: `observe y ~ normal(MEAN + d(u), sd = s)`; lags are allowed in its arguments");
 }
 Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel) {
-  return about({name, channel}, error("E3210", span, fmt::format("`{}` must be added to the mean of `{}`", name, channel),
-                                      "put a positive factor into its amplitude, and write `+` for `-`, which is the same for a "
-                                      "function of mean zero; products with "
-                                      "other quantities and nonlinear functions of it are not supported"));
+  return about({name, channel},
+               error("E3210", span, fmt::format("`{}` must be added to the mean of `{}`", name, channel),
+                     fmt::format("products with an input or a state and nonlinear functions of `{0}` are not supported; a constant "
+                                 "factor belongs into its amplitude; write `+ {0}` for `- {0}`: its prior is the same "
+                                 "for both signs",
+                                 name)));
 }
 Diagnostic process_added_twice(Span span, std::string const& name, std::string const& channel) {
   return about({name, channel},
@@ -227,8 +229,8 @@ Diagnostic process_of_two_channels(Span span, std::string const& name, std::stri
 }
 Diagnostic process_never_applied(ast::Name const& name) {
   return about({name.text}, error("E3213", name.span, fmt::format("`{}` is declared but never applied", name.text),
-                                  fmt::format("add it to the mean of a channel: `observe y ~ normal(MEAN + {}(...), sd = s)`; or, "
-                                              "declared `within` a range, use it in an equation",
+                                  fmt::format("add it to the mean of a channel: `observe y ~ normal(MEAN + {}(...), sd = s)`; or "
+                                              "give it a range, `gp(..., within = (LOW, HIGH))`, and use it in an equation",
                                               name.text)));
 }
 Diagnostic process_of_one_experiment(Span span, std::string const& name, std::string const& parameter) {

@@ -125,7 +125,9 @@ Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input) 
   return with(
       about({input},
             error("E2807", binding,
-                  fmt::format("the part needs the time derivative of its input `{}`, which this expression does not have", input),
+                  fmt::format(
+                      "the part needs the time derivative of its input `{}`, but the program cannot differentiate this expression",
+                      input),
                   "give a state, an input, or sums, products, quotients and constant powers of these")),
       use, "the derivative is used here");
 }

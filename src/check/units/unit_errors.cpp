@@ -101,8 +101,8 @@ Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
     case Zeros::in_doubt:
       message = "this sum is ambiguous: a temperature or a difference of temperatures";
       help = without.unit.offset == 0
-                 ? fmt::format("{} {} in [{}] if it is a difference, in [{}] if it is a temperature", verb(without),
-                               subject(without), difference(with_zero.unit).text, with_zero.unit.text)
+                 ? fmt::format("if {0} is a difference, {1} it in [{2}]; if it is a temperature, {1} it in [{3}]", subject(without),
+                               verb(without), difference(with_zero.unit).text, with_zero.unit.text)
                  : fmt::format("use one unit for {} and {}: [{}] for temperatures or [{}] for differences", subject(without),
                                subject(with_zero), with_zero.unit.text, difference(with_zero.unit).text);
       break;
@@ -128,14 +128,16 @@ Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
 Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles) {
   return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
             "a frequency in cycles is combined with one in radians without 2*pi",
-            counts_cycles ? "multiply this by 2*pi if it counts cycles" : "divide this by 2*pi if the other counts cycles");
+            counts_cycles ? "multiply this by 2*pi" : "divide this by 2*pi");
 }
 Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) {
   shown.text = name.empty() ? "counts cycles" : fmt::format("`{}` counts cycles", name);
-  return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
-            "a frequency in cycles is used as an angular frequency, without 2*pi",
-            name.empty() ? "multiply the frequency by 2*pi if it counts cycles"
-                         : fmt::format("write `2*pi*{0}` instead of `{0}` if it counts cycles", name));
+  return at(
+      Severity::warning, "E2210", std::move(shown), {std::move(other)},
+      "a frequency in cycles is used as an angular frequency, without 2*pi",
+      name.empty()
+          ? "multiply the frequency by 2*pi"
+          : fmt::format("write `2*pi*{0}` instead of `{0}`; if its values are angular frequencies, declare it in [rad/s]", name));
 }
 Diagnostic cycles_in_angle(Span argument, std::string const& function) {
   return errors::about({function}, at(Severity::warning, "E2210", {argument, "cycles"}, {},

@@ -23,10 +23,13 @@ std::optional<Stop> end_after_population(State const& state, Plan const& plan) {
   } else if (last.threshold <= plan.target) {
     return Stop{fmt::format("the threshold has reached the target {}", plan.target)};
   } else if (fall <= plan.threshold_change) {
-    return Stop{fmt::format("the next decrease of the threshold would be {:.2g}, not more than {}", fall, plan.threshold_change)};
+    return Stop{
+        fmt::format("the threshold would next decrease by only {:.2g}; a decrease of at most {} (`threshold_change`) ends the run",
+                    fall, plan.threshold_change)};
   } else if (fall <= plan.relative_change * next.threshold) {
-    return Stop{fmt::format("the next decrease of the threshold would be {:.2g} %, not more than {} %", 100 * fall / next.threshold,
-                            100 * plan.relative_change)};
+    return Stop{fmt::format(
+        "the threshold would next decrease by only {:.2g} %; a decrease of at most {} % (`relative_change`) ends the run",
+        100 * fall / next.threshold, 100 * plan.relative_change)};
   }
   if (double const accepted = state.records.back().acceptance(); accepted < plan.acceptance)
     return Stop{fmt::format("the acceptance rate of the proposals is {:.2g}, below {}", accepted, plan.acceptance)};

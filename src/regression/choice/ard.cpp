@@ -16,7 +16,7 @@ constexpr SettingRow rows[] = {
     {"tolerance", SettingKind::real, "1e-6", 0, 1, "",
      "stop when the sum of the changes of the scaled coefficients is smaller than this"},
     {"prune", SettingKind::real, "1e4", 1, 1e300, "",
-     "precision of a scaled coefficient above which its term is dropped: 1e4 is a contribution of one part in a hundred"},
+     "precision of a scaled coefficient above which its term is dropped: 1e4 drops contributions below 1/sqrt(1e4), one hundredth"},
 };
 
 constexpr double hyper = 1e-6;     // shape and rate of the gamma priors of all precisions
