@@ -47,6 +47,12 @@ double quantile(double probability, Tail tail, Numbers a) {
                              : boost::math::ibetac_inv(a[0], a[1], probability, BoostPolicy());
 }
 
+/// The mean stays; a + b counts as observations would.
+void widen(double factor, std::span<double> a) {
+  a[0] /= factor * factor;
+  a[1] /= factor * factor;
+}
+
 std::string_view refuse(Numbers a) { return positive(a[0]) && positive(a[1]) ? std::string_view() : "a and b must be positive"; }
 
 }  // namespace beta_parts
@@ -63,6 +69,7 @@ DistributionRow beta_distribution() {
           .upper = &upper,
           .draw = &draw,
           .quantile = &quantile,
+          .widen = &widen,
           .refuse = &refuse,
           .summary = "beta, for fractions between 0 and 1"};
 }

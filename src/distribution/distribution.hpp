@@ -60,6 +60,9 @@ struct DistributionRow {
   /// Inverse of `cumulative` (tail lower) or `survival` (upper), for draws from narrow truncations; nullptr only when improper or
   /// discrete.
   double (*quantile)(double probability, Tail tail, std::span<double const> arguments) = nullptr;
+  /// From the arguments those of a distribution `factor` times as wide: about the same middle (of the logarithm, where the
+  /// distribution is one of that), or from the same end at zero. nullptr: it has no width.
+  void (*widen)(double factor, std::span<double> arguments) = nullptr;
   /// Whether numeric arguments are admissible (sd > 0, lower < upper); returns the reason when not, else empty.
   std::string_view (*refuse)(std::span<double const> arguments);
   std::string_view summary;

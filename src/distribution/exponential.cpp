@@ -43,6 +43,7 @@ DistributionRow exponential_distribution() {
           .lower = &zero_bound,
           .draw = &draw,
           .quantile = &quantile,
+          .widen = &widen_argument<0>,
           .refuse = &refuse,
           .summary = "exponential, by mean or rate"};
 }

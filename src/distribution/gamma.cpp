@@ -28,6 +28,16 @@ double standard_quantile(double shape, double probability, Tail tail) {
                              : boost::math::gamma_q_inv(shape, probability, BoostPolicy());
 }
 
+/// Mean and sd of the gamma distribution: shape scale and scale sqrt(shape); those of 1/x for the inverse.
+void gamma_widen(double factor, std::span<double> a) {
+  a[0] /= factor * factor;
+  a[1] *= factor * factor;
+}
+void inverse_widen(double factor, std::span<double> a) {
+  a[0] /= factor * factor;
+  a[1] /= factor * factor;
+}
+
 std::string_view refuse(Numbers a) {
   if (!positive(a[0])) return "the shape must be positive";
   if (!positive(a[1])) return "scale, rate or mean must be positive";
@@ -84,6 +94,7 @@ DistributionRow gamma_distribution() {
           .lower = &zero_bound,
           .draw = &gamma_draw,
           .quantile = &gamma_quantile,
+          .widen = &gamma_widen,
           .refuse = &refuse,
           .summary = "gamma, by shape and scale, rate or mean"};
 }
@@ -98,6 +109,7 @@ DistributionRow inverse_gamma_distribution() {
           .lower = &zero_bound,
           .draw = &inverse_draw,
           .quantile = &inverse_quantile,
+          .widen = &inverse_widen,
           .refuse = &refuse,
           .summary = "inverse gamma, for variances: 1/x is gamma-distributed"};
 }

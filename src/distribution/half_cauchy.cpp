@@ -47,6 +47,7 @@ DistributionRow half_cauchy_distribution() {
           .lower = &zero_bound,
           .draw = &draw,
           .quantile = &quantile,
+          .widen = &widen_argument<0>,
           .refuse = &refuse,
           .summary = "half-Cauchy, for scales of hierarchical models"};
 }

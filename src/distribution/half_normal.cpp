@@ -42,6 +42,7 @@ DistributionRow half_normal_distribution() {
           .lower = &zero_bound,
           .draw = &draw,
           .quantile = &quantile,
+          .widen = &widen_argument<0>,
           .refuse = &refuse,
           .summary = "absolute value of a normal variate with mean 0"};
 }

@@ -51,6 +51,7 @@ DistributionRow normal_distribution() {
           .saturated = &saturated,
           .draw = &draw,
           .quantile = &quantile,
+          .widen = &widen_argument<1>,
           .refuse = &refuse,
           .summary = "normal, by sd, variance or precision"};
 }

@@ -29,6 +29,12 @@ inline NodeId zero_bound(Graph& graph, Nodes) { return graph.constant(0); }
 inline NodeId sd_from_variance(Graph& graph, NodeId variance, Nodes) { return sqrt(Term(graph, variance)).id; }
 inline NodeId sd_from_precision(Graph& graph, NodeId precision, Nodes) { return (1.0 / sqrt(Term(graph, precision))).id; }
 
+/// For `widen`: the width is proportional to one argument.
+template <std::size_t argument>
+void widen_argument(double factor, std::span<double> arguments) {
+  arguments[argument] *= factor;
+}
+
 inline bool positive(double x) { return x > 0 && x < std::numeric_limits<double>::infinity(); }
 
 /// P(Z <= z) and P(Z > z) of the standard normal, each accurate where it is small: erfc(-+z / sqrt 2) / 2.                DLMF 7.18

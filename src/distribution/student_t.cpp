@@ -101,6 +101,7 @@ DistributionRow student_t_distribution() {
           .saturated = &saturated,
           .draw = &draw,
           .quantile = &quantile,
+          .widen = &widen_argument<2>,
           .refuse = &refuse,
           .summary = "Student's t, by scale, sd, variance or precision: heavy tails, for data with outliers"};
 }

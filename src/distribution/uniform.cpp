@@ -34,6 +34,11 @@ double uniform_quantile(double probability, Tail tail, Numbers a) {
   return std::clamp(tail == Tail::lower ? a[0] + distance : a[1] - distance, a[0], a[1]);
 }
 double uniform_draw(Stream& stream, Numbers a) { return uniform_quantile(stream.uniform(), Tail::lower, a); }
+/// A bound at zero is the least that the quantity can be, and stays; otherwise the middle does.
+void uniform_widen(double factor, std::span<double> a) {
+  double const middle = a[0] == 0 || a[1] == 0 ? 0 : 0.5 * a[0] + 0.5 * a[1];
+  for (double& bound : a) bound = middle + factor * (bound - middle);
+}
 std::string_view uniform_refuse(Numbers a) {
   if (!std::isfinite(a[0]) || !std::isfinite(a[1])) return "both bounds must be finite";
   if (!(a[0] < a[1])) return "lower must be below upper";
@@ -64,6 +69,11 @@ double log_uniform_quantile(double probability, Tail tail, Numbers a) {
   return std::clamp(tail == Tail::lower ? a[0] * elementary::exp(distance) : a[1] * elementary::exp(-distance), a[0], a[1]);
 }
 double log_uniform_draw(Stream& stream, Numbers a) { return log_uniform_quantile(stream.uniform(), Tail::lower, a); }
+void log_uniform_widen(double factor, std::span<double> a) {
+  double const low = elementary::log(a[0]), half = 0.5 * (elementary::log(a[1]) - low), middle = low + half;
+  a[0] = elementary::exp(middle - factor * half);
+  a[1] = elementary::exp(middle + factor * half);
+}
 std::string_view log_uniform_refuse(Numbers a) {
   if (!positive(a[0]) || !positive(a[1])) return "both bounds must be positive";
   if (!(a[0] < a[1])) return "lower must be below upper";
@@ -83,6 +93,7 @@ DistributionRow uniform_distribution() {
           .upper = &upper_bound,
           .draw = &uniform_draw,
           .quantile = &uniform_quantile,
+          .widen = &uniform_widen,
           .refuse = &uniform_refuse,
           .summary = "uniform between two bounds"};
 }
@@ -99,6 +110,7 @@ DistributionRow log_uniform_distribution() {
           .upper = &upper_bound,
           .draw = &log_uniform_draw,
           .quantile = &log_uniform_quantile,
+          .widen = &log_uniform_widen,
           .refuse = &log_uniform_refuse,
           .summary = "uniform in the logarithm, between two positive bounds"};
 }

@@ -18,6 +18,7 @@
 #include "result/function.hpp"
 #include "result/mode.hpp"
 #include "result/prediction.hpp"
+#include "result/prior_width.hpp"
 #include "result/restoring_force.hpp"
 #include "result/selection.hpp"
 #include "result/summary.hpp"
@@ -116,6 +117,7 @@ struct Report {
   std::vector<std::string> sampled_names = {};
   std::optional<Evidence> evidence;       // of a fit that has come to its end
   std::optional<Criteria> criteria;       // the same
+  std::vector<PriorWidth> prior_widths;   // of a fit with draws and an evidence
   std::vector<std::string> noise;         // of a fit: its parameters that only the noise reads
   std::vector<FunctionReport> functions;  // unknown ones of the equations
   std::vector<RestoringForce> forces;     // of each experiment and oscillator that has one

@@ -246,3 +246,35 @@ TEST_CASE("a noise is densest where its location is, and the saturated density i
     }
   }
 }
+
+TEST_CASE("a distribution twice as wide is twice as wide, about the same middle or from the same end at zero") {
+  for (Case const& given : test::whole_cases()) {
+    DistributionRow const& row = given.row();
+    CAPTURE(describe(given));
+    REQUIRE((row.widen != nullptr));
+    std::vector<double> wider = given.arguments;
+    row.widen(2, wider);
+    CHECK(row.refuse(wider).empty());
+    std::vector<double> back = wider;
+    row.widen(0.5, back);
+    for (std::size_t i = 0; i < back.size(); ++i) CHECK(back[i] == doctest::Approx(given.arguments[i]).epsilon(1e-12));
+    bool const of_logarithm = row.name == "log_uniform" || row.name == "log_normal";
+    auto const spread = [&](std::vector<double> const& arguments) {
+      double const low = row.quantile(0.25, Tail::lower, arguments), high = row.quantile(0.25, Tail::upper, arguments);
+      return of_logarithm ? std::log(high / low) : high - low;
+    };
+    // Of shapes the sd doubles, or nearly so, and quantiles by other factors.
+    bool const of_shape = row.name == "gamma" || row.name == "inverse_gamma" || row.name == "beta";
+    if (!of_shape) CHECK(spread(wider) == doctest::Approx(2 * spread(given.arguments)).epsilon(1e-9));
+    if (row.name == "gamma") {
+      CHECK(wider[0] * wider[1] == doctest::Approx(given.arguments[0] * given.arguments[1]));
+      CHECK(wider[1] * std::sqrt(wider[0]) == doctest::Approx(2 * given.arguments[1] * std::sqrt(given.arguments[0])));
+    }
+    if (row.name == "beta") CHECK(wider[0] / wider[1] == doctest::Approx(given.arguments[0] / given.arguments[1]));
+  }
+  std::vector<double> from_zero = {0, 10}, shifted = {2, 10};
+  find_distribution("uniform")->widen(2, from_zero);
+  find_distribution("uniform")->widen(2, shifted);
+  CHECK(from_zero == std::vector<double>{0, 20});
+  CHECK(shifted == std::vector<double>{-2, 14});
+}

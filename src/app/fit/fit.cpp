@@ -24,6 +24,7 @@
 #include "app/session/task_checkpoint.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
+#include "diagnostics/prior_widths.hpp"
 #include "diagnostics/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/automatic.hpp"
@@ -37,6 +38,16 @@ namespace sysid {
 namespace {
 
 using json = nlohmann::json;
+
+/// Those that the user has chosen: coefficients of unknown functions have the prior that their kernel gives them.
+std::vector<PriorInfo> priors_of_choice(Report const& report) {
+  std::vector<PriorInfo> chosen;
+  for (PriorInfo const& prior : report.priors) {
+    auto const of_function = [&](Summary const& each) { return each.name == prior.name && each.coefficient; };
+    if (std::none_of(report.summary.begin(), report.summary.end(), of_function)) chosen.push_back(prior);
+  }
+  return chosen;
+}
 
 class Fit {
  public:
@@ -221,6 +232,7 @@ class Fit {
       report.functions = likelihood_->functions(result, report.draws);
       report.evidence = laplace_evidence(target, backend_->objective_kind, preparation_.modes, seed_, finished.extra);
       report.criteria = criteria_of(finished);
+      if (report.evidence->log_evidence) report.prior_widths = prior_widths(priors_of_choice(report), report.draws);
       report.noise = noise_parameters(likelihood_->space());
     }
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);

@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/run/compare_scores.hpp"
+#include "app/run/compared_evidence.hpp"
 #include "app/session/made_from.hpp"
-#include "core/numeric/elementary.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
@@ -157,6 +156,7 @@ ComparedFit compared_fit(StoredSummary const& result) {
   json const evidence = summary.value("evidence", json::object());
   if (evidence.contains("log_evidence") && evidence["log_evidence"].is_number()) {
     fit.log_evidence = evidence["log_evidence"].get<double>();
+    fit.evidence_error = evidence.value("standard_error", 0.0);
     double const along = evidence.value("along_axes", 0.0);
     json const by_draws = evidence.value("by_draws", json(along));  // absent: they confirm it, or were not drawn
     double const off = by_draws.is_number() ? by_draws.get<double>() : along;
@@ -207,20 +207,6 @@ std::vector<std::string> models_of_one_name(std::vector<StoredSummary> const& re
                                   fmt::join(fits, "; ")));
   }
   return notes;
-}
-
-void add_probabilities(std::vector<StoredSummary> const& results, std::vector<ComparedFit>& fits) {
-  std::map<std::string, double> of_model;  // the first fit of it that has an evidence stands for all
-  double highest = -std::numeric_limits<double>::infinity();
-  for (std::size_t f = 0; f < fits.size(); ++f)
-    if (fits[f].log_evidence) {
-      of_model.emplace(identity(results[f]), *fits[f].log_evidence);
-      highest = std::max(highest, *fits[f].log_evidence);
-    }
-  double sum = 0;
-  for (auto const& [model, log_evidence] : of_model) sum += elementary::exp(log_evidence - highest);
-  for (std::size_t f = 0; f < fits.size(); ++f)
-    if (fits[f].log_evidence) fits[f].probability = elementary::exp(of_model.at(identity(results[f])) - highest) / sum;
 }
 
 std::string kind_of(json const& summary) {
@@ -297,11 +283,18 @@ Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model
     }
   }
   if (!fits.empty()) comparison.data = data_text(fits.front());
-  add_probabilities(fits, comparison.fits);
   std::vector<ScoredFit> scored;
   for (StoredSummary const& each : fits)
     if (auto found = scored_fit(each.name, each.model, each.folder, each.summary)) scored.push_back(std::move(*found));
   comparison.scores = compare_scores(scored);
+  std::vector<std::string> models;
+  std::vector<json> evidences;
+  for (StoredSummary const& each : fits) {
+    models.push_back(identity(each));
+    evidences.push_back(each.summary.value("evidence", json::object()));
+  }
+  weigh_models(models, comparison.fits);
+  for (std::string& note : prior_width_notes(models, comparison.fits, evidences)) comparison.notes.push_back(std::move(note));
   for (std::string& note : models_of_one_name(fits)) comparison.notes.push_back(std::move(note));
   return comparison;
 }

@@ -87,6 +87,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deviance, mean, variance, at_mean)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOutBlocks, experiment, pareto_k, asked, first_row, last_row, own_draws)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Criteria, at_mode, deviance, reason, draws, waic, loo, block, future, p_waic, p_loo,
                                    unstable_waic, pareto_counts, worst_k, in_time, blocks, futures)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorWidth, parameter, factor, change, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, kind, where, count, time, example, names)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FunctionPoint, inputs, mean, sd, q5, q95)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PredictedInput, name, unit, values)
@@ -260,8 +261,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measu
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, verb, prediction_rule, measured_past, lags, model_name, model_title,
                                    equations, formulas, model_text, resolved_text, priors, fixed, data, draws, summary, verdict,
-                                   findings, fit, predictions, modes, sampled_names, evidence, criteria, noise, functions, forces,
-                                   tables, selection, discovery, ledger, seed, place, command, unseeded, settings, versions)
+                                   findings, fit, predictions, modes, sampled_names, evidence, criteria, prior_widths, noise,
+                                   functions, forces, tables, selection, discovery, ledger, seed, place, command, unseeded,
+                                   settings, versions)
 
 namespace {
 

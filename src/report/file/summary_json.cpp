@@ -137,6 +137,19 @@ Json criteria(Criteria const& criteria) {
   return out;
 }
 
+/// By factor on the width; null where the draws do not tell.
+Json prior_widths(std::vector<PriorWidth> const& effects) {
+  Json out = {{"factors", Json::array()}, {"parameters", Json::object()}};
+  auto const rounded = [](double value) { return std::round(1e3 * value) / 1e3 + 0.0; };
+  for (PriorWidth const& each : effects) {
+    if (each.parameter == effects.front().parameter) out["factors"].push_back(each.factor);
+    Json& entry = each.parameter.empty() ? out["all"] : out["parameters"][each.parameter];
+    entry["change"].push_back(each.change ? Json(rounded(*each.change)) : Json(nullptr));
+    entry["error"].push_back(each.change ? Json(rounded(each.error)) : Json(nullptr));
+  }
+  return out;
+}
+
 Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
   Json failures = Json::array();
   for (Failure const& failure : ledger.failures())
@@ -210,6 +223,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
                             {"sd", named_values(mode.sd, report.sampled_names)}});
   if (report.evidence) {
     out["evidence"] = evidence(*report.evidence);
+    if (!report.prior_widths.empty()) out["evidence"]["prior_widths"] = prior_widths(report.prior_widths);
     out["parameter_count"] = report.draws.parameter_count;
     out["noise"] = report.noise;
   }

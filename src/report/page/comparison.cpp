@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -21,20 +20,25 @@ std::string checks_text(bool pass, int warnings) {
   return warnings == 0 ? "pass" : counted(warnings, "warning");
 }
 
-/// To a tenth, and never below zero by rounding alone.
-std::string difference_text(double difference) { return fmt::format("{:.1f}", std::fabs(difference) < 0.05 ? 0 : difference); }
+/// To that many decimals, never "-0", with an error that is not zero at them.
+std::string with_error(double value, double error, int decimals) {
+  double const unit = std::pow(10.0, -decimals);
+  std::string text = fmt::format("{:.{}f}", std::fabs(value) < 0.5 * unit ? 0 : value, decimals);
+  if (error >= 0.5 * unit) text += fmt::format(" ± {:.{}f}", error, decimals);
+  return text;
+}
 
 ReportTable fits_table(Comparison const& comparison) {
   ReportTable table;
   table.title = fmt::format("fitted to {}; probabilities of the models for equal prior probabilities", comparison.data);
-  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "probability", "checks"};
-  double best = -std::numeric_limits<double>::infinity();
-  for (ComparedFit const& fit : comparison.fits) best = std::max(best, fit.log_evidence.value_or(best));
+  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "strength", "probability", "checks"};
   for (ComparedFit const& fit : comparison.fits) {
     table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
-                          fit.log_evidence ? fmt::format("{:.1f}", *fit.log_evidence) : "-",
-                          fit.log_evidence ? difference_text(*fit.log_evidence - best) : "-",
-                          fit.probability ? fmt::format("{:.3f}", *fit.probability) : "-", checks_text(fit.pass, fit.warnings)});
+                          fit.log_evidence ? with_error(*fit.log_evidence, fit.evidence_error, 1) : "-",
+                          fit.log_bayes_factor ? with_error(*fit.log_bayes_factor, fit.bayes_factor_error, 1) : "-",
+                          fit.strength.empty() ? "-" : fit.strength,
+                          fit.probability ? with_error(*fit.probability, fit.probability_error, 3) : "-",
+                          checks_text(fit.pass, fit.warnings)});
     std::string note;
     if (!fit.log_evidence) note = fmt::format("{} has no evidence: {}", fit.name, fit.without);
     if (fit.rough)
@@ -137,8 +141,13 @@ std::string comparison_json(Comparison const& comparison) {
                   {"parameters", fit.parameters},
                   {"noise", fit.noise},
                   {"log_evidence", number(fit.log_evidence)},
+                  {"standard_error", fit.evidence_error},
+                  {"log_bayes_factor", number(fit.log_bayes_factor)},
+                  {"log_bayes_factor_error", fit.bayes_factor_error},
+                  {"strength", fit.strength},
                   {"rough", number(fit.rough)},
                   {"probability", number(fit.probability)},
+                  {"probability_error", fit.probability_error},
                   {"pass", fit.pass},
                   {"warnings", fit.warnings}};
     if (!fit.log_evidence) entry["reason"] = fit.without;

@@ -1,0 +1,143 @@
+// Sums of exponentials, and errors to first order.
+#include "app/run/compared_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "core/numeric/elementary.hpp"
+#include "core/text/words.hpp"
+
+namespace sysid {
+namespace {
+
+using json = nlohmann::json;
+
+constexpr double ruled_out = 10;  // nats below the best: no width of a prior brings it back
+
+/// Places in `fits` of those that stand for a model, the best one first.
+std::vector<std::size_t> standing(std::vector<std::string> const& models, std::vector<ComparedFit> const& fits) {
+  std::vector<std::size_t> places;
+  std::set<std::string> seen;
+  for (std::size_t f = 0; f < fits.size(); ++f)
+    if (fits[f].log_evidence && seen.insert(models[f]).second) places.push_back(f);
+  std::stable_sort(places.begin(), places.end(),
+                   [&](std::size_t a, std::size_t b) { return *fits[a].log_evidence > *fits[b].log_evidence; });
+  return places;
+}
+
+/// What one fit's log evidence changes by.
+struct Widths {
+  std::vector<double> factors;
+  std::map<std::string, std::vector<std::optional<double>>> change;  // by parameter; "": all
+
+  explicit Widths(json const& evidence) {
+    json const stored = evidence.value("prior_widths", json::object());
+    factors = stored.value("factors", std::vector<double>());
+    auto const add = [&](std::string const& name, json const& entry) {
+      for (json const& each : entry.at("change"))
+        change[name].push_back(each.is_number() ? std::optional(each.get<double>()) : std::nullopt);
+    };
+    json const parameters = stored.value("parameters", json::object());
+    for (auto const& [name, entry] : parameters.items()) add(name, entry);
+    if (stored.contains("all")) add("", stored.at("all"));
+    if (change.size() == 1) change[""] = change.begin()->second;
+  }
+  /// 0 for a parameter that the model has not.
+  std::optional<double> at(std::string const& name, double factor) const {
+    auto const entry = change.find(name);
+    auto const place = static_cast<std::size_t>(std::find(factors.begin(), factors.end(), factor) - factors.begin());
+    if (entry == change.end()) return 0;
+    return place < entry->second.size() ? entry->second[place] : std::nullopt;
+  }
+};
+
+/// A log Bayes factor over half and twice the widths.
+struct Range {
+  double low, high;
+  double most = 0;  // what a single parameter changes
+  std::string by;   // which
+  std::vector<std::string> unknown;
+};
+
+Range range_of(double log_bayes_factor, Widths const& of, Widths const& best) {
+  Range range{log_bayes_factor, log_bayes_factor, 0, {}, {}};
+  std::set<std::string> names;
+  for (Widths const* each : {&of, &best})
+    for (auto const& [name, change] : each->change) names.insert(name);
+  for (std::string const& name : names)
+    for (double const factor : {0.5, 2.0}) {
+      auto const mine = of.at(name, factor), other = best.at(name, factor);
+      if (!mine || !other) {
+        if (!name.empty() && (range.unknown.empty() || range.unknown.back() != name)) range.unknown.push_back(name);
+        continue;
+      }
+      double const change = *mine - *other;
+      range.low = std::min(range.low, log_bayes_factor + change);
+      range.high = std::max(range.high, log_bayes_factor + change);
+      if (!name.empty() && std::fabs(change) > range.most) range.most = std::fabs(change), range.by = name;
+    }
+  return range;
+}
+
+}  // namespace
+
+void weigh_models(std::vector<std::string> const& models, std::vector<ComparedFit>& fits) {
+  std::vector<std::size_t> const places = standing(models, fits);
+  if (places.empty()) return;
+  ComparedFit const best = fits[places.front()];
+  double sum = 0, square = 0;  // of P_j s_j, once the first is known
+  for (std::size_t const p : places) sum += elementary::exp(*fits[p].log_evidence - *best.log_evidence);
+  std::map<std::string, std::size_t> standing_for;
+  for (std::size_t const p : places) {
+    standing_for[models[p]] = p;
+    double const part = elementary::exp(*fits[p].log_evidence - *best.log_evidence) / sum * fits[p].evidence_error;
+    square += part * part;
+  }
+  std::vector<ComparedFit> const stored = fits;
+  for (std::size_t f = 0; f < fits.size(); ++f) {
+    if (!fits[f].log_evidence) continue;
+    ComparedFit const& one = stored[standing_for.at(models[f])];
+    bool const is_best = standing_for.at(models[f]) == places.front();
+    double const share = elementary::exp(*one.log_evidence - *best.log_evidence) / sum, error = one.evidence_error;
+    double const others = std::max(0.0, square - share * share * error * error);
+    fits[f].probability = share;
+    fits[f].probability_error = share * std::sqrt((1 - share) * (1 - share) * error * error + others);
+    fits[f].log_bayes_factor = is_best ? 0 : *one.log_evidence - *best.log_evidence;
+    fits[f].bayes_factor_error = is_best ? 0 : std::hypot(error, best.evidence_error);
+    if (!is_best) fits[f].strength = evidence_strength(*fits[f].log_bayes_factor);
+  }
+}
+
+std::string evidence_strength(double log_bayes_factor) {
+  double const size = std::fabs(log_bayes_factor);
+  return size < 1 ? "hardly any" : size < 3 ? "positive" : size < 5 ? "strong" : "very strong";
+}
+
+std::vector<std::string> prior_width_notes(std::vector<std::string> const& models, std::vector<ComparedFit> const& fits,
+                                           std::vector<json> const& evidences) {
+  std::vector<std::string> notes;
+  std::vector<std::size_t> const places = standing(models, fits);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    ComparedFit const &of = fits[places[i]], &best = fits[places.front()];
+    double const factor = *of.log_evidence - *best.log_evidence;
+    Widths const mine(evidences[places[i]]), other(evidences[places.front()]);
+    if (factor < -ruled_out || mine.change.empty() || other.change.empty()) continue;
+    Range const range = range_of(factor, mine, other);
+    std::string note = fmt::format(
+        "{} against {}: the log Bayes factor lies between {:.1f} and {:.1f} if priors are half or twice as wide, one or all of "
+        "them",
+        of.name, best.name, range.low, range.high);
+    if (!range.by.empty()) note += fmt::format("; the prior of `{}` changes it most", range.by);
+    if (!range.unknown.empty()) note += fmt::format("; the draws do not show what the prior of {} does", quoted(range.unknown));
+    notes.push_back(std::move(note));
+  }
+  return notes;
+}
+
+}  // namespace sysid
