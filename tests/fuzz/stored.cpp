@@ -52,7 +52,11 @@ int main(int argument_count, char** arguments) {
     if (what == "example") {
       clean = changes_of(folder, fuzz::write_example(folder), count, seed);
     } else if (found != cases.end()) {
-      clean = print("checkpoint of " + what, fuzz::mutate_checkpoint(folder, *found, count, seed));
+      fuzz::CheckpointOutcome const outcome = fuzz::mutate_checkpoint(folder, *found, count, seed, 100);
+      clean = print("checkpoint of " + what, outcome);
+      std::printf("  sealed again %11llu refused, %llu read; %llu whole runs\n",
+                  static_cast<unsigned long long>(outcome.forged_refused), static_cast<unsigned long long>(outcome.forged_taken),
+                  static_cast<unsigned long long>(outcome.whole));
     } else {
       std::filesystem::copy(what, folder);
       std::printf("%s\n", what.c_str());

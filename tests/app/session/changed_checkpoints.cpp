@@ -10,8 +10,9 @@ TEST_CASE("no change of a checkpoint is resumed to another result") {
   TemporaryFolder const folder;
   for (fuzz::CheckpointCase const& each : fuzz::checkpoint_cases()) {
     CAPTURE(each.name);
-    fuzz::Outcome const outcome = fuzz::mutate_checkpoint(folder.path() / each.name, each, 12, 20);
+    fuzz::CheckpointOutcome const outcome = fuzz::mutate_checkpoint(folder.path() / each.name, each, 12, 20, 1);
     CHECK(outcome.fault == "");
     CHECK(outcome.refused >= 10);
+    CHECK(outcome.whole >= 20);
   }
 }
