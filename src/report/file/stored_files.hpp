@@ -8,8 +8,8 @@
 
 namespace sysid {
 
-/// Of the files of a result: raised when a reader of before would take them for something else. In each CSV file as "# format = 1".
-constexpr int stored_form = 1;
+/// Of the files of a result: raised when a reader of before would take them for something else. In each CSV file as "# format = 2".
+constexpr int stored_form = 2;
 
 /// Stored results that cannot be used (E6209): damaged, incomplete or of another version.
 UserError unusable_result(std::string message);

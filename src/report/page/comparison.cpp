@@ -59,7 +59,7 @@ ReportTable scores_table(ComparedScores const& scores) {
   table.header = {"fit", "model", "elpd", "error", "difference", "error of difference", "stacking weight", "pseudo-BMA+ weight"};
   for (ComparedScore const& fit : scores.fits) {
     table.rows.push_back({fit.name, fit.model, fmt::format("{:.1f}", fit.elpd), fmt::format("{:.1f}", fit.error),
-                          difference_text(fit.difference), fmt::format("{:.1f}", fit.difference_error),
+                          with_error(fit.difference, 0, 1), fmt::format("{:.1f}", fit.difference_error),
                           fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
     if (fit.doubtful > 0 && !scores.future)
       table.caption += fmt::format("{}{}: Pareto's k is above 0.7 for {}, so its elpd is too high",
