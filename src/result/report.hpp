@@ -9,6 +9,7 @@
 
 #include "core/setting/settings.hpp"
 #include "core/system/ledger.hpp"
+#include "result/calibration.hpp"
 #include "result/criteria.hpp"
 #include "result/discovery.hpp"
 #include "result/draws.hpp"
@@ -124,6 +125,7 @@ struct Report {
   std::vector<ReportTable> tables;
   std::optional<SelectionReport> selection;
   std::optional<DiscoveryReport> discovery;
+  std::optional<CalibrationReport> calibration;
   Ledger ledger;
   std::uint64_t seed = 0;
   int place = 0;                      // of the task in its file

@@ -76,6 +76,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"search/hierarchy", {"linear_algebra", "likelihood", "search"}},
     {"diagnostics",
      {"core", "linear_algebra", "result", "data", "distribution", "model", "solver", "program", "likelihood", "search"}},
+    {"diagnostics/calibration", {"core", "result", "diagnostics"}},
     {"inference/backend", {"core", "result", "likelihood", "likelihood/selection", "search", "diagnostics"}},
     {"inference/chain", {"core", "linear_algebra", "result", "likelihood", "search", "diagnostics", "inference/backend"}},
     {"inference/nuts",
@@ -136,6 +137,9 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"app/task",
      {"core", "data", "gaussian_process", "model", "syntax", "regression", "likelihood", "likelihood/process", "check/checked",
       "diagnostics", "load", "experiment", "mechanics", "discovery", "report/file", "app/session", "app/process", "app/fit"}},
+    {"app/calibration",
+     {"core", "result", "data", "model", "simulate", "likelihood", "check/checked", "diagnostics", "diagnostics/calibration",
+      "inference/backend", "inference", "experiment", "report/file", "app/session", "app/fit"}},
     {"app/catalogue",
      {"core", "function", "gaussian_process", "distribution", "syntax", "regression/column", "regression/choice", "solver",
       "check/elaborate", "check/dictionary", "inference", "load"}},
@@ -175,8 +179,8 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
       "repl/work"}},
     {"lsp", {"core", "syntax", "assist"}},
     {"cli",
-     {"core", "syntax", "diagnostics", "load", "experiment", "typeset", "report/figure", "report/page", "app/session",
-      "app/preflight", "app/catalogue", "app/run", "exchange", "repl", "lsp"}},
+     {"core", "syntax", "diagnostics", "inference", "load", "experiment", "typeset", "report/figure", "report/page", "app/session",
+      "app/preflight", "app/calibration", "app/catalogue", "app/run", "exchange", "repl", "lsp"}},
 };
 
 /// The one room that may include headers that begin like this.

@@ -52,14 +52,18 @@ std::vector<PriorInfo> priors_of_choice(Report const& report) {
 class Fit {
  public:
   Fit(Session& session, int index, Task const& task, FitTask const& what)
+      : Fit(session, index, task, what, TaskCheckpoint(session, task, what.seed), find_backend(what.backend)) {}
+
+  // checkpoint: of the run, or one that is kept nowhere.
+  Fit(Session& session, int index, Task const& task, FitTask const& what, TaskCheckpoint checkpoint, BackendRow const* backend)
       : session_(session),
         index_(index),
         task_(task),
         what_(what),
-        checkpoint_(session, task, what.seed),
+        checkpoint_(std::move(checkpoint)),
         seed_(checkpoint_.seed()),
         chosen_(what),
-        backend_(find_backend(what.backend)),
+        backend_(backend),
         data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
                                what.prediction, what.solver)),
         likelihood_(session.file.models[static_cast<std::size_t>(what.model)].processes.empty()
@@ -86,26 +90,60 @@ class Fit {
       return stop_early(session_, task_, checkpoint_);
     }
     context.checkpoint = [this](json const& state) { checkpoint_.save({{"preparation", store(preparation_)}, {"state", state}}); };
+    ExitCode stopped = ExitCode::interrupted;
+    std::optional<FitResult> result = sample_to_end(context, stopped);
+    return result ? finish(std::move(*result)) : stopped;
+  }
+
+  // Of records that are not the task's own, or by a back end that is not its own: nothing is kept. Nothing: interrupted.
+  std::optional<UnkeptFit> run_unkept(std::vector<double> const& at) {
+    if (auto const why = refusal(task_, what_, likelihood_->sampled_model(), data_)) throw UserError(*why);
+    if (!prepare(nullptr)) return std::nullopt;
+    RunContext context = searching(ledger_);
+    ExitCode stopped = ExitCode::interrupted;
+    std::optional<FitResult> const result = sample_to_end(context, stopped);
+    if (!result || result->interrupted) return std::nullopt;
+    UnkeptFit fit{begin(*result), chosen_.backend, std::nan(""), *result};
+    Target const& target = likelihood_->set_target(preparation_.solver, session_.interruptible());
+    FinishedFit finished = finished_fit(*result, target, fit.report);
+    run_fit_checks(finished);
+    name_held(fit.report, fit.report.findings);
+    add_settings(result->settings, fit.report);
+    fit.report.ledger = preparation_.ledger;
+    fit.report.ledger.merge(ledger_);
+    if (!at.empty()) fit.log_likelihood = log_likelihood(target, at);
+    if (session_.interrupted()) return std::nullopt;
+    return fit;
+  }
+
+ private:
+  // Nothing: interrupted, with the exit code that says so in `stopped`.
+  std::optional<FitResult> sample_to_end(RunContext& context, ExitCode& stopped) {
     while (true) {
       FitResult result;
       try {
         result = sample(context);
       } catch (Interrupted const&) {  // before the first iteration, or an optimum's checks
         if (!checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
-        return stop_early(session_, task_, checkpoint_);
+        stopped = stop_early(session_, task_, checkpoint_);
+        return std::nullopt;
       }
-      if (result.interrupted && result.draws.total() == 0) return stop_early(session_, task_, checkpoint_);
+      if (result.interrupted && result.draws.total() == 0) {
+        stopped = stop_early(session_, task_, checkpoint_);
+        return std::nullopt;
+      }
       check_draws_of(result);
-      if (!to_be_chosen_again(result)) return finish(std::move(result));
+      if (!to_be_chosen_again(result)) return result;
       session_.notices << fmt::format("{}: sampling again with a finer solver: {}\n", task_.name,
                                       tolerance_findings(*accuracy_, preparation_.solver, true).front().message);
       context.resume = {};
-      if (!choose_again(fine_enough(preparation_.solver, accuracy_->largest()), nullptr))
-        return stop_late(session_, task_, checkpoint_, preparation_);
+      if (!choose_again(fine_enough(preparation_.solver, accuracy_->largest()), nullptr)) {
+        stopped = stop_late(session_, task_, checkpoint_, preparation_);
+        return std::nullopt;
+      }
     }
   }
 
- private:
   // Without checkpoints and known modes.
   RunContext searching(Ledger& ledger) {
     return {.seed = seed_,
@@ -221,11 +259,8 @@ class Fit {
     // Sampling must not be given up on the way, the checks may.
     Target const& target =
         likelihood_->set_target(preparation_.solver, interrupted ? session_.options.execution : session_.interruptible());
-    FinishedFit finished{session_, what_, *likelihood_, target, data_, preparation_, result, backend_->objective_kind,
-                         ledger_,  seed_, accuracy_,    report, {},    extra_};
     if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
-    for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
-      finished.rows.push_back(likelihood_->fitted_rows(report.draws, e, report.forces));
+    FinishedFit finished = finished_fit(result, target, report);
     run_fit_checks(finished);
     name_held(report, report.findings);
     if (!interrupted) {
@@ -243,6 +278,25 @@ class Fit {
     report.ledger = preparation_.ledger;
     report.ledger.merge(ledger_);
     return conclude_fit(session_, index_, task_, checkpoint_, preparation_.solver, std::move(report), began_, interrupted);
+  }
+
+  // What the checks read. All outlive it.
+  FinishedFit finished_fit(FitResult const& result, Target const& target, Report& report) {
+    FinishedFit finished{session_, what_, *likelihood_, target, data_, preparation_, result, backend_->objective_kind,
+                         ledger_,  seed_, accuracy_,    report, {},    extra_};
+    for (int e = 0; e < static_cast<int>(data_.size()) && !result.interrupted; ++e)
+      finished.rows.push_back(likelihood_->fitted_rows(report.draws, e, report.forces));
+    return finished;
+  }
+
+  // Of these declared values of the sampled parameters.
+  double log_likelihood(Target const& target, std::vector<double> const& at) {
+    LaneArray declared(target.dimension(), 1), theta(target.dimension(), 1);
+    for (int p = 0; p < target.dimension(); ++p) declared(p, 0) = at[static_cast<std::size_t>(p)];
+    target.unconstrain(declared, theta);
+    double value = 0;
+    target.log_likelihood(theta, {&value, 1}, extra_);
+    return value;
   }
 
   // Priors, data, draws and what sampling itself has found. What is wrong with the record comes before what follows from it.
@@ -304,6 +358,11 @@ class Fit {
 };
 
 }  // namespace
+
+std::optional<UnkeptFit> fit_unkept(Session& session, int index, Task const& task, FitTask const& what, std::uint64_t seed,
+                                    std::vector<double> const& at, BackendRow const* backend) {
+  return Fit(session, index, task, what, TaskCheckpoint(session, task, Unkept{seed}), backend).run_unkept(at);
+}
 
 ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what) {
   return Fit(session, index, task, what).run();

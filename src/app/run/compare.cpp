@@ -76,7 +76,12 @@ std::vector<StoredSummary> results_in(fs::path const& folder) {
   std::vector<std::string> others;  // results without an evidence or an error of prediction
   for (StoredSummary const& each : found)
     if (!each.is("fit") && !each.is("predict"))
-      others.push_back(fmt::format("the {} `{}`", each.is("select") ? "selection" : "discovery", each.name));
+      others.push_back(fmt::format("the {} `{}`",
+                                   each.is("select")       ? "selection"
+                                   : each.is("calibrate")  ? "calibration"
+                                   : each.is("crosscheck") ? "crosscheck"
+                                                           : "discovery",
+                                   each.name));
   std::erase_if(found, [](StoredSummary const& each) { return !each.is("fit") && !each.is("predict"); });
   if (found.empty() && !others.empty())
     throw refused(

@@ -89,10 +89,11 @@ std::string statement_digest(Session const& session, Task const& task) {
   return sha256(text);
 }
 
-void add_repetition(Session const& session, Task const& task, Report& report) {
+void add_repetition(Session const& session, Task const& task, Report& report, Repetition const& repetition) {
   report.place = static_cast<int>(&task - session.file.tasks.data());
   RunOptions const& options = session.options;
-  report.command = fmt::format("sysid run {}", quoted_for_shell(session.source.name()));
+  report.command = fmt::format("sysid {} {}{}", repetition.verb, quoted_for_shell(session.source.name()), repetition.options);
+  report.unseeded.clear();
   auto const stated = [](Task const& each) { return stated_seed(each).has_value(); };
   std::vector<Task const*> needed = {&task};  // with those whose draws it is made from
   for (std::size_t i = 0; i < needed.size(); ++i)

@@ -15,9 +15,14 @@ Report begin_report(Session const& session, Task const& task, int model, std::st
 /// as it is compiled under the rule.
 void add_prediction_rule(Model const& model, PredictionRule rule, Report& report);
 
+/// The verb that makes a result again, and its options besides those of a run.
+struct Repetition {
+  std::string verb = "run", options = {};
+};
+
 /// The task's place in its file and the command that makes its result again, from the folder in which the run was started. Of seeds
 /// that were drawn the command carries one where all tasks that it takes have it; else they are named, to be written into the file.
-void add_repetition(Session const& session, Task const& task, Report& report);
+void add_repetition(Session const& session, Task const& task, Report& report, Repetition const& repetition = {});
 
 /// The priors of a model as they stand in its text, in the order of its declarations.
 std::vector<PriorInfo> declared_priors(Session const& session, int model);

@@ -43,6 +43,10 @@ Record const& Session::record(int data, Model const& model) {
   return records_.emplace(std::pair(data, &model), std::move(read)).first->second;
 }
 
+void Session::replace_record(int data, Model const& model, Record record) {
+  records_.insert_or_assign(std::pair(data, &model), std::move(record));
+}
+
 std::uint64_t Session::seed(Task const& task, std::optional<std::uint64_t> const& stated) {
   if (options.seed) return *options.seed;
   if (stated) return *stated;

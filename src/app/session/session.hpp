@@ -55,6 +55,8 @@ class Session {
   std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method, PredictionRule prediction);
   /// The record of a data block as a model of the file reads it, read on first use. Throws as `load_record`.
   Record const& record(int data, Model const& model);
+  /// From here on `record` is that for this model.
+  void replace_record(int data, Model const& model, Record record);
   /// The seed of a task: the command line's, the file's, or one drawn from the system and printed.
   std::uint64_t seed(Task const& task, std::optional<std::uint64_t> const& stated);
   /// A sub-expression in the user's words, for the ledger.

@@ -76,7 +76,7 @@ json TaskCheckpoint::who() const {
 }
 
 std::shared_ptr<json const> TaskCheckpoint::stored() const {
-  if (!session_.options.resume) return nullptr;
+  if (!session_.options.resume || path_.empty()) return nullptr;
   auto const stored = read(path_);
   if (!stored) return nullptr;
   if (stored->at("who") != who())
@@ -121,6 +121,7 @@ void TaskCheckpoint::drop() {
 }
 
 void TaskCheckpoint::save(json const& content) {
+  if (path_.empty()) return;
   saved_ = true;
   write_file(path_, sealed_cbor({{"who", who()}, {"content", content}}, form));
 }

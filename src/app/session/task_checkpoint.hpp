@@ -17,8 +17,14 @@ namespace sysid {
 
 class Journal;
 
+/// Of a task of which nothing is kept.
+struct Unkept {
+  std::uint64_t seed;
+};
+
 class TaskCheckpoint {
  public:
+  TaskCheckpoint(Session& session, Task const& task, Unkept unkept) : session_(session), task_(task), seed_(unkept.seed) {}
   /// stated: the seed in the file. The seed in force is the command line's, the file's, that of a checkpoint to go on from, or one
   /// drawn and printed.
   TaskCheckpoint(Session& session, Task const& task, std::optional<std::uint64_t> const& stated);
@@ -52,7 +58,7 @@ class TaskCheckpoint {
 
   Session& session_;
   Task const& task_;
-  std::filesystem::path path_;
+  std::filesystem::path path_;  // empty: kept nowhere
   std::uint64_t seed_;
   bool saved_ = false;
   std::vector<std::pair<std::string, std::string>> digests_;  // of each experiment, by its name

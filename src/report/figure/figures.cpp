@@ -54,6 +54,10 @@ bool shows_something(PredictedQuantity const& quantity) {
 std::vector<Figure> figures(Report const& report) {
   std::vector<Figure> out;
   if (report.selection) out.push_back(population_figure(*report.selection));
+  if (report.calibration && report.calibration->with_draws() > 0) {
+    out.push_back(true_ranks_figure(*report.calibration));
+    out.push_back(rank_difference_figure(*report.calibration));
+  }
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (shows_something(quantity) && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))

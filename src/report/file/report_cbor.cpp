@@ -257,13 +257,22 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Excluded, term, reason)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measure, windows, half_width, noise, equations, excluded,
                                    validation, source)
 
+// --- calibrations
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TruePlace, truth, mean, sd, below, rank)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Replication, number, seed, redrawn, failure, failed, warned, independent, solves, places)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibratedQuantity, name, unit, ranks, covered_50, covered_90, covered_95, mean_z, sd_z,
+                                   contraction, chi_squared_p, ecdf_p, adjusted_p, shape)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FiredCheck, code, failed, warned)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationReport, replications, draws, bins, quantities, records, checks, band_low, band_high)
+
 // --- the whole
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Report, version, task, what, verb, prediction_rule, measured_past, lags, model_name, model_title,
                                    equations, formulas, model_text, resolved_text, priors, fixed, data, draws, summary, verdict,
                                    findings, fit, predictions, modes, sampled_names, evidence, criteria, prior_widths, noise,
-                                   functions, forces, tables, selection, discovery, ledger, seed, place, command, unseeded,
-                                   settings, versions)
+                                   functions, forces, tables, selection, discovery, calibration, ledger, seed, place, command,
+                                   unseeded, settings, versions)
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include "diagnostics/convergence.hpp"
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
+#include "report/file/calibration.hpp"
 #include "report/file/discovery.hpp"
 #include "report/file/selection.hpp"
 #include "report/text/report_text.hpp"
@@ -204,6 +205,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
     out["populations"] = populations_json(*report.selection);
   }
   if (report.discovery) out["discovery"] = discovery_json(*report.discovery);
+  if (report.calibration) out["calibration"] = calibration_json(*report.calibration);
   if (has_verdict(report)) out["verdict"] = {{"pass", grade(report) != Severity::error}, {"text", verdict_headline(report)}};
   out["findings"] = Json::array();
   for (Finding const& finding : report.findings)

@@ -10,6 +10,7 @@
 #include "core/system/files.hpp"
 #include "report/figure/figures.hpp"
 #include "report/figure/gnuplot.hpp"
+#include "report/file/calibration.hpp"
 #include "report/file/csv.hpp"
 #include "report/file/discovery.hpp"
 #include "report/file/function.hpp"
@@ -38,8 +39,8 @@ bool is_result_file(std::string const& name, std::string const& task) {
   };
   return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "report.cbor" ||
          name == "resolved.sysid" || name == "predict.csv" || name == "terms.csv" || name == "found.sysid" ||
-         name == "structures.csv" || name == "pointwise.csv" || name == "refit.csv" || name == "populations.csv" ||
-         between("draws_", ".csv") || between("function_", ".csv") || between("predict_", ".csv") ||
+         name == "structures.csv" || name == "pointwise.csv" || name == "refit.csv" || name == "ranks.csv" ||
+         name == "populations.csv" || between("draws_", ".csv") || between("function_", ".csv") || between("predict_", ".csv") ||
          between("particles_", ".csv") || between("polished_", ".csv") || between("resolved_", ".sysid");
 }
 
@@ -124,6 +125,7 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
     for (auto const& [name, content] : selection_files(report)) write(name, content);
   if (report.discovery)
     for (auto const& [name, content] : discovery_files(report)) write(name, content);
+  if (report.calibration) write("ranks.csv", ranks_csv(report));
   for (FunctionReport const& function : report.functions) write(function_file(function), function_csv(function));
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p)

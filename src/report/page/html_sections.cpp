@@ -59,6 +59,7 @@ std::string model_html(Report const& report) {
 std::string result_title(Report const& report) {
   if (report.selection) return "Models and their parameters";
   if (report.discovery) return "Terms and coefficients";
+  if (report.calibration) return "Calibration";
   return "Parameters: from prior to posterior";
 }
 

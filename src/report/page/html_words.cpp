@@ -95,8 +95,28 @@ std::string verdict_words(Report const& report) {
   return missing + (missing.empty() ? "" : "; ") + verdict_of(report.findings).headline;
 }
 
+namespace {
+
+std::string calibration_meaning(Report const& report) {
+  switch (grade(report)) {
+    case Severity::error:
+      return "Until this is fixed, intervals and probabilities of such fits are not what they state, for records like those that "
+             "the "
+             "priors make.";
+    case Severity::warning:
+      return "Check the points below before you rely on intervals of such fits.";
+    default:
+      return "For records that the model itself makes, with values from its priors, intervals of these fits contain the true "
+             "values "
+             "as often as they state. This does not prove the model: real records are not made by it.";
+  }
+}
+
+}  // namespace
+
 std::string verdict_meaning(Report const& report) {
   if (!has_verdict(report)) return "";
+  if (report.calibration) return calibration_meaning(report);
   bool const bands = !report.selection && !report.discovery && report.draws.total() == 0;
   std::string_view const numbers = report.discovery ? "the equations" : bands ? "the bands" : "the numbers";
   switch (grade(report)) {

@@ -1,0 +1,220 @@
+// Replications in parallel, each kept as it ends; then ranks, tests and the page.
+#include "app/calibration/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "app/calibration/calibration_report.hpp"
+#include "app/calibration/chosen_fits.hpp"
+#include "app/calibration/replicate.hpp"
+#include "app/session/preconditions.hpp"
+#include "app/session/provenance.hpp"
+#include "app/session/reporting.hpp"
+#include "app/session/results.hpp"
+#include "app/session/task_checkpoint.hpp"
+#include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
+#include "diagnostics/verdict.hpp"
+#include "inference/table.hpp"
+#include "report/file/stored_files.hpp"
+#include "simulate/thread_pool.hpp"
+
+namespace sysid {
+namespace {
+
+using json = nlohmann::json;
+
+class Calibration {
+ public:
+  Calibration(Session& session, int index, CalibrateOptions const& options)
+      : session_(session),
+        task_(session.file.tasks[static_cast<std::size_t>(index)]),
+        checkpoint_(session, task_, std::get<FitTask>(task_.what).seed),
+        replications_(options.replications) {
+    plan_.index = index;
+    plan_.task = &task_;
+    plan_.what = std::get<FitTask>(task_.what);
+    plan_.what.near.reset();
+    plan_.backend = options.backend != nullptr ? options.backend : find_backend(plan_.what.backend);
+    plan_.seed = checkpoint_.seed();
+    data_ = load_experiments(session, plan_.what.experiments, model(), plan_.what.start, plan_.what.prediction, plan_.what.solver);
+    checkpoint_.of_data(data_);
+  }
+
+  ExitCode run() {
+    restore();
+    require_prior();
+    begin_progress();
+    if (!run_replications()) {
+      session_.progress.end(false);
+      if (!done_.empty()) save();
+      session_.notices << fmt::format("{}: interrupted after {} of {} replications; {} {}\n", task_.name, done_.size(),
+                                      replications_, to_resume(session_.options.surface),
+                                      done_.empty() ? "starts it again" : "continues from there");
+      return ExitCode::interrupted;
+    }
+    session_.progress.end();
+    return conclude();
+  }
+
+ private:
+  Model const& model() const { return session_.file.models[static_cast<std::size_t>(plan_.what.model)]; }
+
+  void restore() {
+    std::shared_ptr<json const> const stored = checkpoint_.stored();
+    if (!stored) return;
+    checkpoint_.reading([&] {
+      std::size_t const quantities = ranked_quantities(session_, plan_).size();
+      for (json const& each : stored->at("replications")) {
+        Replication replication = restore_replication(each);
+        bool const fits = !replication.has_draws() || (replication.places.size() == quantities && in_order(replication));
+        if (!fits || replication.number < 0) throw json::other_error::create(501, "a replication of other quantities", &each);
+        if (replication.number < replications_) done_.emplace(replication.number, std::move(replication));
+      }
+    });
+    session_.notices << fmt::format("{}: continuing after {} of {} replications\n", task_.name, done_.size(), replications_);
+  }
+
+  bool in_order(Replication const& replication) const {
+    return std::all_of(replication.places.begin(), replication.places.end(),
+                       [&](TruePlace const& each) { return each.rank >= 0 && each.rank <= plan_.draws; });
+  }
+
+  // Before hours of fits: a prior of which little can be simulated says little of the fit.
+  void require_prior() {
+    Replicator replicator(session_, plan_);
+    Replicator::Tried const tried = replicator.try_prior(std::min(replications_, 10));
+    if (10 * tried.failed <= 9 * tried.draws) return;
+    throw UserError({Severity::error,
+                     "E6210",
+                     fmt::format("`{}` cannot be calibrated: {} of {} draws of its prior cannot be simulated", task_.name,
+                                 tried.failed, tried.draws),
+                     Label{task_.span, {}},
+                     {},
+                     "narrow the priors to what is possible, or use a solver that follows the fast end of the prior; `sysid check` "
+                     "shows where simulations fail"});
+  }
+
+  void begin_progress() {
+    session_.progress.begin(fmt::format("{}: calibrating", task_.name), static_cast<std::uint64_t>(replications_));
+    session_.progress.advance(done_.size(), "");
+  }
+
+  // False: interrupted.
+  bool run_replications() {
+    std::vector<int> open;
+    for (int number = 0; number < replications_; ++number)
+      if (!done_.contains(number)) open.push_back(number);
+    // Replications take the threads, each fit has one.
+    int const threads = std::max(1, std::min(session_.threads(), static_cast<int>(open.size())));
+    std::vector<std::unique_ptr<Replicator>> idle;
+    for (int t = 0; t < threads; ++t) idle.push_back(std::make_unique<Replicator>(session_, plan_));
+    ThreadPool pool(threads);
+    bool stopped = false;
+    pool.run(static_cast<int>(open.size()), [&](int i) {
+      std::unique_ptr<Replicator> replicator;
+      {
+        std::lock_guard const lock(mutex_);
+        stopped = stopped || interrupt_requested();
+        if (stopped) return;
+        replicator = std::move(idle.back());
+        idle.pop_back();
+      }
+      std::optional<Replication> replication = replicator->run(open[static_cast<std::size_t>(i)]);
+      std::lock_guard const lock(mutex_);
+      idle.push_back(std::move(replicator));
+      stopped = stopped || !replication;
+      if (replication) keep(std::move(*replication));
+      stopped = session_.interrupted() || stopped;  // counts for tests
+    });
+    return !stopped || done_.size() == static_cast<std::size_t>(replications_);
+  }
+
+  void keep(Replication replication) {
+    failed_ += !replication.has_draws();
+    done_.emplace(replication.number, std::move(replication));
+    session_.progress.advance(done_.size(), failed_ == 0 ? "" : fmt::format("{} without a fit", failed_));
+    // A replication may take a hundredth of a second: what is lost at worst is one second of work.
+    auto const now = std::chrono::steady_clock::now();
+    if (done_.size() < static_cast<std::size_t>(replications_) && now - saved_ > std::chrono::seconds(1)) save();
+  }
+
+  void save() {
+    json all = json::array();
+    for (auto const& [number, replication] : done_) all.push_back(store(replication));
+    checkpoint_.save({{"replications", std::move(all)}});
+    saved_ = std::chrono::steady_clock::now();
+  }
+
+  ExitCode conclude() {
+    std::vector<Replication> records;
+    for (auto& [number, replication] : done_) records.push_back(std::move(replication));
+    Report report = calibration_report(
+        session_, plan_, calibration_of(ranked_quantities(session_, plan_), std::move(records), replications_, plan_.draws));
+    for (ExperimentData const& each : data_) add_data(session_.file, each, model(), report);
+    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
+    report.timing.emplace_back("wall_seconds", wall.count());
+    report.timing.emplace_back("threads", static_cast<std::int64_t>(session_.threads()));
+    keep_result(session_, task_, report);
+    remove_file(checkpoint_.path());
+    return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  Session& session_;
+  Task const& task_;
+  TaskCheckpoint checkpoint_;
+  int replications_;
+  CalibrationPlan plan_;
+  std::vector<ExperimentData> data_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now(), saved_ = began_;
+  std::mutex mutex_;
+  std::map<int, Replication> done_;  // by number
+  int failed_ = 0;
+};
+
+/// Whether a result of as many replications of this very task stands there already; UserError (E6208) where it is of another.
+bool kept(Session const& session, Task const& task, CalibrateOptions const& options) {
+  auto const folder = session.result_folder(task);
+  if (!session.options.resume || !complete(folder)) return false;
+  std::optional<std::uint64_t> const seed = session.options.seed ? session.options.seed : std::get<FitTask>(task.what).seed;
+  if (auto const wrong = stored_otherwise(session, task, seed)) throw UserError(*wrong);
+  auto const summary = json::parse(read_whole_summary(folder));
+  return interpreted(folder / "summary.json", [&] {
+    return summary.at("verb") == "calibrate" && summary.at("settings").value("replications", 0) == options.replications;
+  });
+}
+
+}  // namespace
+
+ExitCode calibrate(Session& session, CalibrateOptions const& options) {
+  std::vector<int> const fits = chosen_fits(session, options.task, "calibrate");
+  check_preconditions(session, [&](Task const& task) {
+    auto const index = static_cast<int>(&task - session.file.tasks.data());
+    return std::find(fits.begin(), fits.end(), index) != fits.end();
+  }).require();
+  ExitCode worst = ExitCode::success;
+  for (int const index : fits) {
+    Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
+    if (kept(session, task, options)) {
+      session.notices << fmt::format("{}: complete, kept\n", task.name);
+      continue;
+    }
+    ClaimedFolder const claimed(session.result_folder(task), session.options);
+    try {
+      ExitCode const code = Calibration(session, index, options).run();
+      if (code == ExitCode::interrupted) return code;
+      worst = std::max(worst, code);
+    } catch (Interrupted const&) {
+      session.notices << fmt::format("{}: interrupted; {} starts it again\n", task.name, to_resume(session.options.surface));
+      return ExitCode::interrupted;
+    }
+  }
+  return worst;
+}
+
+}  // namespace sysid

@@ -1,0 +1,185 @@
+// Both fits in one session, nothing of them kept but the comparison.
+#include "app/calibration/crosscheck.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "app/calibration/chosen_fits.hpp"
+#include "app/fit/fit.hpp"
+#include "app/session/preconditions.hpp"
+#include "app/session/provenance.hpp"
+#include "app/session/reporting.hpp"
+#include "app/session/results.hpp"
+#include "core/system/interrupt.hpp"
+#include "core/text/number.hpp"
+#include "diagnostics/calibration/agreement.hpp"
+#include "diagnostics/verdict.hpp"
+#include "inference/table.hpp"
+
+namespace sysid {
+namespace {
+
+ChainValues column_of(Draws const& draws, std::size_t column) {
+  ChainValues values;
+  for (Chain const& chain : draws.chains) {
+    values.emplace_back();
+    for (auto const& draw : chain.values) values.back().push_back(draw[column]);
+  }
+  return values;
+}
+
+bool is_optimum(Report const& report) { return report.draws.total() == 1; }
+
+/// Another way of sampling: trajectories where there were random moves, and moves where there were trajectories or none.
+std::string other_than(std::string const& backend) { return backend == "mh" || backend == "auto" ? "nuts" : "mh"; }
+
+std::vector<ComparedNumber> compared(Report const& first, Report const& second) {
+  std::vector<ComparedNumber> all;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(first.draws.parameter_count); ++p) {
+    Summary const& one = first.summary[p];
+    if (one.coefficient) continue;
+    std::vector<ComparedNumber> numbers =
+        is_optimum(first) ? compare_optimum(one.name, one.unit, column_of(second.draws, p), one.mean, one.sd)
+                          : compare_draws(one.name, one.unit, column_of(first.draws, p), column_of(second.draws, p));
+    all.insert(all.end(), numbers.begin(), numbers.end());
+  }
+  return all;
+}
+
+ReportTable number_table(std::vector<ComparedNumber> const& numbers, std::string const& first, std::string const& second,
+                         bool with_optimum) {
+  ReportTable table{"both back ends",
+                    with_optimum ? "z: the difference in fifths of the posterior sd, below which it hardly matters."
+                                 : "z: the difference over its Monte Carlo standard error.",
+                    {"quantity", "unit", "", first, second, "error", "z"},
+                    {}};
+  for (ComparedNumber const& each : numbers)
+    table.rows.push_back({each.quantity, each.unit, each.what, significant(each.first, 5), significant(each.second, 5),
+                          significant(each.error, 2), fmt::format("{:.2f}", each.z())});
+  return table;
+}
+
+class Crosscheck {
+ public:
+  Crosscheck(Session& session, int index, std::string const& against)
+      : session_(session),
+        index_(index),
+        task_(session.file.tasks[static_cast<std::size_t>(index)]),
+        own_(std::get<FitTask>(task_.what)) {
+    own_.near.reset();
+    other_ = own_;
+    other_.backend = against.empty() ? other_than(own_.backend) : against;
+    BackendRow const* const row = find_backend(other_.backend);
+    other_.settings = Settings(row->settings);
+    if (other_.backend == own_.backend)
+      throw UserError({Severity::error,
+                       "",
+                       fmt::format("`{}` is fitted by `{}` already", task_.name, own_.backend),
+                       std::nullopt,
+                       {},
+                       "name another back end with --against"});
+    if (row->objective_kind != ObjectiveKind::posterior)
+      throw UserError({Severity::error,
+                       "",
+                       fmt::format("`{}` finds an optimum and does not sample: nothing can be checked against it", other_.backend),
+                       std::nullopt,
+                       {},
+                       "name a back end that samples with --against: mh, nuts or tempering"});
+  }
+
+  ExitCode run() {
+    auto const began = std::chrono::steady_clock::now();
+    std::uint64_t const seed = session_.seed(task_, own_.seed);
+    auto const first = fit(own_, seed);
+    auto const second = first ? fit(other_, seed) : std::nullopt;
+    if (!second) {
+      session_.notices << fmt::format("{}: interrupted; nothing is kept\n", task_.name);
+      return ExitCode::interrupted;
+    }
+    Report report = compare(*first, *second, seed);
+    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
+    report.timing.emplace_back("wall_seconds", wall.count());
+    keep_result(session_, task_, report);
+    return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+ private:
+  std::optional<UnkeptFit> fit(FitTask const& what, std::uint64_t seed) {
+    session_.notices << fmt::format("{}: fitting with {}\n", task_.name, what.backend);
+    return fit_unkept(session_, index_, task_, what, seed, {}, find_backend(what.backend));
+  }
+
+  Report compare(UnkeptFit const& first, UnkeptFit const& second, std::uint64_t seed) {
+    Model const& model = session_.file.models[static_cast<std::size_t>(own_.model)];
+    Report report = begin_report(session_, task_, own_.model,
+                                 fmt::format("fit {} to {} by {} and {}", model.name, data_names(session_.file, own_.experiments),
+                                             first.backend, second.backend),
+                                 seed);
+    report.verb = "crosscheck";
+    add_repetition(session_, task_, report, {"crosscheck", fmt::format(" --task {} --against {}", task_.name, other_.backend)});
+    report.data = first.report.data;
+    for (UnkeptFit const* each : {&first, &second})
+      for (auto const& [name, value] : each->report.settings) report.settings.emplace_back(each->backend + " " + name, value);
+    bool const with_optimum = is_optimum(first.report);
+    std::vector<ComparedNumber> const numbers = compared(first.report, second.report);
+    report.tables.push_back(number_table(numbers, first.backend, second.backend, with_optimum));
+    report.findings = agreement_findings(numbers, first.backend, second.backend, with_optimum);
+    bool const agree = report.findings.empty();
+    // What either fit found of itself, once.
+    for (UnkeptFit const* each : {&first, &second})
+      for (Finding finding : each->report.findings) {
+        if (finding.severity == Severity::note) continue;
+        bool const known = std::any_of(report.findings.begin(), report.findings.end(), [&](Finding const& other) {
+          return other.code == finding.code && other.names == finding.names;
+        });
+        if (known) continue;
+        finding.message = fmt::format("{}: {}", each->backend, finding.message);
+        report.findings.push_back(std::move(finding));
+      }
+    report.ledger = first.report.ledger;
+    report.ledger.merge(second.report.ledger);
+    double largest = 0;
+    for (ComparedNumber const& each : numbers) largest = std::max(largest, std::fabs(each.z()));
+    report.verdict =
+        !agree         ? fmt::format("{} and {} differ", first.backend, second.backend)
+        : with_optimum ? fmt::format("the optimum by {} with its sds describes the posterior by {}", first.backend, second.backend)
+                       : fmt::format("{} and {} agree: the largest of {} differences is {:.1f} standard errors", first.backend,
+                                     second.backend, numbers.size(), largest);
+    if (agree && !verdict_of(report.findings).pass) report.verdict += ", but a fit failed its own checks";
+    return report;
+  }
+
+  Session& session_;
+  int index_;
+  Task const& task_;
+  FitTask own_, other_;
+};
+
+}  // namespace
+
+ExitCode crosscheck(Session& session, CrosscheckOptions const& options) {
+  std::vector<int> const fits = chosen_fits(session, options.task, "crosscheck");
+  check_preconditions(session, [&](Task const& task) {
+    auto const index = static_cast<int>(&task - session.file.tasks.data());
+    return std::find(fits.begin(), fits.end(), index) != fits.end();
+  }).require();
+  ExitCode worst = ExitCode::success;
+  for (int const index : fits) {
+    Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
+    ClaimedFolder const claimed(session.result_folder(task), session.options);
+    try {
+      ExitCode const code = Crosscheck(session, index, options.against).run();
+      if (code == ExitCode::interrupted) return code;
+      worst = std::max(worst, code);
+    } catch (Interrupted const&) {
+      session.notices << fmt::format("{}: interrupted; nothing is kept\n", task.name);
+      return ExitCode::interrupted;
+    }
+  }
+  return worst;
+}
+
+}  // namespace sysid

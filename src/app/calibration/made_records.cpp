@@ -1,0 +1,162 @@
+// Draws, simulates with a solver so fine that its error does not show, and puts the samples in the place of those of the record.
+#include "app/calibration/made_records.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "app/session/fit_target.hpp"
+#include "core/numeric/statistics.hpp"
+#include "core/system/interrupt.hpp"
+#include "likelihood/trajectory.hpp"
+#include "model/lags.hpp"
+
+namespace sysid {
+namespace {
+
+/// Of the sd of a response: what a finer solver may change.
+constexpr double settled = 1e-6;
+constexpr int most_refinements = 7;
+
+UserError refused(Task const& task, std::string message, std::string help) {
+  return UserError({Severity::error, "E6210", std::move(message), Label{task.span, {}}, {}, std::move(help)});
+}
+
+/// Whether no channel changes from one solver to a finer one.
+bool same_response(Trajectory const& trajectory, Trajectory::Result const& coarse, Trajectory::Result const& fine) {
+  for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
+    if (trajectory.quantities()[q].channel < 0) continue;
+    std::vector<double> const &a = coarse.values[q][0], &b = fine.values[q][0];
+    double change = 0, largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      change += (a[i] - b[i]) * (a[i] - b[i]);
+      largest = std::max(largest, std::fabs(b[i]));
+    }
+    double const sd = std::sqrt(population_variance(b));
+    if (!(std::sqrt(change / static_cast<double>(a.size())) <= settled * (sd > 0 ? sd : largest))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+RecordMaker::RecordMaker(Session& session, Task const& task, FitTask const& what, std::vector<ExperimentData> const& data)
+    : session_(session), what_(what), data_(data) {
+  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
+  if (!model.processes.empty())
+    throw refused(task,
+                  fmt::format("`{}` cannot be calibrated: records of Gaussian processes that are integrated out cannot be made yet",
+                              task.name),
+                  "calibrate a fit of the same model without `gp(...)`, or with a function that is estimated as a finite sum");
+  require_distinct_rows(task);
+  compiled_ = session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction);
+  space_ = parameter_space(compiled_->model, what.experiments);
+}
+
+// A made sample belongs to one experiment.
+void RecordMaker::require_distinct_rows(Task const& task) const {
+  std::set<std::pair<int, std::size_t>> taken;
+  for (ExperimentData const& each : data_)
+    for (std::size_t i = 0; i < each.experiment.scored.size(); ++i)
+      if (each.experiment.scored[i] != 0 &&
+          !taken.insert({each.use.data, i + static_cast<std::size_t>(each.experiment.first_row)}).second)
+        throw refused(task,
+                      fmt::format("`{}` cannot be calibrated: two of its experiments have row {} of `{}`", task.name,
+                                  i + static_cast<std::size_t>(each.experiment.first_row),
+                                  session_.file.data[static_cast<std::size_t>(each.use.data)].name),
+                      "fit to parts without common rows");
+}
+
+std::optional<MadeRecords> RecordMaker::make(std::uint64_t seed) const {
+  for (int attempt = 0; attempt < most_draws; ++attempt) {
+    stop_if_interrupted();
+    auto const draw = static_cast<std::uint64_t>(attempt);
+    LaneArray theta(space_->dimension(), 1), declared(space_->dimension(), 1);
+    space_->sample_prior({seed, Purpose::calibration, draw, 0}, theta);
+    space_->constrain(theta, declared);
+    // By declared values, as the posterior is compared with them.
+    auto const made = samples(space_->values_of_declared(declared), Stream({seed, Purpose::calibration, draw, 1}).bits());
+    if (made.empty()) continue;
+    MadeRecords out;
+    out.redrawn = attempt;
+    for (int p = 0; p < declared.rows(); ++p) out.truth.push_back(declared(p, 0));
+    for (std::size_t e = 0; e < data_.size(); ++e) {
+      ExperimentData const& each = data_[e];
+      auto found =
+          std::find_if(out.of_blocks.begin(), out.of_blocks.end(), [&](auto const& block) { return block.first == each.use.data; });
+      if (found == out.of_blocks.end()) found = out.of_blocks.insert(found, {each.use.data, each.record});
+      Record& record = found->second;
+      record.comments.clear();  // of the record's own true values
+      for (std::size_t c = 0; c < record.measured.size(); ++c)
+        for (std::size_t i = 0; i < each.experiment.time.size() && !record.measured[c].empty(); ++i)
+          if (double& sample = record.measured[c][i + static_cast<std::size_t>(each.experiment.first_row) - 1];
+              each.experiment.scored[i] != 0 && !std::isnan(sample))
+            sample = made[e][c][i];
+    }
+    return out;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::vector<std::vector<double>>> RecordMaker::samples(ConstLanes values, std::uint64_t seed) const {
+  std::vector<std::vector<std::vector<double>>> all;
+  for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
+    LaneArray parameters(static_cast<int>(compiled_->model.parameters.size()), 1);
+    space_->select(values, e, parameters);
+    auto of_one = samples(e, parameters, {seed, Purpose::noise, static_cast<std::uint64_t>(e), 0});
+    if (!of_one) return {};
+    all.push_back(std::move(*of_one));
+  }
+  return all;
+}
+
+std::optional<std::vector<std::vector<double>>> RecordMaker::samples(int e, ConstLanes parameters, StreamKey noise) const {
+  Model const& model = compiled_->model;
+  Experiment experiment = data_[static_cast<std::size_t>(e)].experiment;
+  // Streams of noise go by the number of the trajectory, which is 0 here.
+  noise.seed = Stream(noise).bits();
+  SolverSettings solver = what_.solver;
+  bool const refine = model.integrated() && !solver.as_model && !solver.row().exact;
+  auto const trajectory_of = [&](SolverSettings const& with) {
+    return Trajectory(compiled_, experiment, with, start_rows(what_.start), session_.abandonable());
+  };
+  Trajectory::Result result = trajectory_of(solver).run(parameters, noise);
+  for (int i = 0; refine && i < most_refinements && solver.finer().within_limits(); ++i) {
+    solver = solver.finer();
+    Trajectory const finer = trajectory_of(solver);
+    Trajectory::Result fine = finer.run(parameters, noise);
+    bool const same = result.failed() == 0 && fine.failed() == 0 && same_response(finer, result, fine);
+    result = std::move(fine);
+    if (same) break;
+  }
+  // What reads measured samples reads made ones: rounds, each of which makes at least one more sample right.
+  auto const replace = [&] {
+    bool changed = false;
+    for (std::size_t c = 0; c < experiment.measured.size(); ++c)
+      for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
+        double& sample = experiment.measured[c][i];
+        if (experiment.scored[i] == 0 || std::isnan(sample)) continue;
+        double const made = model.channels[c].to_si(result.noisy[c][0][i]);
+        changed = changed || made != sample;
+        sample = made;
+      }
+    return changed;
+  };
+  for (std::size_t round = 0; predicts_from_data(model) && round <= experiment.time.size(); ++round) {
+    if (result.failed() > 0 || !replace()) break;
+    result = trajectory_of(solver).run(parameters, noise);
+  }
+  if (result.failed() > 0) return std::nullopt;
+  std::vector<std::vector<double>> made;
+  for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
+    made.push_back(result.noisy[c][0]);
+    for (double& each : made.back()) each = model.channels[c].to_si(each);
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i)
+      if (experiment.is_scored(c, i) && !std::isfinite(made.back()[i])) return std::nullopt;
+  }
+  return made;
+}
+
+}  // namespace sysid

@@ -1,0 +1,46 @@
+// Records made from the prior of a fit: true values, then what the model measures with them along the task's own inputs and rows.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/session.hpp"
+#include "experiment/experiments.hpp"
+#include "likelihood/parameter_space.hpp"
+
+namespace sysid {
+
+/// The records of one replication, for the data blocks that the task reads.
+struct MadeRecords {
+  std::vector<double> truth;                      // [P] of the sampled parameters, declared
+  std::vector<std::pair<int, Record>> of_blocks;  // by index of the data block
+  int redrawn = 0;                                // prior draws before it that could not be simulated
+};
+
+class RecordMaker {
+ public:
+  /// what, data: of the task, with the records that it has; they outlive this. UserError where no record can be made of this model
+  /// and task, with the reason.
+  RecordMaker(Session& session, Task const& task, FitTask const& what, std::vector<ExperimentData> const& data);
+
+  /// A draw of the prior that can be simulated, and its record: scored samples that are not missing are replaced, all others, times
+  /// and inputs stay. What cannot be simulated has no likelihood, so that drawing again leaves the posterior as it is. Nothing
+  /// where none of `most_draws` can be simulated. Interrupted where an interruption is asked for.
+  std::optional<MadeRecords> make(std::uint64_t seed) const;
+
+  static constexpr int most_draws = 50;
+
+ private:
+  /// Of all experiments, SI [experiment][channel][sample]; empty where the model cannot be simulated with these values.
+  std::vector<std::vector<std::vector<double>>> samples(ConstLanes values, std::uint64_t seed) const;
+  std::optional<std::vector<std::vector<double>>> samples(int experiment, ConstLanes parameters, StreamKey noise) const;
+  void require_distinct_rows(Task const& task) const;
+
+  Session& session_;
+  FitTask const& what_;
+  std::vector<ExperimentData> const& data_;
+  std::shared_ptr<CompiledModel const> compiled_;
+  std::shared_ptr<ParameterSpace const> space_;
+};
+
+}  // namespace sysid

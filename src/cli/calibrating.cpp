@@ -1,0 +1,87 @@
+// calibrate, crosscheck: whether the posteriors of a file's fits are right for records that its model makes.
+#include <unistd.h>
+
+#include "app/calibration/calibrate.hpp"
+#include "app/calibration/crosscheck.hpp"
+#include "cli/command.hpp"
+#include "cli/options.hpp"
+#include "core/system/interrupt.hpp"
+#include "core/system/progress_terminal.hpp"
+#include "core/text/wrapped.hpp"
+#include "inference/table.hpp"
+
+namespace sysid::cli {
+namespace {
+
+/// What verbs on whole fits have in common.
+struct FitsOptions {
+  std::string file;
+  bool quiet = false;
+  RunOptions run;
+};
+
+void add_options(CLI::App& verb, FitsOptions& options, std::string& task) {
+  add_file(verb, options.file);
+  verb.add_option("--task", task, "the fit task (default: all fit tasks of the file)")->type_name("NAME");
+  add_output(verb, options.run.output);
+  verb.add_flag("--force", options.run.force, "replace existing results");
+  add_seed(verb, options.run.seed, "seed of all random numbers, in place of those in the file");
+  verb.add_flag("-q,--quiet", options.quiet, "print no progress and no notices");
+  add_figures(verb, options.run, "write figures as scripts only");
+  options.run.execution.threads = 0;
+  add_threads(verb, options.run.execution.threads);
+}
+
+ExitCode with_session(Messages const& messages, FitsOptions const& options, std::function<ExitCode(Session&)> const& work) {
+  install_interrupt_handlers();
+  return with_checked_file(messages, options.file, [&](Source const& source, CheckedFile const& file, Diagnostics const&) {
+    std::ostream nowhere(nullptr);
+    SilentProgress silent;
+    TerminalProgress terminal;
+    LineOutput out(std::cout, wrapped_for(STDOUT_FILENO)), notices(std::cerr, wrapped_for(STDERR_FILENO));
+    Session session(source, file, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal, out,
+                    options.quiet ? nowhere : static_cast<std::ostream&>(notices));
+    ExitCode const exit = work(session);
+    if (options.quiet && exit == ExitCode::interrupted) std::cerr << "sysid: interrupted\n";
+    return exit;
+  });
+}
+
+}  // namespace
+
+Work declare_calibrate(CLI::App& verb) {
+  struct Options : FitsOptions {
+    CalibrateOptions calibrate;
+  };
+  auto const options = std::make_shared<Options>();
+  options->run.output = "results/calibrate";
+  add_options(verb, *options, options->calibrate.task);
+  verb.add_option("--replications", options->calibrate.replications, "number of records that are made and fitted")
+      ->type_name("N")
+      ->check(CLI::Range(10, 100000))
+      ->capture_default_str();
+  verb.add_flag("--resume", options->run.resume, "continue after an interruption; keep tasks that are complete");
+  verb.add_option("--interrupt-after", options->run.interrupt_after, "interrupt after the n-th replication")->group("");
+  return [options](Messages const& messages) {
+    return with_session(messages, *options, [&](Session& session) { return calibrate(session, options->calibrate); });
+  };
+}
+
+Work declare_crosscheck(CLI::App& verb) {
+  struct Options : FitsOptions {
+    CrosscheckOptions crosscheck;
+  };
+  auto const options = std::make_shared<Options>();
+  options->run.output = "results/crosscheck";
+  add_options(verb, *options, options->crosscheck.task);
+  std::vector<std::string> names;
+  for (BackendRow const& each : backends()) names.emplace_back(each.name);
+  verb.add_option("--against", options->crosscheck.against, "the other back end (default: one that samples in another way)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(names));
+  return [options](Messages const& messages) {
+    return with_session(messages, *options, [&](Session& session) { return crosscheck(session, options->crosscheck); });
+  };
+}
+
+}  // namespace sysid::cli

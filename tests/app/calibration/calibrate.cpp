@@ -1,0 +1,147 @@
+// A calibration from the text to its folder: what it writes, that nothing but plan and seed decides its bytes, what it refuses.
+#include "app/calibration/calibrate.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/run/compare.hpp"
+#include "app/run/report_results.hpp"
+#include "app/running.hpp"
+#include "calibrating.hpp"
+
+using namespace sysid;
+using nlohmann::json;
+
+namespace {
+
+std::string const model = R"(model line {
+  input     u
+  parameter slope ~ normal(0, sd = 10)
+  parameter sigma ~ log_uniform(0.01, 1)
+  observe d ~ normal(slope*u, sd = sigma)
+}
+data bench {
+  file    "bench.csv"
+  input   u = u
+  measure d = d
+  split   train = rows 3..20
+}
+)";
+
+std::string const fit = "posterior = fit line to bench.train with mh(samples = 800, burn_in = 200, thin = 1), seed = 4\n";
+
+/// A desk with the record, whose fourth sample is missing.
+struct CalibrationDesk {
+  TemporaryFolder folder;
+  RunOptions options;
+
+  CalibrationDesk() {
+    std::string csv = "u,d\n";
+    for (int i = 0; i < 25; ++i) csv += std::to_string(0.1 * i) + (i == 3 ? ",\n" : "," + std::to_string(0.2 * i) + "\n");
+    write_file(folder.path() / "bench.csv", csv);
+    options.output = folder.path() / "results";
+    options.execution.threads = 1;
+  }
+  CalibrateResult run(std::string const& text, int replications = 20, std::string const& task = {}) const {
+    CalibrateOptions calibrate;
+    calibrate.replications = replications;
+    calibrate.task = task;
+    return calibrate_text(folder.path() / "case.sysid", text, options, calibrate);
+  }
+  std::string file(std::string const& name) const { return read_file(options.output / name); }
+  std::string refusal(std::string const& text, std::string const& task = {}) const {
+    try {
+      run(text, 20, task);
+    } catch (UserError const& error) {
+      return error.diagnostic().message;
+    }
+    return "";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a calibration writes a result that can be reported again, with a rank of each quantity and record") {
+  CalibrationDesk const desk;
+  CalibrateResult const result = desk.run(model + fit);
+  CHECK(result.exit == 0);
+  CHECK(result.out.find("verdict: ") != std::string::npos);
+  json const summary = json::parse(desk.file("posterior/summary.json"));
+  CHECK(summary.at("verb") == "calibrate");
+  CHECK(summary.at("settings").at("replications") == 20);
+  json const& calibration = summary.at("calibration");
+  CHECK(calibration.at("with_draws") == 20);
+  CHECK(calibration.at("quantities").size() == 3);
+  CHECK(calibration.at("quantities").at("log likelihood").at("adjusted_p").get<double>() > 0.001);
+  CHECK(summary.at("data").at(0).at("scored") == 17);
+  std::string const ranks = desk.file("posterior/ranks.csv");
+  CHECK(std::count(ranks.begin(), ranks.end(), '\n') > 20);
+  CHECK(ranks.find("slope_true,slope_rank,slope_below,slope_mean,slope_sd") != std::string::npos);
+  std::string const page = desk.file("posterior/report.html");
+  CHECK(page.find("sysid calibrate ") != std::string::npos);
+  report_results(desk.options.output / "posterior", desk.folder.path() / "again.html", false);
+  CHECK(read_file(desk.folder.path() / "again.html") == page);
+  CHECK_THROWS_AS(compare({desk.options.output}), UserError);
+}
+
+TEST_CASE("the bytes of a calibration depend neither on threads nor on interruptions") {
+  CalibrationDesk once, twice, stopped;
+  CHECK(once.run(model + fit).exit == 0);
+  twice.options.execution.threads = 2;
+  CHECK(twice.run(model + fit).exit == 0);
+  for (std::uint64_t const after : {3, 4, 5}) {
+    stopped.options.interrupt_after = after;
+    CHECK(stopped.run(model + fit).exit == 75);
+    clear_interrupt();
+    stopped.options.resume = true;
+  }
+  stopped.options.interrupt_after = 0;
+  CalibrateResult const resumed = stopped.run(model + fit);
+  CHECK(resumed.exit == 0);
+  CHECK(resumed.notices.find("continuing after 12 of 20 replications") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(stopped.options.output / "posterior/checkpoint.cbor"));
+  for (CalibrationDesk const* other : {&twice, &stopped})
+    CHECK(other->file("posterior/ranks.csv") == once.file("posterior/ranks.csv"));
+  auto const numbers = [](CalibrationDesk const& desk) {
+    return json::parse(desk.file("posterior/summary.json")).at("calibration");
+  };
+  CHECK(numbers(twice) == numbers(once));
+  CHECK(numbers(stopped) == numbers(once));
+  // Complete: kept as it is; of another number of replications: refused without --force.
+  CHECK(stopped.run(model + fit).notices.find("complete, kept") != std::string::npos);
+}
+
+TEST_CASE("a checkpoint of a calibration that has been changed is refused") {
+  CalibrationDesk desk;
+  desk.options.interrupt_after = 3;
+  CHECK(desk.run(model + fit).exit == 75);
+  clear_interrupt();
+  desk.options.interrupt_after = 0;
+  desk.options.resume = true;
+  auto const path = desk.options.output / "posterior/checkpoint.cbor";
+  std::string bytes = read_file(path);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_file(path, bytes);
+  CHECK(desk.refusal(model + fit).find("is damaged") != std::string::npos);
+}
+
+TEST_CASE("what cannot be calibrated is refused with the reason") {
+  CalibrationDesk const desk;
+  CHECK(desk.refusal(model + fit, "posteriro") ==
+        "there is no fit task `posteriro` in " + (desk.folder.path() / "case.sysid").string());
+  CHECK(desk.refusal(model).starts_with("there is no fit task in "));
+  std::string const improper = with(model, "slope ~ normal(0, sd = 10)", "slope ~ flat()");
+  CHECK(desk.refusal(improper + fit).find("needs proper priors") != std::string::npos);
+  // Overflows wherever the parameter is not tiny.
+  std::string const wild = with(model, "slope*u", "exp(exp(abs(100*slope)))*u");
+  CHECK(desk.refusal(wild + fit).find("of its prior cannot be simulated") != std::string::npos);
+}
+
+TEST_CASE("optima are calibrated by the normal distribution that their sd stands for") {
+  CalibrationDesk const desk;
+  std::string const known = with(model, "parameter sigma ~ log_uniform(0.01, 1)", "parameter sigma = 0.1");
+  CHECK(desk.run(known + with(fit, "mh(samples = 800, burn_in = 200, thin = 1)", "map"), 100).exit == 0);
+  json const slope = json::parse(desk.file("posterior/summary.json")).at("calibration").at("quantities").at("slope");
+  CHECK(slope.at("coverage_90").get<double>() == doctest::Approx(0.9).epsilon(0.12));
+}
