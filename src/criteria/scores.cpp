@@ -45,8 +45,9 @@ BlockScore leave_block_out(ConstLanes log_density, int chains, DrawInfluence& in
   return under(leave_out(sum, chains), log_density, influence);
 }
 
-BlockScore FutureOut::before(ConstLanes log_density, DrawInfluence& influence) {
-  add_rows(log_density, log_likelihood_);
+void FutureOut::leave(ConstLanes log_density) { add_rows(log_density, log_likelihood_); }
+
+BlockScore FutureOut::score(ConstLanes log_density, DrawInfluence& influence) const {
   return score_block(leave_out(log_likelihood_, chains_), log_density, influence);
 }
 

@@ -43,8 +43,10 @@ BlockScore leave_block_out(ConstLanes log_density, int chains, DrawInfluence& in
 class FutureOut {
  public:
   FutureOut(int draws, int chains) : chains_(chains), log_likelihood_(static_cast<std::size_t>(draws), 0) {}
-  /// The block before those of before. Without scores where k is above `largest_k`: earlier blocks would be worse.
-  BlockScore before(ConstLanes log_density, DrawInfluence& influence);
+  /// The block before those of before.
+  void leave(ConstLanes log_density);
+  /// Scores the block that was left out last. Without scores where k is above `largest_k`: earlier blocks would be worse.
+  BlockScore score(ConstLanes log_density, DrawInfluence& influence) const;
 
  private:
   int chains_;

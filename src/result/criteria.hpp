@@ -53,7 +53,7 @@ struct LeftOutBlocks {
   int asked = 0;                 // blocks; the last of them have a score
   int first_row = 0;             // from which row of the file on there is a score; 0: nowhere
   int last_row = 0;
-  int own_draws = 0;  // of these blocks the first so many are predicted by draws of their own, not by weighted draws of the fit
+  int own_draws = 0;  // so many of these blocks are predicted by draws of their own, not by weighted draws of the fit
 };
 
 /// One series for each experiment and channel: what each sample contributes. NaN where a sample has no such score.

@@ -145,7 +145,10 @@ TEST_CASE("samples, blocks and futures left out of a normal mean have their clos
   }
   FutureOut future(NormalMean::draws, 1);
   BlockScore const block = leave_block_out(last, 1, block_influence);
-  BlockScore const ahead = future.before(last, future_influence), earlier = future.before(before, future_influence);
+  future.leave(last);
+  BlockScore const ahead = future.score(last, future_influence);
+  future.leave(before);
+  BlockScore const earlier = future.score(before, future_influence);
   CHECK(block.elpd == ahead.elpd);
   REQUIRE(earlier.elpd.size() == 5);
   double difference = 0;
@@ -165,7 +168,8 @@ TEST_CASE("a future that the weights do not reach has no score and no influence"
     for (int s = 0; s < NormalMean::draws; ++s) all(i, s) = 3 * model.log_density(i, s);  // as of sixty samples, without all
   DrawInfluence influence(NormalMean::draws);
   FutureOut future(NormalMean::draws, 1);
-  BlockScore const score = future.before(all, influence);
+  future.leave(all);
+  BlockScore const score = future.score(all, influence);
   CHECK(score.pareto_k > largest_k);
   CHECK(score.elpd.empty());
   CHECK(influence.error() == 0);

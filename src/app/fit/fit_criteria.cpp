@@ -187,13 +187,13 @@ class RecordScores {
   }
 
   void predict_from_past(int b, LaneArray const& block, DrawInfluence& influence) {
-    BlockScore before;
-    if (futures_.own_draws == 0) before = future_.before(block, influence);
-    if (before.elpd.empty()) {
-      before = by_own_draws(b);
-      going_back_ = !before.elpd.empty();
-      futures_.own_draws += going_back_ ? 1 : 0;
-    }
+    future_.leave(block);
+    BlockScore before = by_own_draws(b);
+    if (before.elpd.empty())
+      before = future_.score(block, influence);
+    else
+      ++futures_.own_draws;
+    going_back_ = !before.elpd.empty();
     if (going_back_)
       keep(before, &PointwiseScores::elpd_future, b, futures_);
     else
