@@ -142,8 +142,12 @@ class InputCheck {
   void weigh(Alternative& other, std::size_t e, std::size_t i, int scored) {
     std::vector<Experiment> changed = experiments_;
     changed[e].inputs[i] = other.signal;
-    std::unique_ptr<Target> const target = fit_.target(changed);
-    Objective const objective = make_objective(*target, objective_kind_, seed_, refit_stream);
+    std::shared_ptr<Target const> const target = fit_.target(changed);
+    if (!widths_) {
+      first_ = target;
+      widths_.emplace(make_objective(*target, objective_kind_, seed_, refit_stream));
+    }
+    Objective const objective = widths_->over(*target, objective_kind_);
     std::vector<Eigen::VectorXd> const points = {theta_of(mode_)};
     std::vector<Climber> climbers = {climber_at(points.front(), objective.log_density(to_lanes(points), ledger_).front())};
     climb(objective, climbers, target->is_expensive() ? refit_evaluations : refit_rounds, ledger_, {});
@@ -204,6 +208,9 @@ class InputCheck {
   std::uint64_t seed_;
   Ledger& ledger_;
   std::vector<std::string> parameters_ = {};  // names of those sampled
+  // No input changes the prior, and a prior of many members is drawn slowly: all targets have the widths of the first.
+  std::shared_ptr<Target const> first_ = nullptr;
+  std::optional<Objective> widths_ = std::nullopt;
 };
 
 }  // namespace

@@ -99,9 +99,7 @@ class GrowingSearch {
     double fitted = -infinity;           // log density for each residual
   };
 
-  Objective on(Target const& target, ObjectiveKind objective_kind) const {
-    return {target, objective_kind, scales_.scale, scales_.centre, scales_.low, scales_.high};
-  }
+  Objective on(Target const& target, ObjectiveKind objective_kind) const { return scales_.over(target, objective_kind); }
 
   /// With the solver that the search has come to.
   Target const& whole() {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/order.hpp"
 #include "core/numeric/statistics.hpp"
 #include "search/search_step.hpp"
 
@@ -41,17 +42,17 @@ Objective make_objective(Target const& target, ObjectiveKind objective_kind, Con
     for (double const v : prior_draws.row(p))
       if (std::isfinite(v)) finite.push_back(v);
     if (finite.empty()) continue;
-    double const above_middle = quantile(finite, 0.84), below_middle = quantile(finite, 0.16);
+    sort_numbers(finite);
+    double const above_middle = sorted_quantile(finite, 0.84), below_middle = sorted_quantile(finite, 0.16);
     double const spread = (above_middle - below_middle) / 2;
     objective.centre(p) = (above_middle + below_middle) / 2;
     if (spread > 0) objective.scale(p) = spread;
-    auto const [least, most] = std::minmax_element(finite.begin(), finite.end());
     ParameterInfo const& info = target.parameters()[static_cast<std::size_t>(p)];
     bool const below = std::isfinite(info.lower), above = std::isfinite(info.upper);
     // A bounded side lies at infinity of the coordinate; the end with one bound is always the lower one of log(x - a) and log(b -
     // x).
-    if (below || above) objective.low(p) = *least - 3 * objective.scale(p);
-    if (below && above) objective.high(p) = *most + 3 * objective.scale(p);
+    if (below || above) objective.low(p) = finite.front() - 3 * objective.scale(p);
+    if (below && above) objective.high(p) = finite.back() + 3 * objective.scale(p);
   }
   return objective;
 }

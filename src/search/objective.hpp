@@ -21,6 +21,8 @@ struct Objective {
       high;  // [P] beyond the draws on bounded sides: past here a bound is reached to the last digit; else infinite
 
   int dimension() const { return static_cast<int>(scale.size()); }
+  /// The same widths over another target, whose prior is the same.
+  Objective over(Target const& other, ObjectiveKind kind) const { return {other, kind, scale, centre, low, high}; }
   /// The prior's part alone; 0 for `likelihood`.
   std::vector<double> log_prior(ConstLanes theta) const;
   /// -infinity wherever it is not finite.
