@@ -177,6 +177,10 @@ void ModelTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledger
   }
 }
 
+void ModelTarget::expect_values(double count) const {
+  for (Part const& part : parts_) part.likelihood.expect(count);
+}
+
 double ModelTarget::roughness() const {
   return compiled_->model.integrated() && !options_.solver.fixed_step() ? options_.solver.relative : 0;
 }

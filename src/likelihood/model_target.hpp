@@ -41,6 +41,7 @@ class ModelTarget : public Target {
   }
   void log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian = true) const override;
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override;
+  void expect_values(double count) const override;
   int residual_count() const override;
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override;
   double roughness() const override;

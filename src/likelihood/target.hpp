@@ -35,6 +35,8 @@ class Target {
   /// log likelihood of theta [P x W]. out: [W], -infinity where a solve failed, never NaN, never an exception; the class and place
   /// of each failure is added to `ledger`. Lane w depends on column w alone, whatever the width, threads or instruction set.
   virtual void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const = 0;
+  /// Says that about so many values of the log likelihood will be wanted: what makes many of them cheaper may be done early.
+  virtual void expect_values(double) const {}
   /// Number R of residual rows.
   virtual int residual_count() const = 0;
   /// Deviance residuals r [R x W] with  -log likelihood = 1/2 sum r^2 + constant  for the log likelihood of theta [P x W]: per

@@ -9,6 +9,9 @@ namespace {
 /// [s] of interpretation, of which a job that has less never waits for the compiler to be loaded.
 constexpr double smallest_job = 0.05;
 
+/// Times the compilation of a loop, of interpretation that is known to come.
+constexpr double much = 4;
+
 /// Whether that has been tried: loops cost no more than their own compilation then.
 std::atomic<bool> compiler_was_loaded = false;
 
@@ -35,7 +38,14 @@ bool MachineCode::pays(LoopName const& name, double seconds, double compilation)
   spent += seconds;
   double of_all_loops = 0;
   for (auto const& [_, each] : spent_) of_all_loops += each;
-  return spent >= compilation && (compiler_was_loaded || of_all_loops >= smallest_job);
+  // Of much that is to come, a part tells in which loops it does.
+  bool const worth = spent >= (expected_ >= much * compilation ? compilation / much : compilation);
+  return worth && (compiler_was_loaded || of_all_loops + expected_ >= smallest_job);
+}
+
+void MachineCode::expect(double seconds) {
+  std::lock_guard const lock(mutex_);
+  expected_ += seconds;
 }
 
 }  // namespace sysid::native

@@ -31,10 +31,14 @@ class MachineCode {
   /// again; a job below 50 ms never waits for a compiler.
   bool pays(LoopName const& name, double seconds, double compilation);
 
+  /// Adds `seconds` of interpretation that are known to come, in loops that are not known yet: a loop pays sooner then.
+  void expect(double seconds);
+
  private:
   std::mutex mutex_;
   std::map<LoopName, std::unique_ptr<Machine>> machines_;  // null: it could not be
   std::map<LoopName, double> spent_;                       // [s] predicted
+  double expected_ = 0;                                    // [s] to come
 };
 
 }  // namespace sysid::native

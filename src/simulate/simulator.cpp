@@ -63,6 +63,14 @@ Executor Simulator::executor(int width, double instructions, native::LoopKind lo
   return interpreter(width, instructions);
 }
 
+void Simulator::expect(double lanes) const {
+  constexpr int width = 16;  // of a batch as samplers make them
+  if (options_.executor != ExecutorKind::automatic) return;
+  double const instructions = work_per_sample(*program_, schedule_.solver()) * schedule_.last_summed();
+  program_->machine_code->expect(interpretation_time(instructions, width, interpreter(width, instructions * width)) * lanes /
+                                 width);
+}
+
 std::optional<Executor> Simulator::native(int width, double instructions, native::LoopKind loop) const {
   SolverSettings const& solver = schedule_.solver();
   if (!solver.row().in_program) return std::nullopt;  // nearly all the work is the solver's own

@@ -82,6 +82,9 @@ class Simulator {
   /// machine code is made when a program has been interpreted for long enough.
   Executor executor(int width, double instructions, native::LoopKind loop) const;
 
+  /// Says that about so many lanes will be run, up to the last sample that is summed: then machine code is made early.
+  void expect(double lanes) const;
+
   /// parameters: [parameters x W], SI. out: [sum_count x W], rows as SimulationProgram::sum_row; NaN in failed lanes. outcome: [W].
   /// A lane fails when a state or a sum is not finite. Lane w depends on column w alone.
   void sums(ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;

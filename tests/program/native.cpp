@@ -227,3 +227,16 @@ TEST_CASE("a loop waits for machine code until it has been interpreted for as lo
   CHECK(code.pays(narrow, 0, compilation));
   CHECK_FALSE(code.pays(wide, 0.001, compilation));
 }
+
+TEST_CASE("of much interpretation that is known to come, a part is enough for machine code") {
+  native::LoopName const narrow{.width = 4}, wide{.width = 16};
+  double const compilation = 0.012;
+  native::MachineCode little;
+  little.expect(0.04);  // with what there has been, less than the compiler is loaded for
+  CHECK_FALSE(little.pays(narrow, 0.006, compilation));
+  native::MachineCode much;
+  much.expect(0.2);
+  CHECK_FALSE(much.pays(narrow, 0.002, compilation));
+  CHECK_FALSE(much.pays(wide, 0.002, compilation));
+  CHECK(much.pays(wide, 0.002, compilation));
+}

@@ -245,6 +245,8 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
   };
 
   context.progress.begin("sampling", plan.samples);
+  std::uint64_t const done = *std::min_element(state.next.begin(), state.next.end());
+  target.expect_values(static_cast<double>(plan.samples - std::min(done, plan.samples)) * plan.chains);
   bool stopped = false;
   auto const given_up = [&](auto const& batch) {
     try {

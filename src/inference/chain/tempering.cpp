@@ -196,6 +196,7 @@ void learn(Plan const& plan, metropolis::Info const& info, State& state) {
 bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
   Watch watch(context, [&] { return store(state, context.ledger, identity); });
   context.progress.begin("sampling", plan.samples);
+  target.expect_values(static_cast<double>(plan.samples - std::min(state.next, plan.samples)) * plan.columns());
   bool stopped = false;
   while (state.next < plan.samples && !(stopped = context.stop_requested())) {
     metropolis::Info info;
