@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/order.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 
@@ -26,7 +27,7 @@ BoundCheck check_bounds(std::span<double const> draws, double lower, double uppe
     upper = elementary::log(upper);
   }
   if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) return {};
-  std::sort(x.begin(), x.end());
+  sort_numbers(x);
   double const spread = sorted_quantile(x, 0.95) - sorted_quantile(x, 0.05);
   if (!(spread > 0) || spread > 0.5 * (upper - lower)) return {};
   double const window = 0.1 * spread;

@@ -4,10 +4,72 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
 #include "diagnostics/residual_tests.hpp"
 
 namespace sysid {
+namespace {
+
+/// Samples whose draws are taken out of the trajectories together: each trajectory is read in runs, and sums of several samples do
+/// not wait for one another.
+constexpr std::size_t at_once = 8;
+
+/// Mean and variance over trajectories, as `mean` and `sample_variance` have them, of samples from `from` on.
+struct Moments {
+  double mean[at_once] = {}, variance[at_once] = {};
+
+  Moments(std::vector<std::vector<double> const*> const& trajectories, std::size_t from, std::size_t count) {
+    auto const n = static_cast<double>(trajectories.size());
+    for (std::vector<double> const* each : trajectories)
+      for (std::size_t k = 0; k < count; ++k) mean[k] += (*each)[from + k];
+    for (double& each : mean) each /= n;
+    for (std::vector<double> const* each : trajectories)
+      for (std::size_t k = 0; k < count; ++k) {
+        double const apart = (*each)[from + k] - mean[k];
+        variance[k] += apart * apart;
+      }
+    for (double& each : variance) each /= n - 1;
+  }
+};
+
+/// The smallest and the largest draws of each sample in order, kept by comparisons without branches, of several samples at once.
+class Tails {
+ public:
+  static constexpr std::size_t most = 8;  // draws of a tail, up to which this is quicker than sorting
+
+  Tails(std::vector<std::vector<double> const*> const& trajectories, std::size_t depth, std::size_t from, std::size_t count) {
+    for (std::size_t r = 0; r < depth; ++r)
+      for (std::size_t k = 0; k < at_once; ++k) smallest_[r][k] = infinity, largest_[r][k] = -infinity;
+    for (std::vector<double> const* each : trajectories) {
+      double up[at_once] = {}, down[at_once] = {};
+      for (std::size_t k = 0; k < count; ++k) up[k] = down[k] = (*each)[from + k];
+      for (std::size_t r = 0; r < depth; ++r)
+        for (std::size_t k = 0; k < at_once; ++k) {
+          double const small = smallest_[r][k], large = largest_[r][k];
+          smallest_[r][k] = up[k] < small ? up[k] : small;
+          up[k] = up[k] < small ? small : up[k];
+          largest_[r][k] = down[k] > large ? down[k] : large;
+          down[k] = down[k] > large ? large : down[k];
+        }
+    }
+  }
+
+  double lower(PredictivePlace place, std::size_t sample) const {
+    double const low = smallest_[place.below][sample], high = smallest_[place.above][sample];
+    return low + place.share * (high - low);
+  }
+  /// draws: all.
+  double upper(PredictivePlace place, std::size_t draws, std::size_t sample) const {
+    double const low = largest_[draws - 1 - place.below][sample], high = largest_[draws - 1 - place.above][sample];
+    return low + place.share * (high - low);
+  }
+
+ private:
+  double smallest_[most][at_once], largest_[most][at_once];
+};
+
+}  // namespace
 
 Band band(std::vector<std::vector<double>> const& trajectories) {
   // Samples that no draw can predict, because what they follow from was not measured, say nothing about a draw.
@@ -27,16 +89,29 @@ Band band(std::vector<std::vector<double>> const& trajectories) {
   if (usable.empty()) return out;
   std::size_t const samples = usable[0]->size();
   std::vector<double> values(usable.size());
-  for (std::size_t i = 0; i < samples; ++i) {
-    if (!predictable[i]) {
-      for (auto* column : {&out.mean, &out.sd, &out.lower, &out.upper}) column->push_back(std::nan(""));
-      continue;
+  PredictivePlace const low = predictive_place(usable.size(), 0.025), high = predictive_place(usable.size(), 0.975);
+  std::size_t const depth = std::max(low.above + 1, usable.size() - high.below);
+  bool const few = depth <= Tails::most;
+  for (std::size_t from = 0; from < samples; from += at_once) {
+    std::size_t const count = std::min(at_once, samples - from);
+    Moments const moments(usable, from, count);
+    Tails const tails(usable, few ? depth : 0, from, count);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!predictable[from + k]) {
+        for (auto* column : {&out.mean, &out.sd, &out.lower, &out.upper}) column->push_back(std::nan(""));
+        continue;
+      }
+      out.mean.push_back(moments.mean[k]);
+      out.sd.push_back(usable.size() > 1 ? std::sqrt(moments.variance[k]) : 0);
+      if (few) {
+        out.lower.push_back(tails.lower(low, k));
+        out.upper.push_back(tails.upper(high, usable.size(), k));
+        continue;
+      }
+      for (std::size_t d = 0; d < usable.size(); ++d) values[d] = (*usable[d])[from + k];
+      out.lower.push_back(predictive_quantile(values, 0.025));
+      out.upper.push_back(predictive_quantile(values, 0.975));
     }
-    for (std::size_t d = 0; d < usable.size(); ++d) values[d] = (*usable[d])[i];
-    out.mean.push_back(mean(values));
-    out.sd.push_back(usable.size() > 1 ? std::sqrt(sample_variance(values)) : 0);
-    out.lower.push_back(predictive_quantile(values, 0.025));
-    out.upper.push_back(predictive_quantile(values, 0.975));
   }
   return out;
 }

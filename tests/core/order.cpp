@@ -24,6 +24,10 @@ void check_order(std::vector<double> const& values) {
     CHECK(by_digits[i].value == by_comparison[i].value);
     CHECK(by_digits[i].place == by_comparison[i].place);
   }
+  std::vector<double> numbers = values, sorted = values;
+  sort_numbers(numbers);
+  std::sort(sorted.begin(), sorted.end());
+  CHECK(numbers == sorted);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include <map>
 #include <sstream>
 
+#include "core/numeric/not_finite.hpp"
 #include "core/numeric/random.hpp"
 #include "sanitized.hpp"
 
@@ -88,7 +90,6 @@ TEST_CASE("chains in different places raise rhat, chains in one place do not") {
 }
 
 TEST_CASE("constant, empty and non-finite draws have no diagnostics") {
-  double const infinity = std::numeric_limits<double>::infinity();
   ChainValues infinite = {normals(100, 0), normals(100, 1)};
   infinite[1][3] = infinity;
   for (ChainValues const& draws : {ChainValues{}, ChainValues{{}}, ChainValues{{1, 1, 1, 1}, {1, 1, 1, 1}}, infinite}) {
@@ -97,6 +98,48 @@ TEST_CASE("constant, empty and non-finite draws have no diagnostics") {
     CHECK(std::isnan(ess_tail(draws)));
     CHECK(std::isnan(ess_mean(draws)));
     CHECK(std::isnan(summarise("a", "", draws).rhat));
+  }
+}
+
+TEST_CASE("effective sample sizes do not depend on how many lags they need") {
+  // Of autoregressive chains the correlation is r^lag: with small r few lags are summed one by one, with r near 1 a transform has
+  // all of them, and between the two it takes over on the way.
+  for (double const r : {-0.5, 0.0, 0.5, 0.9, 0.95, 0.96, 0.97, 0.98}) {
+    CAPTURE(r);
+    ChainValues draws;
+    for (std::uint64_t c = 0; c < 4; ++c) {
+      std::vector<double> chain = normals(3001, c);
+      for (std::size_t i = 1; i < chain.size(); ++i) chain[i] += r * chain[i - 1];
+      draws.push_back(std::move(chain));
+    }
+    // By its definition, on the halves: Geyer's initial monotone sequence.
+    ChainValues halves;
+    for (auto const& chain : draws) halves.emplace_back(chain.begin(), chain.begin() + 1500);
+    for (auto const& chain : draws) halves.emplace_back(chain.end() - 1500, chain.end());
+    auto const covariance = [&](std::size_t lag) {
+      double sum = 0;
+      for (auto const& chain : halves)
+        for (auto [i, centre] = std::pair(std::size_t{0}, mean(chain)); i + lag < chain.size(); ++i)
+          sum += (chain[i] - centre) * (chain[i + lag] - centre);
+      return sum / (1500.0 * 8);
+    };
+    std::vector<double> means;
+    for (auto const& chain : halves) means.push_back(mean(chain));
+    double const within = covariance(0) * 1500 / 1499, total = covariance(0) + sample_variance(means);
+    double pairs = 0, before = infinity, expected = 0;
+    for (std::size_t lag = 0; lag < 1490; lag += 2) {
+      auto const rho = [&](std::size_t at) { return at == 0 ? 1 : 1 - (within - covariance(at)) / total; };
+      double const pair = rho(lag) + rho(lag + 1);
+      if (pair <= 0) {
+        double const even = rho(lag);
+        double const tau = -1 + 2 * pairs + (even > 0 ? even : 0);
+        expected = 12000 / tau;
+        break;
+      }
+      before = std::min(before, pair);
+      pairs += before;
+    }
+    CHECK(ess_mean(draws) == doctest::Approx(expected).epsilon(1e-9));
   }
 }
 

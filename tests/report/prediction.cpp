@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/numeric/random.hpp"
+#include "core/numeric/statistics.hpp"
 
 using namespace sysid;
 
@@ -20,6 +21,26 @@ TEST_CASE("a band is pointwise: mean, sd and quantiles of type 6") {
   CHECK(b.upper[0] == doctest::Approx(39.95).epsilon(1e-14));
   CHECK(b.sd[1] == 0);
   CHECK(b.lower[1] == 5);
+}
+
+TEST_CASE("a band of any number of draws is that of each sample alone") {
+  for (std::size_t const draws : {1, 2, 3, 38, 39, 41, 200, 279, 280, 320, 400}) {
+    CAPTURE(draws);
+    Stream stream({.seed = 2, .purpose = Purpose::test, .index = draws, .step = 0});
+    std::vector<std::vector<double>> trajectories(draws, std::vector<double>(19));
+    for (auto& trajectory : trajectories)
+      for (double& value : trajectory) value = std::round(40 * stream.normal());  // with ties
+    Band const b = band(trajectories);
+    REQUIRE(b.mean.size() == 19);
+    for (std::size_t i = 0; i < b.mean.size(); ++i) {
+      std::vector<double> sample;
+      for (auto const& trajectory : trajectories) sample.push_back(trajectory[i]);
+      CHECK(b.mean[i] == mean(sample));
+      CHECK(b.sd[i] == (draws > 1 ? std::sqrt(sample_variance(sample)) : 0));
+      CHECK(b.lower[i] == predictive_quantile(sample, 0.025));
+      CHECK(b.upper[i] == predictive_quantile(sample, 0.975));
+    }
+  }
 }
 
 TEST_CASE("a 95 % band of few draws holds 95 % of the draws that come next") {

@@ -35,8 +35,9 @@ double corrected_mean(std::span<double const> values) {
   return rough + rest / static_cast<double>(values.size());
 }
 
-double corrected_variance(std::span<double const> values) {
-  double const center = corrected_mean(values);
+double corrected_variance(std::span<double const> values) { return corrected_variance(values, corrected_mean(values)); }
+
+double corrected_variance(std::span<double const> values, double center) {
   double sum = 0, rest = 0;
   for (double const v : values) {
     double const square = (v - center) * (v - center), next = sum + square;
@@ -62,12 +63,16 @@ double sorted_quantile(std::vector<double> const& sorted, double probability) {
   return (1 - h) * a + h * b;
 }
 
-double predictive_quantile(std::vector<double>& draws, double probability) {
-  auto const last = static_cast<double>(draws.size()) - 1;
+PredictivePlace predictive_place(std::size_t draws, double probability) {
+  auto const last = static_cast<double>(draws) - 1;
   double const place = std::clamp(probability * (last + 2) - 1, 0.0, last);
-  auto const below = static_cast<std::size_t>(place), above = std::min(below + 1, draws.size() - 1);
-  double const share = place - std::floor(place);
-  auto const near = [&](std::size_t count) { return draws.begin() + static_cast<std::ptrdiff_t>(count); };
+  auto const below = static_cast<std::size_t>(place);
+  return {below, std::min(below + 1, draws - 1), place - std::floor(place)};
+}
+
+double predictive_quantile(std::span<double> draws, double probability) {
+  auto const [below, above, share] = predictive_place(draws.size(), probability);
+  auto const near = [draws](std::size_t count) { return draws.begin() + static_cast<std::ptrdiff_t>(count); };
   // A tail is a small part: sorted from its end, few of the others are moved.
   if (2 * above < draws.size()) {
     std::partial_sort(draws.begin(), near(above + 1), draws.end());

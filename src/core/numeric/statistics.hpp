@@ -26,6 +26,8 @@ double population_variance(std::span<double const> values);
 /// corrected by the mean of what it leaves, and what the additions of the squares round off is summed beside.     Neumaier 1974
 double corrected_mean(std::span<double const> values);
 double corrected_variance(std::span<double const> values);
+/// mean: theirs, corrected.
+double corrected_variance(std::span<double const> values, double mean);
 
 /// All chains, one behind the other.
 std::vector<double> pooled(std::vector<std::vector<double>> const& chains);
@@ -36,7 +38,13 @@ double quantile(std::vector<double> draws, double probability);
 double sorted_quantile(std::vector<double> const& sorted, double probability);
 /// Quantile of type 6, of draws in any order, which changes; they are not empty. Between those of 2.5 % and 97.5 % another draw
 /// falls with probability 0.95 however few draws there are, from 39 on; between those of type 7, 0.931 with 100.
-double predictive_quantile(std::vector<double>& draws, double probability);
+double predictive_quantile(std::span<double> draws, double probability);
+/// Where it lies among so many draws in order: at a share of the way between two of them.
+struct PredictivePlace {
+  std::size_t below, above;
+  double share;
+};
+PredictivePlace predictive_place(std::size_t draws, double probability);
 /// Quantile of type 7 of one half: of an even number of draws the mean of the middle two.
 double median(std::vector<double> draws);
 /// The middle draw, of an even number the larger of the middle two: always one of the draws, and infinite where half of them are.

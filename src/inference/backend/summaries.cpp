@@ -7,6 +7,7 @@ namespace sysid {
 std::vector<Summary> summarise(FitResult const& result) {
   if (!result.summaries.empty()) return result.summaries;
   std::vector<Summary> summaries;
+  ConvergenceTables tables;
   for (int p = 0; p < result.draws.parameter_count; ++p) {
     auto const parameter = static_cast<std::size_t>(p);
     ChainValues values;
@@ -18,7 +19,7 @@ std::vector<Summary> summarise(FitResult const& result) {
         for (auto const& draw : chain.values) values.back().push_back(draw[parameter]);
       }
     }
-    summaries.push_back(summarise(result.draws.names[parameter], result.draws.units[parameter], values));
+    summaries.push_back(summarise(result.draws.names[parameter], result.draws.units[parameter], values, tables));
   }
   return summaries;
 }

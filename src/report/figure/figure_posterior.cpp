@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/order.hpp"
 #include "core/text/number.hpp"
 #include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
@@ -24,7 +25,7 @@ using namespace plot;
 std::vector<double> finite_draws(Draws const& draws, std::size_t parameter) {
   std::vector<double> out = draws.column(parameter);
   std::erase_if(out, [](double each) { return !std::isfinite(each); });
-  std::sort(out.begin(), out.end());
+  sort_numbers(out);
   return out;
 }
 

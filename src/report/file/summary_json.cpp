@@ -49,13 +49,14 @@ Json parameters(std::vector<Summary> const& summaries) {
 /// Where draws were thinned, `parameters` are of all iterations: those of the kept ones, which other programs take from the files.
 Json kept_draws(Report const& report) {
   std::vector<Summary> summaries;
+  ConvergenceTables tables;
   for (std::size_t c = 0; c < report.draws.names.size(); ++c) {
     ChainValues values;
     for (Chain const& chain : report.draws.chains) {
       values.emplace_back();
       for (auto const& draw : chain.values) values.back().push_back(draw[c]);
     }
-    summaries.push_back(summarise(report.draws.names[c], report.draws.units[c], values));
+    summaries.push_back(summarise(report.draws.names[c], report.draws.units[c], values, tables));
   }
   return parameters(summaries);
 }
