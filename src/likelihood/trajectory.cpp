@@ -1,8 +1,6 @@
 // Records of the trajectory program, in declared units, a few dozen parameter vectors at a time so that long records fit in memory.
 #include "likelihood/trajectory.hpp"
 
-#include "core/numeric/not_finite.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/numeric/normals.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "core/system/memory.hpp"
 #include "core/text/diagnostic.hpp"
 
@@ -97,20 +97,62 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
         for (int i = 0; i < samples; ++i) values[static_cast<std::size_t>(i)] = quantity.from_si(records(i * rows + r, w));
       result.values[q++].push_back(std::move(values));
       if (record.kind != RecordKind::centre) continue;
-      Distribution const& noise = model.channels[static_cast<std::size_t>(record.index)].noise;
-      std::size_t const arguments = noise.arguments.size();
-      std::vector<double> noisy(static_cast<std::size_t>(samples), nan), numbers(arguments);
-      Stream stream(
-          noise_key.at(noise_key.index + static_cast<std::uint64_t>(first + w), static_cast<std::uint64_t>(record.index)));
-      for (int i = 0; good && i < samples; ++i) {
-        for (std::size_t a = 0; a < arguments; ++a) numbers[a] = records(i * rows + r + 1 + static_cast<int>(a), w);
-        bool const usable = std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
-        if (usable && (noise.row->refuse == nullptr || noise.row->refuse(numbers).empty()))
-          noisy[static_cast<std::size_t>(i)] = quantity.from_si(draw(*noise.row, numbers, -infinity, infinity, stream));
-      }
-      result.noisy[static_cast<std::size_t>(record.index)].push_back(std::move(noisy));
     }
   }
+  for (int r = 0; r < rows; ++r) {
+    auto const& record = compiled_->records[static_cast<std::size_t>(r)];
+    if (record.kind != RecordKind::centre) continue;
+    for (auto& noisy :
+         with_noise(records, outcome, r,
+                    noise_key.at(noise_key.index + static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(record.index))))
+      result.noisy[static_cast<std::size_t>(record.index)].push_back(std::move(noisy));
+  }
+}
+
+/// Draws of the channel whose centre is record `row`, lane by lane; NaN where the noise has none.
+std::vector<std::vector<double>> Trajectory::with_noise(LaneArray const& records, std::vector<Outcome> const& outcome, int row,
+                                                        StreamKey key) const {
+  int const samples = this->samples(), rows = static_cast<int>(compiled_->records.size()), width = records.width();
+  Channel const& channel =
+      compiled_->model.channels[static_cast<std::size_t>(compiled_->records[static_cast<std::size_t>(row)].index)];
+  Distribution const& noise = channel.noise;
+  std::vector<double> numbers(noise.arguments.size());
+  auto const usable = [&](int sample, int lane) {
+    for (std::size_t a = 0; a < numbers.size(); ++a) numbers[a] = records(sample * rows + row + 1 + static_cast<int>(a), lane);
+    return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }) &&
+           (noise.row->refuse == nullptr || noise.row->refuse(numbers).empty());
+  };
+  std::vector<std::vector<double>> all(static_cast<std::size_t>(width),
+                                       std::vector<double>(static_cast<std::size_t>(samples), not_a_number));
+  std::vector<int> whole;  // lanes of normal noise at every sample: their streams are drawn from side by side, which is cheaper
+  std::vector<Stream> streams;
+  for (int w = 0; w < width; ++w) {
+    if (!outcome[static_cast<std::size_t>(w)].ok) continue;
+    Stream stream(key.with_index(key.index + static_cast<std::uint64_t>(w)));
+    bool normal = noise.row->gaussian;
+    for (int i = 0; normal && i < samples; ++i) normal = usable(i, w);
+    if (normal) {
+      whole.push_back(w);
+      streams.push_back(stream);
+      continue;
+    }
+    for (int i = 0; i < samples; ++i)
+      if (usable(i, w))
+        all[static_cast<std::size_t>(w)][static_cast<std::size_t>(i)] =
+            channel.from_si(draw(*noise.row, numbers, -infinity, infinity, stream));
+  }
+  constexpr int at_once = 256;  // samples; even, as normal numbers come in pairs
+  for (int from = 0; from < samples && !whole.empty(); from += at_once) {
+    LaneArray normals(std::min(at_once, samples - from), static_cast<int>(whole.size()));
+    draw_normals(streams, normals);
+    for (std::size_t k = 0; k < whole.size(); ++k)
+      for (int i = 0; i < normals.rows(); ++i) {
+        int const at = (from + i) * rows + row;
+        all[static_cast<std::size_t>(whole[k])][static_cast<std::size_t>(from + i)] =
+            channel.from_si(records(at + 1, whole[k]) + records(at + 2, whole[k]) * normals(i, static_cast<int>(k)));
+      }
+  }
+  return all;
 }
 
 LaneArray Trajectory::no_records(int width) const {

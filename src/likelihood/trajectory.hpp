@@ -52,6 +52,8 @@ class Trajectory {
   LaneArray no_records(int width) const;
   void record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const;
   void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
+  std::vector<std::vector<double>> with_noise(LaneArray const& records, std::vector<Outcome> const& outcome, int row,
+                                              StreamKey key) const;
 
   std::shared_ptr<CompiledModel const> compiled_;
   Simulator simulator_;
