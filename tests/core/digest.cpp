@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
+
 using sysid::sha256;
 
 TEST_CASE("sha256 gives the published digests") {
@@ -14,6 +16,14 @@ TEST_CASE("sha256 gives the published digests") {
       sha256("abcdefghbcdefghicdefghijdefghijkefghijklfghijklmghijklmnhijklmnoijklmnopjklmnopqklmnopqrlmnopqrsmnopqrstnopqrstu") ==
       "cf5b16a778af8380036ce59e7b0492370b249b11e8f07a51afac45037afee9d1");
   CHECK(sha256(std::string(1000000, 'a')) == "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_CASE("sha256 is the same with and without the processor's instructions for it") {
+  std::string bytes;
+  for (int i = 0; i < 400; ++i) {
+    CHECK(sha256(bytes) == sha256(bytes, true));
+    bytes += static_cast<char>(i * 37 + i / 7);
+  }
 }
 
 TEST_CASE("sha256 reads bytes above 127") {

@@ -1,12 +1,15 @@
 // SHA-256 after FIPS 180-4, section 6.2; names as printed there.
 #include "core/system/digest.hpp"
 
+#include <cpuid.h>
 #include <fmt/format.h>
 
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
+
+#include "core/system/digest_sha.hpp"
 
 namespace sysid {
 namespace {
@@ -43,13 +46,24 @@ void add_block(std::array<std::uint32_t, 8>& H, unsigned char const* block) {
   for (std::size_t i = 0; i < H.size(); ++i) H[i] += working[i];
 }
 
+bool has_sha_instructions() {
+  unsigned int eax = 0, ebx = 0, ecx = 0, edx = 0;
+  return __get_cpuid_count(7, 0, &eax, &ebx, &ecx, &edx) != 0 && (ebx & bit_SHA) != 0;
+}
+
+void add_blocks(std::array<std::uint32_t, 8>& H, unsigned char const* data, std::size_t blocks, bool plainly) {
+  static bool const by_instructions = has_sha_instructions();
+  if (by_instructions && !plainly) return add_blocks_by_instructions(H.data(), K.data(), data, blocks);
+  for (; blocks > 0; --blocks, data += 64) add_block(H, data);
+}
+
 }  // namespace
 
-std::string sha256(std::string_view bytes) {
+std::string sha256(std::string_view bytes, bool plainly) {
   std::array<std::uint32_t, 8> H = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
   auto const* const data = reinterpret_cast<unsigned char const*>(bytes.data());
   std::size_t const whole = bytes.size() / 64 * 64;
-  for (std::size_t at = 0; at < whole; at += 64) add_block(H, data + at);
+  add_blocks(H, data, whole / 64, plainly);
   // The rest, a one bit, zeros, and the length in bits: one block or two (section 5.1.1).
   std::array<unsigned char, 128> tail{};
   std::size_t const rest = bytes.size() - whole;
@@ -58,7 +72,7 @@ std::string sha256(std::string_view bytes) {
   std::size_t const tail_size = rest < 56 ? 64 : 128;
   for (std::size_t i = 0; i < 8; ++i)
     tail[tail_size - 1 - i] = static_cast<unsigned char>(std::uint64_t{bytes.size()} * 8 >> 8 * i);
-  for (std::size_t at = 0; at < tail_size; at += 64) add_block(H, tail.data() + at);
+  add_blocks(H, tail.data(), tail_size / 64, plainly);
   std::string text;
   for (std::uint32_t const word : H) text += fmt::format("{:08x}", word);
   return text;

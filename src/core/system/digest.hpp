@@ -5,7 +5,7 @@
 
 namespace sysid {
 
-/// FIPS 180-4, as 64 hexadecimal digits in lower case.
-std::string sha256(std::string_view bytes);
+/// FIPS 180-4, as 64 hexadecimal digits in lower case. plainly: without the processor's instructions for it, slower.
+std::string sha256(std::string_view bytes, bool plainly = false);
 
 }  // namespace sysid

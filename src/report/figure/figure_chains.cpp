@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <cstdint>
 
+#include "core/numeric/not_finite.hpp"
+#include "core/numeric/order.hpp"
 #include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
 #include "report/figure/small_multiples.hpp"
@@ -64,19 +66,22 @@ constexpr int rank_bins = 20;
 /// The bin of the rank of each draw, chain after chain. Of equal values all chains get their share of the ranks, the first draws of
 /// each before the second.
 std::vector<int> rank_bin_of_draws(Draws const& draws, std::size_t parameter) {
-  std::vector<double> const values = draws.column(parameter);
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::vector<std::size_t> place;
-  for (auto const& chain : draws.chains)
-    for (std::size_t d = 0; d < chain.values.size(); ++d) place.push_back(d);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (values[a] < values[b] || values[b] < values[a]) return values[a] < values[b];
-    if (std::isnan(values[a]) != std::isnan(values[b])) return std::isnan(values[b]);
-    return place[a] < place[b];
-  });
-  std::vector<int> bins(values.size());
-  for (std::size_t r = 0; r < order.size(); ++r) bins[order[r]] = static_cast<int>(r * rank_bins / order.size());
+  std::vector<Ranked> order;  // the first draws of all chains, their second ones, ...: equal values stay in this order
+  std::size_t longest = 0;
+  for (auto const& chain : draws.chains) longest = std::max(longest, chain.values.size());
+  for (std::size_t d = 0; d < longest; ++d) {
+    std::size_t before = 0;
+    for (auto const& chain : draws.chains) {
+      if (d < chain.values.size()) {
+        double const value = chain.values[d][parameter];
+        order.push_back({std::isnan(value) ? infinity : value + 0.0, static_cast<std::uint32_t>(before + d)});  // no -0
+      }
+      before += chain.values.size();
+    }
+  }
+  sort_by_value(order);
+  std::vector<int> bins(order.size());
+  for (std::size_t r = 0; r < order.size(); ++r) bins[order[r].place] = static_cast<int>(r * rank_bins / order.size());
   return bins;
 }
 

@@ -2,10 +2,12 @@
 // report/figure/axis.
 #include "report/figure/plot.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/text/number.hpp"
 #include "core/text/utf8.hpp"
@@ -112,8 +114,13 @@ std::string data_block(std::string_view name, std::vector<std::vector<double>> c
   std::string out = fmt::format("${} << EOD\n", name);
   for (std::vector<double> const& row : rows) {
     // Seven digits are more than a figure shows.
-    for (std::size_t c = 0; c < row.size(); ++c)
-      out += std::isfinite(row[c]) ? fmt::format("{}{:.7g}", c == 0 ? "" : " ", row[c]) : fmt::format("{}NaN", c == 0 ? "" : " ");
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0) out += ' ';
+      if (std::isfinite(row[c]))
+        fmt::format_to(std::back_inserter(out), FMT_COMPILE("{:.7g}"), row[c]);
+      else
+        out += "NaN";
+    }
     out += '\n';
   }
   return out + "EOD\n";

@@ -1,6 +1,7 @@
 // CSV that R, Python and CmdStan's own tools read.
 #include "report/file/csv.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -49,7 +50,7 @@ std::string units(std::vector<std::string> const& names, std::vector<std::string
 /// As `shortest` has it, and a comma.
 void add_cell(std::string& out, double value) {
   if (std::isfinite(value))
-    fmt::format_to(std::back_inserter(out), "{},", value);
+    fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},"), value);
   else
     out += shortest(value) + ',';
 }
