@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/generalised_pareto.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "diagnostics/convergence.hpp"
 #include "distribution/distribution.hpp"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::array<double, 4> factors = {0.25, 0.5, 2, 4};
 constexpr double least_ratios = 50;      // independent ones: an error of a seventh where they vary by themselves
+constexpr double heaviest_tail = 0.5;    // of the ratios, Pareto's k: above, their variance is infinite
 constexpr double edge = 0.01;            // of the prior, at a bound that the wider one moves
 constexpr double negligible_mass = 0.1;  // of the posterior, beyond such a bound
 
@@ -42,7 +44,7 @@ struct Numbered {
 
 /// log p_f - log p of one parameter at the draws.
 struct Ratios {
-  std::array<std::vector<double>, factors.size()> log;  // [draws]
+  std::array<std::vector<double>, factors.size()> log;  // [draws]; empty where no prior is so wide
   std::array<double, factors.size()> beyond = {};       // share of the posterior that the wider prior would move out of reach
 };
 
@@ -57,13 +59,12 @@ std::optional<Ratios> ratios_of(PriorInfo const& prior, std::vector<double> cons
   Numbered const stated(graph, *row, numbers.arguments, numbers);
   NodeId const density = log_density(graph, stated.use, x);
   std::vector<NodeId> outputs;
-  std::vector<Numbered> widened;
-  for (double const factor : factors) {
+  std::array<std::optional<Numbered>, factors.size()> widened;
+  for (std::size_t f = 0; f < factors.size(); ++f) {
     std::vector<double> arguments = numbers.arguments;
-    row->widen(factor, arguments);
-    if (!row->refuse(arguments).empty()) return std::nullopt;
-    widened.emplace_back(graph, *row, arguments, numbers);
-    outputs.push_back(graph.subtract(log_density(graph, widened.back().use, x), density));
+    row->widen(factors[f], arguments);
+    if (row->refuse(arguments).empty()) widened[f].emplace(graph, *row, arguments, numbers);
+    outputs.push_back(widened[f] ? graph.subtract(log_density(graph, widened[f]->use, x), density) : density);
   }
   outputs.push_back(row->cumulative(graph, x, stated.use.arguments));
   LaneArray values(1, static_cast<int>(declared.size())), out(static_cast<int>(outputs.size()), values.width());
@@ -78,7 +79,8 @@ std::optional<Ratios> ratios_of(PriorInfo const& prior, std::vector<double> cons
   }
   Ratios result;
   for (std::size_t f = 0; f < factors.size(); ++f) {
-    Numbered const& other = widened[f];
+    if (!widened[f]) continue;
+    Numbered const& other = *widened[f];
     std::span<double const> const row_of = out.row(static_cast<int>(f));
     result.log[f].assign(row_of.begin(), row_of.end());
     for (std::size_t d = 0; d < declared.size(); ++d)
@@ -93,10 +95,21 @@ std::optional<Ratios> ratios_of(PriorInfo const& prior, std::vector<double> cons
   return result;
 }
 
+/// Whether a mean of the ratios has an error that can be stated: by the fit to their largest, or because these are all alike, as
+/// those of a prior between bounds.
+bool has_variance(std::vector<double> const& log_ratio, double relative_efficiency) {
+  int const tail = pareto_tail_length(static_cast<int>(log_ratio.size()), relative_efficiency);
+  double const k = smooth_weights(log_ratio, tail).k, largest = *std::max_element(log_ratio.begin(), log_ratio.end());
+  if (std::isfinite(k)) return k <= heaviest_tail;
+  auto const alike = std::count_if(log_ratio.begin(), log_ratio.end(), [&](double each) { return each > largest - 1e-9; });
+  return alike >= tail;
+}
+
 PriorWidth effect(std::string parameter, double factor, std::vector<double> const& log_ratio, double beyond, Draws const& draws) {
   PriorWidth result{std::move(parameter), factor, {}, 0};
+  if (log_ratio.empty() || beyond > negligible_mass) return result;
   double const largest = *std::max_element(log_ratio.begin(), log_ratio.end());
-  if (!std::isfinite(largest) || beyond > negligible_mass) return result;
+  if (!std::isfinite(largest)) return result;
   ChainValues ratios;
   double sum = 0, square = 0, deviation = 0;
   std::size_t at = 0;
@@ -113,11 +126,14 @@ PriorWidth effect(std::string parameter, double factor, std::vector<double> cons
   double const mean = sum / count;
   for (std::vector<double> const& chain : ratios)
     for (double const each : chain) deviation += (each - mean) * (each - mean);
-  bool const constant = deviation <= 1e-20 * mean * mean * count;  // but for rounding
-  double const independent = constant ? count : ess_mean(ratios);  // NaN where a chain is too short
-  if (!(independent * (sum * sum / square) / count >= least_ratios)) return result;
+  if (deviation > 1e-20 * mean * mean * count) {  // more than rounding
+    double const independent = ess_mean(ratios);  // NaN where a chain is too short
+    if (!(independent * (sum * sum / square) / count >= least_ratios) ||
+        !has_variance(log_ratio, std::min(1.0, independent / count)))
+      return result;
+    result.error = std::sqrt(deviation / count / independent) / mean;
+  }
   result.change = largest + elementary::log(mean);
-  result.error = std::sqrt(deviation / count / independent) / mean;
   return result;
 }
 
@@ -136,6 +152,7 @@ std::vector<PriorWidth> prior_widths(std::vector<PriorInfo> const& priors, Draws
     if (!ratios) continue;
     for (std::size_t f = 0; f < factors.size(); ++f) {
       effects.push_back(effect(prior.name, factors[f], ratios->log[f], ratios->beyond[f], draws));
+      if (ratios->log[f].empty()) joint[f].clear();
       for (std::size_t d = 0; d < joint[f].size(); ++d) joint[f][d] += ratios->log[f][d];
       beyond[f] += ratios->beyond[f];
     }

@@ -13,7 +13,8 @@ namespace sysid {
 ///
 /// For every prior that is stated in numbers and has a width, one by one, and for all together: half and a quarter, twice and four
 /// times as wide. The error is that of the mean of correlated draws. No change where fewer than 50 independent ratios are left (a
-/// posterior in the tail of its prior), or where the posterior lies against a bound beyond which the wider prior goes on. draws:
+/// posterior in the tail of its prior), where their variance is infinite by Pareto's k above 1/2 (a posterior hardly narrower than
+/// its prior), or where the posterior lies against a bound beyond which the wider prior goes on. draws:
 /// parameters in declared units; nothing for a single draw.
 std::vector<PriorWidth> prior_widths(std::vector<PriorInfo> const& priors, Draws const& draws);
 

@@ -47,10 +47,12 @@ double quantile(double probability, Tail tail, Numbers a) {
                              : boost::math::ibetac_inv(a[0], a[1], probability, BoostPolicy());
 }
 
-/// The mean stays; a + b counts as observations would.
+/// The mean m stays, and the variance m (1 - m)/(a + b + 1) is that many times as large; beyond m (1 - m) there is none, and the
+/// arguments are not admissible.
 void widen(double factor, std::span<double> a) {
-  a[0] /= factor * factor;
-  a[1] /= factor * factor;
+  double const size = a[0] + a[1], ratio = ((size + 1) / (factor * factor) - 1) / size;
+  a[0] *= ratio;
+  a[1] *= ratio;
 }
 
 std::string_view refuse(Numbers a) { return positive(a[0]) && positive(a[1]) ? std::string_view() : "a and b must be positive"; }

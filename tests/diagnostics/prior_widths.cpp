@@ -84,9 +84,32 @@ TEST_CASE("a uniform prior twice as wide costs log 2 exactly, unless the posteri
   CHECK(at(effects, "mean", 2).error < 1e-12);
   CHECK(*at(effects, "mean", 0.5).change == doctest::Approx(std::log(2.0)));
   CHECK(*at(effects, "mean", 0.25).change == doctest::Approx(std::log(4.0)).epsilon(0.02));  // a few draws lie beyond 2.5
-  CHECK_FALSE(at(effects, "free", 2).change);  // what lies beyond 1 is not known
+  CHECK_FALSE(at(effects, "free", 2).change);                                                // what lies beyond 1 is not known
   CHECK_FALSE(at(effects, "", 2).change);
   CHECK(*at(effects, "free", 0.5).change == doctest::Approx(0).epsilon(0.2));
+}
+
+TEST_CASE("a prior that the data do not narrow is not widened by ratios without a variance") {
+  // The posterior is the prior, so that the true change is 0.
+  constexpr int records = 200;
+  std::vector<PriorInfo> const priors = {prior("mean", "normal", {0, 1})};
+  for (double const factor : {2.0, 4.0}) {
+    CAPTURE(factor);
+    int known = 0;
+    for (std::uint64_t seed = 1; seed <= records; ++seed) {
+      Draws draws{{"mean"}, {""}, {}, 1};
+      Stream stream({seed, Purpose::test, 0, 1});
+      for (int c = 0; c < chain_count; ++c) {
+        draws.chains.emplace_back();
+        for (int d = 0; d < per_chain; ++d) draws.chains.back().values.push_back({stream.normal()});
+      }
+      auto const effects = prior_widths(priors, draws);
+      known += at(effects, "mean", factor).change ? 1 : 0;
+      REQUIRE(at(effects, "mean", 0.5).change);
+      CHECK(std::fabs(*at(effects, "mean", 0.5).change) < 5 * at(effects, "mean", 0.5).error);
+    }
+    CHECK(known < 0.15 * records);
+  }
 }
 
 TEST_CASE("a prior in whose tail the posterior lies is not narrowed by a few draws") {

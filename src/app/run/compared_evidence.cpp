@@ -18,7 +18,7 @@ namespace {
 
 using json = nlohmann::json;
 
-constexpr double ruled_out = 10;  // nats below the best: no width of a prior brings it back
+constexpr double ruled_out = 10;  // nats below the best with every width that is tried
 
 /// Places in `fits` of those that stand for a model, the best one first.
 std::vector<std::size_t> standing(std::vector<std::string> const& models, std::vector<ComparedFit> const& fits) {
@@ -59,14 +59,16 @@ struct Widths {
 
 /// A log Bayes factor over half and twice the widths.
 struct Range {
-  double low, high;
-  double most = 0;  // what a single parameter changes
-  std::string by;   // which
-  std::vector<std::string> unknown;
+  double low = 0, high = 0;
+  double most = 0;      // what a single parameter changes
+  std::string by = {};  // which
+  std::vector<std::string> unknown = {};
+  bool all = true;     // whether that of all together is known
+  bool known = false;  // any
 };
 
 Range range_of(double log_bayes_factor, Widths const& of, Widths const& best) {
-  Range range{log_bayes_factor, log_bayes_factor, 0, {}, {}};
+  Range range{log_bayes_factor, log_bayes_factor};
   std::set<std::string> names;
   for (Widths const* each : {&of, &best})
     for (auto const& [name, change] : each->change) names.insert(name);
@@ -74,9 +76,13 @@ Range range_of(double log_bayes_factor, Widths const& of, Widths const& best) {
     for (double const factor : {0.5, 2.0}) {
       auto const mine = of.at(name, factor), other = best.at(name, factor);
       if (!mine || !other) {
-        if (!name.empty() && (range.unknown.empty() || range.unknown.back() != name)) range.unknown.push_back(name);
+        if (name.empty())
+          range.all = false;
+        else if (range.unknown.empty() || range.unknown.back() != name)
+          range.unknown.push_back(name);
         continue;
       }
+      range.known = true;
       double const change = *mine - *other;
       range.low = std::min(range.low, log_bayes_factor + change);
       range.high = std::max(range.high, log_bayes_factor + change);
@@ -127,12 +133,12 @@ std::vector<std::string> prior_width_notes(std::vector<std::string> const& model
     ComparedFit const &of = fits[places[i]], &best = fits[places.front()];
     double const factor = *of.log_evidence - *best.log_evidence;
     Widths const mine(evidences[places[i]]), other(evidences[places.front()]);
-    if (factor < -ruled_out || mine.change.empty() || other.change.empty()) continue;
+    if (mine.change.empty() || other.change.empty()) continue;
     Range const range = range_of(factor, mine, other);
-    std::string note = fmt::format(
-        "{} against {}: the log Bayes factor lies between {:.1f} and {:.1f} if priors are half or twice as wide, one or all of "
-        "them",
-        of.name, best.name, range.low, range.high);
+    if (range.high < -ruled_out || !range.known) continue;
+    std::string note =
+        fmt::format("{} against {}: the log Bayes factor lies between {:.1f} and {:.1f} if {} half or twice as wide", of.name,
+                    best.name, range.low, range.high, range.all ? "one prior or all priors are" : "one prior is");
     if (!range.by.empty()) note += fmt::format("; the prior of `{}` changes it most", range.by);
     if (!range.unknown.empty()) note += fmt::format("; the draws do not show what the prior of {} does", quoted(range.unknown));
     notes.push_back(std::move(note));

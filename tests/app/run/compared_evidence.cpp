@@ -60,8 +60,8 @@ TEST_CASE("a Bayes factor is given over half and twice the widths of the priors 
   auto const notes = prior_width_notes({"a", "b"}, fits, {widths("k3", 0.6, -0.7), widths("k", 0.3, -0.4)});
   REQUIRE(notes.size() == 1);
   CHECK(notes[0] ==
-        "linear against cubic: the log Bayes factor lies between -2.6 and -1.3 if priors are half or twice as wide, one or all of "
-        "them; the prior of `k3` changes it most");
+        "linear against cubic: the log Bayes factor lies between -2.6 and -1.3 if one prior or all priors are "
+        "half or twice as wide; the prior of `k3` changes it most");
   // A prior that both have is widened in both.
   auto const shared = prior_width_notes({"a", "b"}, fits, {widths("k", 0.6, -0.7), widths("k", 0.6, -0.7)});
   CHECK(shared[0].find("between -2.0 and -2.0") != std::string::npos);
