@@ -55,12 +55,17 @@ Work declare_calibrate(CLI::App& verb) {
   };
   auto const options = std::make_shared<Options>();
   options->run.output = "results/calibrate";
+  options->run.checkpoint_interval = 1;
   add_options(verb, *options, options->calibrate.task);
   verb.add_option("--replications", options->calibrate.replications, "number of records that are made and fitted")
       ->type_name("N")
       ->check(CLI::Range(10, 100000))
       ->capture_default_str();
   verb.add_flag("--resume", options->run.resume, "continue after an interruption; keep tasks that are complete");
+  verb.add_option("--checkpoint-interval", options->run.checkpoint_interval, "time between checkpoints")
+      ->type_name("SECONDS")
+      ->check(refuse_no_duration)
+      ->default_str("1");
   verb.add_option("--interrupt-after", options->run.interrupt_after, "interrupt after the n-th replication")->group("");
   return [options](Messages const& messages) {
     return with_session(messages, *options, [&](Session& session) { return calibrate(session, options->calibrate); });

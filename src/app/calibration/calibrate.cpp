@@ -22,6 +22,7 @@
 #include "diagnostics/verdict.hpp"
 #include "inference/table.hpp"
 #include "report/file/stored_files.hpp"
+#include "report/file/stored_report.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
@@ -65,9 +66,10 @@ class Calibration {
  private:
   Model const& model() const { return session_.file.models[static_cast<std::size_t>(plan_.what.model)]; }
 
+  // Of an interrupted run; else of a complete one of fewer or more replications, which have the same numbers.
   void restore() {
     std::shared_ptr<json const> const stored = checkpoint_.stored();
-    if (!stored) return;
+    if (!stored) return take_over();
     checkpoint_.reading([&] {
       std::size_t const quantities = ranked_quantities(session_, plan_).size();
       for (json const& each : stored->at("replications")) {
@@ -77,6 +79,16 @@ class Calibration {
         if (replication.number < replications_) done_.emplace(replication.number, std::move(replication));
       }
     });
+    session_.notices << fmt::format("{}: continuing after {} of {} replications\n", task_.name, done_.size(), replications_);
+  }
+
+  void take_over() {
+    auto const folder = session_.result_folder(task_);
+    if (!session_.options.resume || !complete(folder)) return;
+    Report const report = read_result(folder);
+    if (!report.calibration || report.seed != plan_.seed) return;
+    for (Replication const& each : report.calibration->records)
+      if (each.number < replications_) done_.emplace(each.number, each);
     session_.notices << fmt::format("{}: continuing after {} of {} replications\n", task_.name, done_.size(), replications_);
   }
 
@@ -139,9 +151,8 @@ class Calibration {
     failed_ += !replication.has_draws();
     done_.emplace(replication.number, std::move(replication));
     session_.progress.advance(done_.size(), failed_ == 0 ? "" : fmt::format("{} without a fit", failed_));
-    // A replication may take a hundredth of a second: what is lost at worst is one second of work.
-    auto const now = std::chrono::steady_clock::now();
-    if (done_.size() < static_cast<std::size_t>(replications_) && now - saved_ > std::chrono::seconds(1)) save();
+    std::chrono::duration<double> const since = std::chrono::steady_clock::now() - saved_;
+    if (done_.size() < static_cast<std::size_t>(replications_) && since.count() > session_.options.checkpoint_interval) save();
   }
 
   void save() {

@@ -14,7 +14,10 @@
 namespace sysid {
 namespace {
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; }
+/// Large where an optimum lies at a bound, with an sd of nothing.
+std::string number(double value) {
+  return !std::isfinite(value) ? "-" : std::fabs(value) < 100 ? fmt::format("{:.2f}", value) : significant(value, 1);
+}
 
 /// "91.5 ± 2.1": percent, with the sd that a share which is right would have.
 std::string coverage(double found, double expected, int n) {

@@ -49,6 +49,12 @@ std::vector<ComparedNumber> compared(Report const& first, Report const& second) 
   return all;
 }
 
+/// To two digits of its error.
+std::string to_error(double value, double error) {
+  double const digits = value == 0 || !(error > 0) ? 4 : std::ceil(std::log10(std::fabs(value) / error)) + 2;
+  return significant(value, static_cast<int>(std::clamp(digits, 2.0, 12.0)));
+}
+
 ReportTable number_table(std::vector<ComparedNumber> const& numbers, std::string const& first, std::string const& second,
                          bool with_optimum) {
   ReportTable table{"both back ends",
@@ -57,7 +63,7 @@ ReportTable number_table(std::vector<ComparedNumber> const& numbers, std::string
                     {"quantity", "unit", "", first, second, "error", "z"},
                     {}};
   for (ComparedNumber const& each : numbers)
-    table.rows.push_back({each.quantity, each.unit, each.what, significant(each.first, 5), significant(each.second, 5),
+    table.rows.push_back({each.quantity, each.unit, each.what, to_error(each.first, each.error), to_error(each.second, each.error),
                           significant(each.error, 2), fmt::format("{:.2f}", each.z())});
   return table;
 }

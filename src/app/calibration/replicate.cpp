@@ -72,7 +72,7 @@ std::vector<QuantityName> ranked_quantities(Session& session, CalibrationPlan co
   auto const space = parameter_space(compiled->model, plan.what.experiments);
   for (ParameterInfo const& each : space->infos())
     if (!each.coefficient) quantities.push_back({each.name, each.unit});
-  if (!is_optimum(*plan.backend)) quantities.push_back({"log likelihood", ""});
+  if (!is_optimum(*plan.backend)) quantities.push_back({"log likelihood", "", false});
   return quantities;
 }
 

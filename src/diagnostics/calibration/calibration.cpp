@@ -53,7 +53,7 @@ CalibratedQuantity calibrated(QuantityName const& quantity, std::size_t index, C
     out.mean_z = mean(z);
     out.sd_z = std::sqrt(sample_variance(z));
   }
-  if (n > 1) out.contraction = 1 - mean(variance) / sample_variance(truth);
+  if (n > 1 && quantity.parameter) out.contraction = 1 - mean(variance) / sample_variance(truth);
   int const values = calibration.draws + 1;
   out.chi_squared_p = chi_squared_p_value(out.ranks, values, calibration.bins);
   out.ecdf_p = ecdf_p_value(out.ranks, values);

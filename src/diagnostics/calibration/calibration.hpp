@@ -10,6 +10,7 @@ namespace sysid {
 /// One of `quantities` by name and unit.
 struct QuantityName {
   std::string name, unit;
+  bool parameter = true;  // has a prior, which data narrow
 };
 
 /// Tests all quantities over the replications that have draws. replications: how many were asked for; draws: that values are ranked

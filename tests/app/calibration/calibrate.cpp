@@ -74,7 +74,7 @@ TEST_CASE("a calibration writes a result that can be reported again, with a rank
   CHECK(calibration.at("with_draws") == 20);
   CHECK(calibration.at("quantities").size() == 3);
   CHECK(calibration.at("quantities").at("log likelihood").at("adjusted_p").get<double>() > 0.001);
-  CHECK(summary.at("data").at(0).at("scored") == 17);
+  CHECK(summary.at("data").at(0).at("scored") == 18);
   std::string const ranks = desk.file("posterior/ranks.csv");
   CHECK(std::count(ranks.begin(), ranks.end(), '\n') > 20);
   CHECK(ranks.find("slope_true,slope_rank,slope_below,slope_mean,slope_sd") != std::string::npos);
@@ -108,8 +108,13 @@ TEST_CASE("the bytes of a calibration depend neither on threads nor on interrupt
   };
   CHECK(numbers(twice) == numbers(once));
   CHECK(numbers(stopped) == numbers(once));
-  // Complete: kept as it is; of another number of replications: refused without --force.
   CHECK(stopped.run(model + fit).notices.find("complete, kept") != std::string::npos);
+  // More replications go on from those that there are.
+  CHECK(stopped.run(model + fit, 30).notices.find("continuing after 20 of 30 replications") != std::string::npos);
+  CalibrationDesk whole;
+  whole.run(model + fit, 30);
+  CHECK(stopped.file("posterior/ranks.csv") == whole.file("posterior/ranks.csv"));
+  CHECK_THROWS_AS(whole.run(model + fit, 30), UserError);
 }
 
 TEST_CASE("a checkpoint of a calibration that has been changed is refused") {
