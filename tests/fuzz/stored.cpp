@@ -1,6 +1,7 @@
 // fuzz_stored [COUNT [SEED [WHAT...]]]: so many changes of each stored file. WHAT: `example` (a result made here), a case of
-// tests/fuzz/checkpoints.cpp (`mh`), or a folder of results, which is copied; example and all cases unless given. Built with
-// sanitizers; ends with 1 and the bytes where a change was read as something else.
+// tests/fuzz/checkpoints.cpp (`mh`), a folder of results, which is copied, or a file, `stored.sysid`, which is run, and whose
+// results are then read by later tasks too, all or that of a task, `stored.sysid:found`; example and all cases unless given. Built
+// with sanitizers; ends with 1 and the bytes where a change was read as something else.
 #include "fuzz/stored.hpp"
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cstdlib>
 
 #include "fuzz/checkpoints.hpp"
+#include "fuzz/later_tasks.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
@@ -24,9 +26,21 @@ bool print(std::string const& name, fuzz::Outcome const& outcome) {
 }
 
 bool changes_of(std::filesystem::path const& folder, std::vector<fuzz::StoredFile> const& files, std::uint64_t count,
-                std::uint64_t seed) {
+                std::uint64_t seed, std::function<std::string()> const& later = {}) {
   for (fuzz::StoredFile const& file : files)
-    if (!print(file.name, fuzz::mutate(folder, file, count, seed))) return false;
+    if (!print(file.name, fuzz::mutate(folder, file, count, seed, later))) return false;
+  return true;
+}
+
+/// asked: of which task; empty: of all.
+bool changes_of_run(std::filesystem::path const& file, std::string const& asked, std::filesystem::path const& folder,
+                    std::uint64_t count, std::uint64_t seed) {
+  fuzz::LaterTasks const tasks(file, folder);
+  for (std::string const& name : tasks.names()) {
+    if (!asked.empty() && name != asked) continue;
+    std::printf("%s\n", name.c_str());
+    if (!changes_of(folder / name, fuzz::stored_files(folder / name), count, seed, [&] { return tasks.read(name); })) return false;
+  }
   return true;
 }
 
@@ -57,6 +71,9 @@ int main(int argument_count, char** arguments) {
       std::printf("  sealed again %11llu refused, %llu read; %llu whole runs\n",
                   static_cast<unsigned long long>(outcome.forged_refused), static_cast<unsigned long long>(outcome.forged_taken),
                   static_cast<unsigned long long>(outcome.whole));
+    } else if (std::string const suffix = ".sysid"; what.find(suffix) != what.npos) {
+      std::size_t const end = what.find(suffix) + suffix.size();
+      clean = changes_of_run(what.substr(0, end), what.substr(std::min(end + 1, what.size())), folder, count, seed);
     } else {
       std::filesystem::copy(what, folder);
       std::printf("%s\n", what.c_str());

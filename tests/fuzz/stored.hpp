@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,10 @@ struct Outcome {
   std::string fault;  // what was read in place of what was written, and from which bytes; empty: nothing
 };
 
-/// Changes `file` in `folder` `count` times, by the numbers of `seed`, reads it each time as the program does, and puts it back.
+/// Changes `file` in `folder` `count` times, by the numbers of `seed`, reads it each time as the program does, as a report and, if
+/// given, by `later`, which gives what it reads as text; and puts it back.
 /// Then also what stands behind checksums is changed and sealed again: of that anything may be read, but the reader must come back.
-Outcome mutate(std::filesystem::path const& folder, StoredFile const& file, std::uint64_t count, std::uint64_t seed);
+Outcome mutate(std::filesystem::path const& folder, StoredFile const& file, std::uint64_t count, std::uint64_t seed,
+               std::function<std::string()> const& later = {});
 
 }  // namespace sysid::fuzz

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/system/digest.hpp"
 #include "core/text/diagnostic.hpp"
@@ -62,7 +63,7 @@ std::string all_of(Report const& report) {
 
 /// What the file gives, as text; throws where it is refused.
 std::string read_back(fs::path const& folder, StoredFile const& file) {
-  if (file.name == "summary.json") return read_whole_summary(folder);
+  if (file.name == "summary.json") return read_whole_summary(folder) + all_of(read_result(folder));
   return all_of(read_result(folder));
 }
 
@@ -89,33 +90,51 @@ std::string summary_with(std::string summary, StoredFile const& file, std::strin
   return sealed_summary(with_zeros(std::move(summary)));
 }
 
-/// Behind the checksums: with every digest and checksum as a writer of these bytes would have left it, readers meet any bytes.
-void read_forged(fs::path const& folder, StoredFile const& file, std::string const& summary, std::string const& changed,
-                 Mutator& mutator) {
+using Reader = std::function<std::string()>;
+
+/// Nothing where the file is refused.
+std::optional<std::string> unless_refused(Reader const& reader) {
   try {
-    if (file.name.ends_with(".csv")) {
-      (void)parse_number_table(changed, file.name);
-      put(folder / "summary.json", summary_with(summary, file, changed));
-      put(folder / file.name, changed);
-      (void)read_result(folder);
-    } else if (file.name == "summary.json") {
-      std::string const text = with_zeros(changed);
-      if (text.find(unsealed()) == text.npos) return;
-      put(folder / file.name, sealed_summary(text));
-      (void)read_result(folder);
-    } else {
-      json const outer = json::from_cbor(file.bytes);
-      json::binary_t const& inner = outer.at("content").get_binary();
-      std::string const other = mutator(std::string(inner.begin(), inner.end()));
-      if (!is_plain_cbor(other)) return;
-      json const content = json::from_cbor(other, true, false);
-      if (content.is_discarded() || !moderate(content)) return;
-      put(folder / file.name, sealed_cbor(content, outer.at("form").get<int>()));
-      (void)read_back(folder, file);
-    }
+    return reader();
   } catch (UserError const&) {
+    return std::nullopt;
   } catch (IoError const&) {
-  } catch (std::bad_alloc const&) {
+    return std::nullopt;
+  }
+}
+
+/// Behind the checksums: with every digest and checksum as a writer of these bytes would have left it, readers meet any bytes.
+/// False: there are none that a reader would get to see.
+bool forge(fs::path const& folder, StoredFile const& file, std::string const& summary, std::string const& changed,
+           Mutator& mutator) {
+  if (file.name.ends_with(".csv")) {
+    put(folder / "summary.json", summary_with(summary, file, changed));
+    put(folder / file.name, changed);
+    return true;
+  }
+  if (file.name == "summary.json") {
+    std::string const text = with_zeros(changed);
+    if (text.find(unsealed()) == text.npos) return false;
+    put(folder / file.name, sealed_summary(text));
+    return true;
+  }
+  json const outer = json::from_cbor(file.bytes);
+  json::binary_t const& inner = outer.at("content").get_binary();
+  std::string const other = mutator(std::string(inner.begin(), inner.end()));
+  if (!is_plain_cbor(other)) return false;
+  json const content = json::from_cbor(other, true, false);
+  if (content.is_discarded() || !moderate(content)) return false;
+  put(folder / file.name, sealed_cbor(content, outer.at("form").get<int>()));
+  return true;
+}
+
+/// Whatever is read of it, every reader must come back.
+void read_forged(std::vector<Reader> const& readers) {
+  for (Reader const& reader : readers) {
+    try {
+      (void)unless_refused(reader);
+    } catch (std::bad_alloc const&) {
+    }
   }
 }
 
@@ -143,26 +162,28 @@ std::vector<StoredFile> stored_files(fs::path const& folder) {
   return files;
 }
 
-Outcome mutate(fs::path const& folder, StoredFile const& file, std::uint64_t count, std::uint64_t seed) {
+Outcome mutate(fs::path const& folder, StoredFile const& file, std::uint64_t count, std::uint64_t seed, Reader const& later) {
   Outcome outcome;
   Mutator mutator({seed, Purpose::test, std::hash<std::string>()(file.name), 0});
-  std::string const meant = read_back(folder, file);
+  std::vector<Reader> readers = {[&] { return read_back(folder, file); }};
+  if (later) readers.push_back(later);
+  std::vector<std::string> meant;
+  for (Reader const& reader : readers) meant.push_back(reader());
   std::string const summary = fs::exists(folder / "summary.json") ? bytes_of(folder / "summary.json") : "";
   for (std::uint64_t i = 0; i < count && outcome.fault.empty(); ++i) {
     std::string const changed = mutator(file.bytes);
     put(folder / file.name, changed);
-    try {
-      bool const same = read_back(folder, file) == meant;
-      ++(same ? outcome.same : outcome.refused);
-      if (!same) outcome.fault = file.name + ": read as something else: " + changed;
-      if (same && changed != file.bytes && file.name != "report.cbor")
-        outcome.fault = file.name + ": a change was not seen: " + changed;
-    } catch (UserError const&) {
-      ++outcome.refused;
-    } catch (IoError const&) {
-      ++outcome.refused;
+    bool seen = true, same = true;  // by all readers, to all of them
+    for (std::size_t r = 0; r < readers.size(); ++r) {
+      auto const read = unless_refused(readers[r]);
+      seen = seen && !read;
+      same = same && read;
+      if (read && *read != meant[r]) outcome.fault = file.name + ": read as something else: " + changed;
     }
-    read_forged(folder, file, summary, changed, mutator);
+    ++(same ? outcome.same : outcome.refused);
+    if (!seen && changed != file.bytes && file.name != "report.cbor")
+      outcome.fault = file.name + ": a change was not seen: " + changed;
+    if (forge(folder, file, summary, changed, mutator)) read_forged(readers);
     if (file.name.ends_with(".csv")) put(folder / "summary.json", summary);
   }
   put(folder / file.name, file.bytes);
