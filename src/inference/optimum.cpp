@@ -12,7 +12,7 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "inference/backend/checkpoint.hpp"
-#include "inference/weighted_draws.hpp"
+#include "inference/evidence/weighted_draws.hpp"
 #include "search/journal.hpp"
 #include "search/laplace.hpp"
 #include "search/refit.hpp"

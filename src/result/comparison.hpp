@@ -13,13 +13,14 @@ struct ComparedFit {
   int parameters = 0;                  // sampled or integrated out
   std::string noise;                   // "sigma 0.0881 N/m": what only the noise reads
   std::optional<double> log_evidence;  // nats
-  double evidence_error = 0;           // one standard error of it; 0 where none is known
+  std::optional<double> error;         // of it, one standard error; Laplace's approximation has none
+  std::string not_confirmed;           // why the evidence may be off by more than its error
   std::optional<double> rough;         // by so much its axes, or weighted draws, would have it larger, where that is not little
   bool rough_by_draws = false;
-  std::optional<double> probability;       // under equal odds of the models before the data
-  double probability_error = 0;            // that of the evidences, carried through
-  std::optional<double> log_bayes_factor;  // against the model of the highest evidence
-  double bayes_factor_error = 0;
+  std::optional<double> probability;        // under equal odds of the models before the data
+  std::optional<double> probability_error;  // the errors of the evidences carried through; nothing where one is not known
+  std::optional<double> log_bayes_factor;   // against the model of the highest evidence
+  std::optional<double> bayes_factor_error;
   std::string strength;  // of the evidence against it, in words; empty for that model
   std::string without;   // why it has no evidence
   bool pass = true;      // its checks

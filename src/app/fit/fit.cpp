@@ -24,12 +24,12 @@
 #include "app/session/task_checkpoint.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
-#include "diagnostics/prior_widths.hpp"
 #include "diagnostics/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/automatic.hpp"
 #include "inference/backend/checkpoint.hpp"
-#include "inference/evidence.hpp"
+#include "inference/evidence/evidence.hpp"
+#include "inference/evidence/prior_widths.hpp"
 #include "inference/table.hpp"
 #include "search/journal.hpp"
 #include "search/search.hpp"
@@ -265,7 +265,7 @@ class Fit {
     name_held(report, report.findings);
     if (!interrupted) {
       report.functions = likelihood_->functions(result, report.draws);
-      report.evidence = laplace_evidence(target, backend_->objective_kind, preparation_.modes, seed_, finished.extra);
+      report.evidence = evidence_of(result, target, finished.extra);
       report.criteria = criteria_of(finished);
       if (report.evidence->log_evidence) report.prior_widths = prior_widths(priors_of_choice(report), report.draws);
       report.noise = noise_parameters(likelihood_->space());
@@ -299,6 +299,13 @@ class Fit {
     return value;
   }
 
+  Evidence evidence_of(FitResult const& result, Target const& target, Ledger& extra) const {
+    EvidenceTask const asked{
+        what_.evidence, backend_->objective_kind, preparation_.modes, result.draws, preparation_.ledger.solves() + ledger_.solves(),
+        seed_};
+    return estimate_evidence(target, asked, extra, interrupt_requested);
+  }
+
   // Priors, data, draws and what sampling itself has found. What is wrong with the record comes before what follows from it.
   Report begin(FitResult const& result) {
     Report report = begin_report(
@@ -325,6 +332,7 @@ class Fit {
     if (!preparation_.standardised.empty())
       report.settings.emplace_back("non_centred", fmt::format("{}", fmt::join(non_centred(), ", ")));
     if (what_.near) report.settings.emplace_back("search", search_text(session_.file, what_));
+    if (what_.evidence != EvidenceMethod::automatic) report.settings.emplace_back("evidence", std::string(word(what_.evidence)));
     if (model_.integrated()) add_solver(preparation_.solver, report.settings);
     if (model_.dynamics == Dynamics::discrete)
       report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));

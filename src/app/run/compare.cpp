@@ -161,7 +161,11 @@ ComparedFit compared_fit(StoredSummary const& result) {
   json const evidence = summary.value("evidence", json::object());
   if (evidence.contains("log_evidence") && evidence["log_evidence"].is_number()) {
     fit.log_evidence = evidence["log_evidence"].get<double>();
-    fit.evidence_error = evidence.value("standard_error", 0.0);
+    fit.not_confirmed = evidence.value("not_confirmed", "");
+    if (evidence.contains("standard_error")) {  // what the axes say is of Laplace's approximation
+      fit.error = evidence["standard_error"].get<double>();
+      return fit;
+    }
     double const along = evidence.value("along_axes", 0.0);
     json const by_draws = evidence.value("by_draws", json(along));  // absent: they confirm it, or were not drawn
     double const off = by_draws.is_number() ? by_draws.get<double>() : along;

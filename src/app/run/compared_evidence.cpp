@@ -97,26 +97,29 @@ void weigh_models(std::vector<std::string> const& models, std::vector<ComparedFi
   std::vector<std::size_t> const places = standing(models, fits);
   if (places.empty()) return;
   ComparedFit const best = fits[places.front()];
-  double sum = 0, square = 0;  // of P_j s_j, once the first is known
-  for (std::size_t const p : places) sum += elementary::exp(*fits[p].log_evidence - *best.log_evidence);
+  double sum = 0, square = 0;  // square: of P_j s_j
+  bool known = true;           // all s_j
   std::map<std::string, std::size_t> standing_for;
+  for (std::size_t const p : places) sum += elementary::exp(*fits[p].log_evidence - *best.log_evidence);
   for (std::size_t const p : places) {
     standing_for[models[p]] = p;
-    double const part = elementary::exp(*fits[p].log_evidence - *best.log_evidence) / sum * fits[p].evidence_error;
+    known = known && fits[p].error;
+    double const part = elementary::exp(*fits[p].log_evidence - *best.log_evidence) / sum * fits[p].error.value_or(0);
     square += part * part;
   }
   std::vector<ComparedFit> const stored = fits;
   for (std::size_t f = 0; f < fits.size(); ++f) {
-    if (!fits[f].log_evidence) continue;
+    ComparedFit& fit = fits[f];
+    if (!fit.log_evidence) continue;
     ComparedFit const& one = stored[standing_for.at(models[f])];
-    bool const is_best = standing_for.at(models[f]) == places.front();
-    double const share = elementary::exp(*one.log_evidence - *best.log_evidence) / sum, error = one.evidence_error;
+    double const share = elementary::exp(*one.log_evidence - *best.log_evidence) / sum, error = one.error.value_or(0);
     double const others = std::max(0.0, square - share * share * error * error);
-    fits[f].probability = share;
-    fits[f].probability_error = share * std::sqrt((1 - share) * (1 - share) * error * error + others);
-    fits[f].log_bayes_factor = is_best ? 0 : *one.log_evidence - *best.log_evidence;
-    fits[f].bayes_factor_error = is_best ? 0 : std::hypot(error, best.evidence_error);
-    if (!is_best) fits[f].strength = evidence_strength(*fits[f].log_bayes_factor);
+    fit.probability = share;
+    if (known) fit.probability_error = share * std::sqrt((1 - share) * (1 - share) * error * error + others);
+    fit.log_bayes_factor = *one.log_evidence - *best.log_evidence;
+    if (standing_for.at(models[f]) == places.front()) continue;
+    if (one.error && best.error) fit.bayes_factor_error = std::hypot(error, *best.error);
+    fit.strength = evidence_strength(*fit.log_bayes_factor);
   }
 }
 

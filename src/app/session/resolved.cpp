@@ -78,10 +78,11 @@ std::string resolved_fit(Session const& session, Task const& task, FitTask const
   return fmt::format(
       "# all settings of `{}`, defaults included; paths are relative to the folder of the original file\n{}\n{} = fit {} to {} "
       "with {}, "
-      "{}{}, seed = {}\n",
+      "{}{}{}, seed = {}\n",
       task.name, without_tasks(session, &what), task.name, model.name, data_names(session.file, what.experiments),
       settings_text(what.backend, settings), simulation_text(model, what, solver_words),
-      what.near ? ", search = " + search_text(session.file, what) : std::string(), seed);
+      what.near ? ", search = " + search_text(session.file, what) : std::string(),
+      what.evidence == EvidenceMethod::automatic ? std::string() : fmt::format(", evidence = {}", word(what.evidence)), seed);
 }
 
 std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed) {

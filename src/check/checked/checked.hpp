@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/setting/evidence_method.hpp"
 #include "core/setting/settings.hpp"
 #include "data/experiment.hpp"
 #include "data/start_rule.hpp"
@@ -103,6 +104,7 @@ struct FitTask {
   SolverSettings solver;
   bool refine_solver = true;  // the tolerance guard chooses how fine the solver is, from `solver` on
   std::optional<int> near;    // index of the fit at whose draws the search for modes begins; absent: it begins everywhere
+  EvidenceMethod evidence = EvidenceMethod::automatic;
   std::optional<std::uint64_t> seed;
 };
 

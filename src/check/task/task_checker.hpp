@@ -53,6 +53,8 @@ class TaskChecker {
   FitTask fit();
   // `search = near(posterior)`, or `search = everywhere`.
   void search(ast::Option const& option, std::optional<int>& near);
+  // `evidence = bridge`.
+  void evidence(ast::Option const& option, EvidenceMethod& method);
   // One step ahead, and no differential equations beside it.
   void suit_processes(FitTask const& task, Model const& model);
   void suit_scales(Model const& model);

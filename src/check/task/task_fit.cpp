@@ -22,6 +22,8 @@ FitTask TaskChecker::fit() {
     std::string const key = key_of(option);
     if (option.key && key == "search") {
       if (options_.fresh(option, key)) search(option, task.near);
+    } else if (option.key && key == "evidence") {
+      if (options_.fresh(option, key)) evidence(option, task.evidence);
     } else if (!simulation_option(option, key, models, task) &&
                !backend_option(option, key, backends_.fitting, task.backend, task.settings)) {
       options_.unknown(option, task_option_names("fit"));
@@ -47,6 +49,14 @@ void TaskChecker::search(ast::Option const& option, std::optional<int>& near) {
                                          "search = near(posterior)"));
   else
     near = fitted_task({{fit->span}, fit->name.text}, false);
+}
+
+void TaskChecker::evidence(ast::Option const& option, EvidenceMethod& method) {
+  std::string const given = as_word(option.value).value_or("");
+  if (auto const found = evidence_method(given))
+    method = *found;
+  else
+    diagnostics_.add(errors::option_choice(option.value.span, "evidence", given, evidence_words()));
 }
 
 // The mode over a function's coefficients and their scale together is not near where the posterior of the scale lies.

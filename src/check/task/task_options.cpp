@@ -18,6 +18,7 @@ constexpr TaskOptionRow rows[] = {
      "as_written one_step free_run"},
     {"search", "search = near(posterior)",
      "where the search for modes starts: at draws of the prior, or where an earlier fit ended", "everywhere near"},
+    {"evidence", "evidence = bridge", "how the evidence of the model is computed", "auto importance bridge smc laplace none"},
     {"seed", "seed = 1", "seed of all random numbers; if not given, one is drawn and printed", {}},
     {"noise", "noise = 1 [percent]",
      "noise of the simulated channels: a percentage of each channel's standard deviation without noise, or `model`: the noise that "
@@ -42,7 +43,7 @@ using Names = std::vector<std::string_view>;
 std::map<TaskKind, Names> const& by_kind() {
   static std::map<TaskKind, Names> const all = {
       {TaskKind::simulate, {"values", "input", "noise", "samples", "rate", "step", "solver", "substeps", "seed", "file"}},
-      {TaskKind::fit, {"start", "solver", "substeps", "prediction", "search", "seed"}},
+      {TaskKind::fit, {"start", "solver", "substeps", "prediction", "search", "evidence", "seed"}},
       {TaskKind::select, {"start", "solver", "substeps", "prediction", "seed"}},
       {TaskKind::discover, {"noise", "top", "candidates", "refit", "seed"}},
       {TaskKind::predict, {"draws", "redraw", "start", "prediction", "seed"}}};

@@ -25,6 +25,7 @@ enum class Purpose : std::uint32_t {
   exchange = 15,     // exchanges between replicas of a chain
   bootstrap = 16,    // weights of samples in a Bayesian bootstrap
   calibration = 17,  // records that are made to see whether a fit finds their true values
+  evidence = 18,     // draws of which an evidence is estimated
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

@@ -79,8 +79,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportTable, title, caption, header, rows)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, name, unit, mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail, mcse_mean,
                                    coefficient)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Mode, declared, sd, log_density, log_mass, share, hits)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SampledEvidence, state, above, error)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evidence, log_evidence, reason, along_axes, modes, of_likelihood, sampled)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SampledEvidence, state, above, error, effective, draws)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evidence, log_evidence, reason, along_axes, modes, of_likelihood, sampled, method, error,
+                                   effective, simulations, laplace, without_laplace, doubt)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LogScore, sum, error, samples, monte_carlo_error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScoreAtMode, log_likelihood, parameters, samples, of_likelihood)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deviance, mean, variance, at_mean)

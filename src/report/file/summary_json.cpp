@@ -76,11 +76,19 @@ Json named_values(std::vector<double> const& values, std::vector<std::string> co
 /// What a fit says of its model as a whole.
 Json evidence(Evidence const& evidence) {
   if (!evidence.log_evidence) return {{"log_evidence", nullptr}, {"reason", evidence.reason}};
-  Json out = {{"log_evidence", *evidence.log_evidence},
-              {"method", "laplace"},
-              {"along_axes", std::round(1e3 * evidence.along_axes) / 1e3 + 0.0},  // how rough the other is, no more; never -0
-              {"modes", evidence.modes}};
+  Json out = {{"log_evidence", *evidence.log_evidence}, {"method", word(evidence.method)}};
+  if (evidence.error) {
+    out["standard_error"] = *evidence.error;
+    out["effective_draws"] = std::round(evidence.effective);
+    out["simulations"] = evidence.simulations;
+  }
+  if (!evidence.doubt.empty()) out["not_confirmed"] = evidence.doubt;
+  out["laplace"] = evidence.laplace ? Json(*evidence.laplace) : Json(nullptr);
+  if (!evidence.laplace && !evidence.without_laplace.empty()) out["without_laplace"] = evidence.without_laplace;
+  out["along_axes"] = std::round(1e3 * evidence.along_axes) / 1e3 + 0.0;  // how rough Laplace's is, no more; never -0
+  out["modes"] = evidence.modes;
   SampledEvidence const& sampled = evidence.sampled;
+  if (evidence.method != EvidenceMethod::laplace) return out;
   bool const known = sampled.state == SampledEvidence::State::known;
   if (sampled.differs() || (known && std::fabs(evidence.along_axes) > 0.1)) {
     out["by_draws"] = std::round(1e3 * sampled.above) / 1e3 + 0.0;

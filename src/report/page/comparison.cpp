@@ -10,6 +10,7 @@
 
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "report/text/report_text.hpp"
 #include "result/report.hpp"
 
 namespace sysid {
@@ -21,10 +22,10 @@ std::string checks_text(bool pass, int warnings) {
 }
 
 /// To that many decimals, never "-0", with an error that is not zero at them.
-std::string with_error(double value, double error, int decimals) {
+std::string with_error(double value, std::optional<double> error, int decimals) {
   double const unit = std::pow(10.0, -decimals);
   std::string text = fmt::format("{:.{}f}", std::fabs(value) < 0.5 * unit ? 0 : value, decimals);
-  if (error >= 0.5 * unit) text += fmt::format(" ± {:.{}f}", error, decimals);
+  if (error.value_or(0) >= 0.5 * unit) text += fmt::format(" ± {:.{}f}", *error, decimals);
   return text;
 }
 
@@ -34,7 +35,7 @@ ReportTable fits_table(Comparison const& comparison) {
   table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "strength", "probability", "checks"};
   for (ComparedFit const& fit : comparison.fits) {
     table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
-                          fit.log_evidence ? with_error(*fit.log_evidence, fit.evidence_error, 1) : "-",
+                          fit.log_evidence ? evidence_number(*fit.log_evidence, fit.error) : "-",
                           fit.log_bayes_factor ? with_error(*fit.log_bayes_factor, fit.bayes_factor_error, 1) : "-",
                           fit.strength.empty() ? "-" : fit.strength,
                           fit.probability ? with_error(*fit.probability, fit.probability_error, 3) : "-",
@@ -45,6 +46,7 @@ ReportTable fits_table(Comparison const& comparison) {
       note =
           fmt::format("{}: its evidence is approximate: {} changes it by {:+.1f}", fit.name,
                       fit.rough_by_draws ? "the estimate by weighted draws" : "integration along the axes of its mode", *fit.rough);
+    if (!fit.not_confirmed.empty()) note = fmt::format("{}: its evidence is not confirmed: {}", fit.name, fit.not_confirmed);
     if (!note.empty()) table.caption += (table.caption.empty() ? "" : "\n") + note;
   }
   return table;
@@ -59,7 +61,7 @@ ReportTable scores_table(ComparedScores const& scores) {
   table.header = {"fit", "model", "elpd", "error", "difference", "error of difference", "stacking weight", "pseudo-BMA+ weight"};
   for (ComparedScore const& fit : scores.fits) {
     table.rows.push_back({fit.name, fit.model, fmt::format("{:.1f}", fit.elpd), fmt::format("{:.1f}", fit.error),
-                          with_error(fit.difference, 0, 1), fmt::format("{:.1f}", fit.difference_error),
+                          with_error(fit.difference, {}, 1), fmt::format("{:.1f}", fit.difference_error),
                           fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
     if (fit.doubtful > 0 && !scores.future)
       table.caption += fmt::format("{}{}: Pareto's k is above 0.7 for {}, so its elpd is too high",
@@ -141,13 +143,13 @@ std::string comparison_json(Comparison const& comparison) {
                   {"parameters", fit.parameters},
                   {"noise", fit.noise},
                   {"log_evidence", number(fit.log_evidence)},
-                  {"standard_error", fit.evidence_error},
+                  {"standard_error", number(fit.error)},
                   {"log_bayes_factor", number(fit.log_bayes_factor)},
-                  {"log_bayes_factor_error", fit.bayes_factor_error},
+                  {"log_bayes_factor_error", number(fit.bayes_factor_error)},
                   {"strength", fit.strength},
                   {"rough", number(fit.rough)},
                   {"probability", number(fit.probability)},
-                  {"probability_error", fit.probability_error},
+                  {"probability_error", number(fit.probability_error)},
                   {"pass", fit.pass},
                   {"warnings", fit.warnings}};
     if (!fit.log_evidence) entry["reason"] = fit.without;

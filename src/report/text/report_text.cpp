@@ -3,25 +3,43 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace sysid {
 
-std::string evidence_text(Evidence const& evidence) {
-  constexpr double rough = 0.5;  // nats: below, no comparison turns on it
-  if (!evidence.log_evidence) return evidence.of_likelihood ? "" : fmt::format("no log evidence: {}", evidence.reason);
+namespace {
+
+constexpr double rough = 0.5;  // nats: below, no comparison turns on it
+
+// What the checks of Laplace's approximation say, where it is the result.
+std::string doubt_of_laplace(Evidence const& evidence) {
   SampledEvidence const& sampled = evidence.sampled;
-  std::string const doubt =
-      sampled.differs() ? fmt::format(", approximate: weighted draws change it by {:+.2f}", sampled.above)
-      : sampled.state == SampledEvidence::State::unknown
-          ? fmt::format(", approximate: weighted draws do not confirm it{}",
-                        std::fabs(evidence.along_axes) < rough
-                            ? ""
-                            : fmt::format("; integration along its axes changes it by {:+.1f}", evidence.along_axes))
-      : sampled.state == SampledEvidence::State::none && std::fabs(evidence.along_axes) >= rough
-          ? fmt::format(", approximate: integration along its axes changes it by {:+.1f}", evidence.along_axes)
-          : "";
-  return fmt::format("log evidence {:.1f} (Laplace{})", *evidence.log_evidence, doubt);
+  if (sampled.differs()) return fmt::format(", approximate: weighted draws change it by {:+.2f}", sampled.above);
+  std::string const along = std::fabs(evidence.along_axes) < rough
+                                ? ""
+                                : fmt::format("integration along its axes changes it by {:+.1f}", evidence.along_axes);
+  if (sampled.state == SampledEvidence::State::unknown)
+    return ", approximate: weighted draws do not confirm it" + (along.empty() ? "" : "; " + along);
+  return sampled.state == SampledEvidence::State::none && !along.empty() ? ", approximate: " + along : "";
+}
+
+}  // namespace
+
+std::string evidence_number(double log_evidence, std::optional<double> error) {
+  if (!error) return fmt::format("{:.1f}", log_evidence);
+  constexpr double shown = 0.005;  // smaller ones would be written as 0
+  return fmt::format("{:.{}f} ± {:.{}f}", log_evidence, *error < 0.95 ? 2 : 1, std::max(*error, shown), *error < 0.95 ? 2 : 1);
+}
+
+std::string evidence_text(Evidence const& evidence) {
+  if (!evidence.log_evidence) return evidence.of_likelihood ? "" : fmt::format("no log evidence: {}", evidence.reason);
+  std::string text =
+      fmt::format("log evidence {} ({}", evidence_number(*evidence.log_evidence, evidence.error), title(evidence.method));
+  if (evidence.method == EvidenceMethod::laplace) text += doubt_of_laplace(evidence);
+  if (evidence.disagrees_with_laplace()) text += fmt::format("; Laplace's approximation gives {:.1f}", *evidence.laplace);
+  if (!evidence.doubt.empty()) text += "; not confirmed: " + evidence.doubt;
+  return text + ")";
 }
 
 std::string_view severity_word(Severity severity) {

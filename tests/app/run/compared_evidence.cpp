@@ -11,11 +11,11 @@ using json = nlohmann::json;
 
 namespace {
 
-ComparedFit fit(std::string name, double log_evidence, double error) {
+ComparedFit fit(std::string name, double log_evidence, std::optional<double> error) {
   ComparedFit result;
   result.name = std::move(name);
   result.log_evidence = log_evidence;
-  result.evidence_error = error;
+  result.error = error;
   return result;
 }
 
@@ -37,15 +37,21 @@ TEST_CASE("errors of evidences are carried through to probabilities and Bayes fa
   CHECK(*fits[2].probability == *fits[0].probability);  // of one model, which counts once
   CHECK(*fits[0].probability + *fits[1].probability == doctest::Approx(1));
   // Of two models dP = P (1 - P) d(log Z - log Z').
-  CHECK(fits[0].probability_error == doctest::Approx(p * (1 - p) * std::hypot(0.1, 0.2)));
-  CHECK(fits[1].probability_error == doctest::Approx(p * (1 - p) * std::hypot(0.1, 0.2)));
+  CHECK(*fits[0].probability_error == doctest::Approx(p * (1 - p) * std::hypot(0.1, 0.2)));
+  CHECK(*fits[1].probability_error == doctest::Approx(p * (1 - p) * std::hypot(0.1, 0.2)));
   CHECK(*fits[1].log_bayes_factor == doctest::Approx(-2));
-  CHECK(fits[1].bayes_factor_error == doctest::Approx(std::hypot(0.1, 0.2)));
+  CHECK(*fits[1].bayes_factor_error == doctest::Approx(std::hypot(0.1, 0.2)));
   CHECK(fits[1].strength == "positive");
   CHECK(fits[0].strength.empty());
   CHECK(*fits[0].log_bayes_factor == 0);
   CHECK_FALSE(fits[3].probability);
   CHECK_FALSE(fits[3].log_bayes_factor);
+  // One error that is not known leaves the others unknown.
+  std::vector<ComparedFit> of_map = {fit("cubic", 10, 0.1), fit("linear", 8, {})};
+  weigh_models({"a", "b"}, of_map);
+  CHECK(*of_map[0].probability == doctest::Approx(p));
+  CHECK_FALSE(of_map[0].probability_error);
+  CHECK_FALSE(of_map[1].bayes_factor_error);
 }
 
 TEST_CASE("the strength of a Bayes factor is in the words of Kass and Raftery, at 3, 20 and 150 to one") {

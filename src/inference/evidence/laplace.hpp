@@ -1,4 +1,4 @@
-// The evidence of a model: likelihood times prior, integrated over the parameters, from the modes that a fit has found.
+// The evidence of a model by Laplace's approximation, from the modes that a fit has found.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -24,7 +24,8 @@ namespace sysid {
 ///
 /// along_axes: the density along each axis of the ellipsoid, through its mode, by Gauss-Hermite quadrature of five points against
 /// the normal one, logs summed over the axes.
+/// weighted: whether weighted draws check the number (`sampled`).
 Evidence laplace_evidence(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
-                          Ledger& ledger, std::function<bool()> const& stop = {});
+                          Ledger& ledger, std::function<bool()> const& stop = {}, bool weighted = true);
 
 }  // namespace sysid

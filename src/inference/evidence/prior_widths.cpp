@@ -1,5 +1,5 @@
 // Ratios of densities as one kernel for each parameter, run over all draws.
-#include "diagnostics/prior_widths.hpp"
+#include "inference/evidence/prior_widths.hpp"
 
 #include <algorithm>
 #include <array>

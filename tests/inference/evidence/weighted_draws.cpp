@@ -1,5 +1,5 @@
 // Weighted draws against posteriors that are known, and what `map` and the evidence make of them.
-#include "inference/weighted_draws.hpp"
+#include "inference/evidence/weighted_draws.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "inference/evidence.hpp"
+#include "inference/evidence/laplace.hpp"
 #include "inference/optimum.hpp"
 #include "inference/targets.hpp"
 #include "search/search.hpp"

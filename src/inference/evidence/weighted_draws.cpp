@@ -1,13 +1,12 @@
 // Importance sampling from a mixture that adapts.
-#include "inference/weighted_draws.hpp"
+#include "inference/evidence/weighted_draws.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
-#include "linear_algebra/decompositions.hpp"
+#include "inference/evidence/component.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 #include "search/refit.hpp"
@@ -20,80 +19,52 @@ constexpr double nearer = 0.5;      // widths: modes so near have come together
 constexpr int most_parameters = 40;
 constexpr int draws_per_round = 300;  // even: pairs
 constexpr int most_rounds = 6;
-constexpr double freedom = 4;                                    // of Student's t
 constexpr std::uint64_t first_step = 4'000'000, scale_step = 4;  // of Purpose::start
 
-/// A normal distribution and a Student's t of one place and shape, each with half of the weight.
-struct Component {
+/// Each with half of the weight of normal and t.
+struct WeightedComponent {
   double weight;  // draws
-  Eigen::VectorXd centre;
-  Eigen::MatrixXd root;  // lower, root root' the covariance
-  double log_volume;     // log |det root|
-
-  Component(double weight, Eigen::VectorXd centre, Eigen::MatrixXd const& covariance)
-      : weight(weight), centre(std::move(centre)), root(cholesky_or_diagonal(covariance)), log_volume(0) {
-    for (double const each : root.diagonal()) log_volume += elementary::log(each);
-  }
+  Component shape;
 
   struct Density {
     double normal, mixed;
   };
 
   Density density(Eigen::VectorXd const& u) const {
-    auto const n = static_cast<double>(u.size());
-    Eigen::VectorXd z = u - centre;
-    for (Eigen::Index i = 0; i < z.size(); ++i) {
-      for (Eigen::Index j = 0; j < i; ++j) z(i) -= root(i, j) * z(j);
-      z(i) /= root(i, i);
-    }
-    double const square = z.squaredNorm();
-    double const normal = -0.5 * n * elementary::log(2 * std::numbers::pi) - 0.5 * square;
-    double const student = std::lgamma((freedom + n) / 2) - std::lgamma(freedom / 2) -
-                           0.5 * n * elementary::log(freedom * std::numbers::pi) -
-                           0.5 * (freedom + n) * elementary::log1p(square / freedom);
-    double const of_normal = elementary::exp(normal - log_volume);
-    return {of_normal, 0.5 * (of_normal + elementary::exp(student - log_volume))};
+    Component::LogDensity const logs = shape.log_density(u);
+    double const normal = elementary::exp(logs.normal);
+    return {normal, 0.5 * (normal + elementary::exp(logs.student))};
   }
 };
 
 struct Population {
   std::vector<Eigen::VectorXd> places;
   std::vector<double> log_density;
-  std::vector<Component> mixture;
+  std::vector<WeightedComponent> mixture;
   std::vector<double> weight;         // over the largest
   std::vector<double> normal_weight;  // that they would have if the posterior were the normal distributions of the modes
   double largest = 0;                 // its logarithm
 };
 
 /// Pairs mirrored at the centre of their component.
-void add_round(Objective const& objective, std::vector<Component> const& components, int pairs, std::uint64_t seed, int round,
-               Population& population, Ledger& ledger) {
+void add_round(Objective const& objective, std::vector<WeightedComponent> const& components, int pairs, std::uint64_t seed,
+               int round, Population& population, Ledger& ledger) {
   std::vector<Eigen::VectorXd> places;
   std::size_t which = 0;
   double passed = components.front().weight, total = 0;
-  for (Component const& each : components) total += each.weight;
+  for (WeightedComponent const& each : components) total += each.weight;
   for (int pair = 0; pair < pairs; ++pair) {
     while (which + 1 < components.size() && (pair + 0.5) / pairs * total > passed) passed += components[++which].weight;
-    Component const& from = components[which];
+    Component const& from = components[which].shape;
     Stream stream({seed, Purpose::start, static_cast<std::uint64_t>(pair), first_step + static_cast<std::uint64_t>(round)});
-    Eigen::VectorXd z(from.centre.size());
-    for (double& each : z) each = stream.normal();
-    if (pair % 2 == 1) {
-      double square = 0;
-      for (int i = 0; i < static_cast<int>(freedom); ++i) {
-        double const each = stream.normal();
-        square += each * each;
-      }
-      z *= std::sqrt(freedom / square);
-    }
-    Eigen::VectorXd const move = from.root * z;
+    Eigen::VectorXd const move = from.move(stream, pair % 2 == 1);
     places.push_back(from.centre + move);
     places.push_back(from.centre - move);
   }
   std::vector<double> const density = log_density_in_blocks(objective, to_lanes(places), ledger);
   population.places.insert(population.places.end(), places.begin(), places.end());
   population.log_density.insert(population.log_density.end(), density.begin(), density.end());
-  for (Component each : components) {
+  for (WeightedComponent each : components) {
     each.weight *= 2 * pairs / total;
     population.mixture.push_back(std::move(each));
   }
@@ -108,8 +79,8 @@ void weigh(Population& population, std::size_t modes) {
   for (std::size_t k = 0; k < population.places.size(); ++k) {
     double mixture = 0, normal = 0;
     for (std::size_t m = 0; m < population.mixture.size(); ++m) {
-      Component const& each = population.mixture[m];
-      Component::Density const density = each.density(population.places[k]);
+      WeightedComponent const& each = population.mixture[m];
+      WeightedComponent::Density const density = each.density(population.places[k]);
       mixture += each.weight * density.mixed / static_cast<double>(population.places.size());
       if (m < modes) normal += each.weight * density.normal / of_modes;
     }
@@ -144,7 +115,7 @@ Moments moments_of(std::vector<Eigen::VectorXd> const& points, std::vector<doubl
 
 /// The next round's: where the weighted draws are. Weights that stand out are cut, so that a single draw is no population
 /// (Ionides 2008).
-Component adapted(Population const& population, double weight) {
+WeightedComponent adapted(Population const& population, double weight) {
   double mean = 0;
   for (double const each : population.weight) mean += each / static_cast<double>(population.weight.size());
   double const most = mean * std::sqrt(static_cast<double>(population.weight.size()));
@@ -152,8 +123,8 @@ Component adapted(Population const& population, double weight) {
   for (double const each : population.weight) cut.push_back(std::min(each, most));
   Moments const moments = moments_of(population.places, cut);
   // A few draws span no volume: something of the first shape is left.
-  Component const& first = population.mixture.front();
-  return {weight, moments.mean, moments.covariance + 0.01 * first.root * first.root.transpose()};
+  Component const& first = population.mixture.front().shape;
+  return {weight, Component(moments.mean, moments.covariance + 0.01 * first.root * first.root.transpose())};
 }
 
 double sum_of(std::vector<double> const& values) {
@@ -253,15 +224,16 @@ WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& mode
   Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
   double heaviest = -infinity;
   for (Mode const& mode : modes) heaviest = std::max(heaviest, mode.log_mass);
-  std::vector<Component> components;
+  std::vector<WeightedComponent> components;
   for (Mode const& mode : modes)
-    components.emplace_back(std::max(0.05, elementary::exp(mode.log_mass - heaviest)), theta_of(mode), covariance_of(mode));
+    components.push_back(
+        {std::max(0.05, elementary::exp(mode.log_mass - heaviest)), Component(theta_of(mode), covariance_of(mode))});
   constexpr int pairs = draws_per_round / 2;
   Population population;
   WeightedDraws result;
   for (int round = 0; round < most_rounds && !(stop && stop()); ++round) {
-    add_round(objective, round == 0 ? components : std::vector<Component>{adapted(population, 1)}, pairs, seed, round, population,
-              ledger);
+    add_round(objective, round == 0 ? components : std::vector<WeightedComponent>{adapted(population, 1)}, pairs, seed, round,
+              population, ledger);
     weigh(population, components.size());
     if (!std::isfinite(population.largest)) return {};
     result = summarised(target, modes, population);

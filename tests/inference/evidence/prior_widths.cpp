@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/numeric/random.hpp"
-#include "diagnostics/prior_widths.hpp"
+#include "inference/evidence/prior_widths.hpp"
 
 using namespace sysid;
 

@@ -1,5 +1,5 @@
 // Laplace's approximation, mode by mode, and an estimate of its error.
-#include "inference/evidence.hpp"
+#include "inference/evidence/laplace.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
-#include "inference/weighted_draws.hpp"
+#include "inference/evidence/weighted_draws.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
@@ -64,7 +64,7 @@ SampledEvidence by_draws(double laplace, WeightedDraws const& draws) {
   if (draws.draws == 0) return {};
   bool const known = draws.tell() && draws.error < precise;
   return {known ? SampledEvidence::State::known : SampledEvidence::State::unknown, known ? draws.log_evidence - laplace : 0,
-          known ? draws.error : 0};
+          known ? draws.error : 0, draws.effective, static_cast<std::uint64_t>(draws.draws)};
 }
 
 /// log of the integral along each axis of a mode over that of the normal density, summed.
@@ -102,7 +102,7 @@ double along_axes(Objective const& objective, Mode const& mode, Ledger& ledger) 
 }  // namespace
 
 Evidence laplace_evidence(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
-                          Ledger& ledger, std::function<bool()> const& stop) {
+                          Ledger& ledger, std::function<bool()> const& stop, bool weighted) {
   if (objective_kind == ObjectiveKind::likelihood)
     return {{}, "only the likelihood was maximised, but an evidence is an average over the prior", 0, 0, true};
   if (modes.empty() || target.dimension() == 0) return {{}, "no mode was searched for", 0, 0};
@@ -121,7 +121,7 @@ Evidence laplace_evidence(Target const& target, ObjectiveKind objective_kind, st
   for (Mode const& mode : found) sum += elementary::exp(mode.log_mass - best->log_mass);
   Evidence evidence{best->log_mass + elementary::log(sum), "", along_axes(objective, *best, ledger),
                     static_cast<int>(found.size())};
-  evidence.sampled = by_draws(*evidence.log_evidence, weighted_draws(target, found, seed, ledger, stop));
+  if (weighted) evidence.sampled = by_draws(*evidence.log_evidence, weighted_draws(target, found, seed, ledger, stop));
   return evidence;
 }
 
