@@ -200,6 +200,26 @@ bool kept(Session const& session, Task const& task, CalibrateOptions const& opti
   });
 }
 
+/// Those that can be calibrated: of all of the file the others are skipped with a notice, one that is named alone is refused.
+std::vector<int> possible_fits(Session& session, std::vector<int> const& fits) {
+  std::vector<int> possible;
+  Diagnostics refused;
+  for (int const index : fits) {
+    Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
+    FitTask const& what = std::get<FitTask>(task.what);
+    Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
+    auto const why = RecordMaker::refusal(
+        session, task, what, load_experiments(session, what.experiments, model, what.start, what.prediction, what.solver));
+    if (!why)
+      possible.push_back(index);
+    else
+      refused.add(*why);
+  }
+  if (possible.empty()) throw UserError(refused.all().front());
+  for (Diagnostic const& each : refused.all()) session.notices << "skipped: " << each.message << '\n';
+  return possible;
+}
+
 }  // namespace
 
 ExitCode calibrate(Session& session, CalibrateOptions const& options) {
@@ -209,7 +229,7 @@ ExitCode calibrate(Session& session, CalibrateOptions const& options) {
     return std::find(fits.begin(), fits.end(), index) != fits.end();
   }).require();
   ExitCode worst = ExitCode::success;
-  for (int const index : fits) {
+  for (int const index : possible_fits(session, fits)) {
     Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
     if (kept(session, task, options)) {
       session.notices << fmt::format("{}: complete, kept\n", task.name);

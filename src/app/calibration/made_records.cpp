@@ -20,8 +20,8 @@ namespace {
 constexpr double settled = 1e-6;
 constexpr int most_refinements = 7;
 
-UserError refused(Task const& task, std::string message, std::string help) {
-  return UserError({Severity::error, "E6210", std::move(message), Label{task.span, {}}, {}, std::move(help)});
+Diagnostic refused(Task const& task, std::string message, std::string help) {
+  return {Severity::error, "E6210", std::move(message), Label{task.span, {}}, {}, std::move(help)};
 }
 
 /// Whether no channel changes from one solver to a finer one.
@@ -42,32 +42,34 @@ bool same_response(Trajectory const& trajectory, Trajectory::Result const& coars
 
 }  // namespace
 
-RecordMaker::RecordMaker(Session& session, Task const& task, FitTask const& what, std::vector<ExperimentData> const& data)
-    : session_(session), what_(what), data_(data) {
-  Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
-  if (!model.processes.empty())
-    throw refused(task,
-                  fmt::format("`{}` cannot be calibrated: records of Gaussian processes that are integrated out cannot be made yet",
-                              task.name),
-                  "calibrate a fit of the same model without `gp(...)`, or with a function that is estimated as a finite sum");
-  require_distinct_rows(task);
-  compiled_ = session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction);
-  space_ = parameter_space(compiled_->model, what.experiments);
+std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task const& task, FitTask const& what,
+                                               std::vector<ExperimentData> const& data) {
+  if (!session.file.models[static_cast<std::size_t>(what.model)].processes.empty())
+    return refused(
+        task,
+        fmt::format("`{}` cannot be calibrated: records of Gaussian processes that are integrated out cannot be made yet",
+                    task.name),
+        "calibrate a fit of the same model without `gp(...)`, or with a function that is estimated as a finite sum");
+  // A made sample belongs to one experiment.
+  std::set<std::pair<int, std::size_t>> taken;
+  for (ExperimentData const& each : data)
+    for (std::size_t i = 0; i < each.experiment.scored.size(); ++i) {
+      std::size_t const row = i + static_cast<std::size_t>(each.experiment.first_row);
+      if (each.experiment.scored[i] != 0 && !taken.insert({each.use.data, row}).second)
+        return refused(task,
+                       fmt::format("`{}` cannot be calibrated: two of its experiments have row {} of `{}`", task.name, row,
+                                   session.file.data[static_cast<std::size_t>(each.use.data)].name),
+                       "fit to parts without common rows");
+    }
+  return std::nullopt;
 }
 
-// A made sample belongs to one experiment.
-void RecordMaker::require_distinct_rows(Task const& task) const {
-  std::set<std::pair<int, std::size_t>> taken;
-  for (ExperimentData const& each : data_)
-    for (std::size_t i = 0; i < each.experiment.scored.size(); ++i)
-      if (each.experiment.scored[i] != 0 &&
-          !taken.insert({each.use.data, i + static_cast<std::size_t>(each.experiment.first_row)}).second)
-        throw refused(task,
-                      fmt::format("`{}` cannot be calibrated: two of its experiments have row {} of `{}`", task.name,
-                                  i + static_cast<std::size_t>(each.experiment.first_row),
-                                  session_.file.data[static_cast<std::size_t>(each.use.data)].name),
-                      "fit to parts without common rows");
-}
+RecordMaker::RecordMaker(Session& session, FitTask const& what, std::vector<ExperimentData> const& data)
+    : session_(session),
+      what_(what),
+      data_(data),
+      compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
+      space_(parameter_space(compiled_->model, what.experiments)) {}
 
 std::optional<MadeRecords> RecordMaker::make(std::uint64_t seed) const {
   for (int attempt = 0; attempt < most_draws; ++attempt) {

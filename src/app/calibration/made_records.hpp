@@ -19,9 +19,12 @@ struct MadeRecords {
 
 class RecordMaker {
  public:
-  /// what, data: of the task, with the records that it has; they outlive this. UserError where no record can be made of this model
-  /// and task, with the reason.
-  RecordMaker(Session& session, Task const& task, FitTask const& what, std::vector<ExperimentData> const& data);
+  /// Why no record can be made of the model and data of a task; nothing where it can.
+  static std::optional<Diagnostic> refusal(Session const& session, Task const& task, FitTask const& what,
+                                           std::vector<ExperimentData> const& data);
+
+  /// what, data: of a task that is not refused, with the records that it has; they outlive this.
+  RecordMaker(Session& session, FitTask const& what, std::vector<ExperimentData> const& data);
 
   /// A draw of the prior that can be simulated, and its record: scored samples that are not missing are replaced, all others, times
   /// and inputs stay. What cannot be simulated has no likelihood, so that drawing again leaves the posterior as it is. Nothing
@@ -34,7 +37,6 @@ class RecordMaker {
   /// Of all experiments, SI [experiment][channel][sample]; empty where the model cannot be simulated with these values.
   std::vector<std::vector<std::vector<double>>> samples(ConstLanes values, std::uint64_t seed) const;
   std::optional<std::vector<std::vector<double>>> samples(int experiment, ConstLanes parameters, StreamKey noise) const;
-  void require_distinct_rows(Task const& task) const;
 
   Session& session_;
   FitTask const& what_;

@@ -82,7 +82,7 @@ Replicator::Replicator(Session& session, CalibrationPlan const& plan)
       session_(session.source, session.file, options_, progress_, nowhere_, nowhere_),
       model_(session.file.models[static_cast<std::size_t>(plan.what.model)]),
       data_(load_experiments(session, plan.what.experiments, model_, plan.what.start, plan.what.prediction, plan.what.solver)),
-      maker_(session_, *plan.task, plan.what, data_) {}
+      maker_(session_, plan.what, data_) {}
 
 // Up to 2^53, so that it may be written into a file as it stands.
 std::uint64_t Replicator::seed_of(int number) const {
