@@ -29,7 +29,7 @@ enum class LoopKind {
 /// One loop in full. Registers below `kept` hold their values from sample to sample; what is written above them is temporary.
 struct Loop {
   LoopKind kind = LoopKind::observe;
-  bool wide = false;                  // 512-bit vectors, else 256-bit ones
+  bool wide = false;                  // AVX-512, whose registers 256-bit vectors use too; else AVX2
   int vector_lanes = 4;               // 1: plain doubles
   int vectors = 1;                    // side by side
   int stride = 4;                     // doubles from one register to the next
