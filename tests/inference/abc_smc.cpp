@@ -128,7 +128,7 @@ TEST_CASE("thresholds fall to the quantile of all distances, unweighted, and the
     CHECK(result.populations[t].threshold / result.populations[t - 1].threshold == doctest::Approx(0.3).epsilon(0.2));
   }
   CHECK(result.threshold - result.next_threshold <= 0.01);
-  CHECK(result.stopped_by.find("decrease of the threshold") != std::string::npos);
+  CHECK(result.stopped_by.find("the threshold would next decrease by only") != std::string::npos);
 }
 
 TEST_CASE("a run ends at a target, at its number of populations or simulations, and below an acceptance rate") {

@@ -23,9 +23,9 @@ enum class Purpose : std::uint32_t {
   supports = 13,     // moves between supports of a dictionary
   coefficient = 14,  // coefficients that a likelihood integrated out
   exchange = 15,     // exchanges between replicas of a chain
-  bootstrap = 16,    // weights of samples in a Bayesian bootstrap
-  calibration = 17,  // records that are made to see whether a fit finds their true values
-  evidence = 18,     // draws of which an evidence is estimated
+  calibration = 16,  // records that are made to see whether a fit finds their true values
+  evidence = 17,     // draws of which an evidence is estimated
+  bootstrap = 18,    // weights of samples in a Bayesian bootstrap
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

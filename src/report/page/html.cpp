@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <set>
 
 #include "core/text/xml.hpp"
@@ -54,7 +56,8 @@ std::string together(RunReport const& run) {
   std::string out;
   bool evidences = false;
   for (ReportTable const& table : run.comparisons) {
-    bool const fits = table.header.front() == "fit", scores = fits && table.header[2] == "elpd";
+    bool const fits = table.header.front() == "fit",
+               scores = fits && std::find(table.header.begin(), table.header.end(), "elpd") != table.header.end();
     evidences = evidences || (fits && !scores);
     out += table_html(table, fits && !scores ? 3 : 2, fits ? TitleBegins::with_a_word : TitleBegins::with_a_name);
   }

@@ -40,11 +40,13 @@ TEST_CASE("errors of summaries are those of independent normal draws") {
 
 TEST_CASE("samples of one distribution agree, and z scores are of size 1") {
   double squares = 0;
+  int warned = 0;  // one time in a hundred, and of 40 more than four times in one of 10^5
   for (std::uint64_t r = 0; r < 40; ++r) {
     ChainValues const one = normal_chains(0, 1, 100 + r), other = normal_chains(0, 1, 300 + r);
-    CHECK(findings_of(one, other).empty());
+    warned += findings_of(one, other).empty() ? 0 : 1;
     for (ComparedNumber const& each : compare_draws("k", "", one, other)) squares += each.z() * each.z() / 200;
   }
+  CHECK(warned <= 4);
   CHECK(squares > 0.7);
   CHECK(squares < 1.4);
 }
