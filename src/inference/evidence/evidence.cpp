@@ -156,7 +156,8 @@ void prefer_weighted(EvidenceMethod method, Evidence& evidence) {
   if (method != EvidenceMethod::importance && sampled.error > better) return;
   evidence.method = EvidenceMethod::importance;
   *evidence.log_evidence += sampled.above;
-  evidence.error = sampled.error;
+  // No draws of the posterior tell of tails that these draws do not reach: their own error may be far too small.
+  evidence.error = std::max({sampled.error, std::fabs(evidence.along_axes), std::fabs(sampled.above) / 3});
   evidence.effective = sampled.effective;
   evidence.simulations = sampled.draws;
 }

@@ -232,7 +232,8 @@ TEST_CASE("an optimum at a bound has an evidence all the same, and what has none
     sum += std::exp(-0.5 * rest.square().sum() - 30 * std::log(0.7 * std::sqrt(2 * std::numbers::pi))) / steps;
   }
   json const found = evidence(with(bounded, "normal(0, sd = 2)", "uniform(-1, 0.5)"), points.csv);
-  double const off = std::log(sum) - found.at("log_evidence").get<double>(), along = found.at("along_axes").get<double>();
+  double const off = std::log(sum) - found.at("laplace").get<double>(), along = found.at("along_axes").get<double>();
+  CHECK(std::fabs(found.at("log_evidence").get<double>() - std::log(sum)) < 0.02);  // by weighted draws
   CHECK(std::fabs(off) < 0.15);
   CHECK(std::fabs(off) > 0.05);                          // the density is far from normal,
   CHECK(std::fabs(off - along) < 0.5 * std::fabs(off));  // which its axes tell
