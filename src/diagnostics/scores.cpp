@@ -6,6 +6,7 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
+#include "core/numeric/tails.hpp"
 #include "diagnostics/residual_tests.hpp"
 
 namespace sysid {
@@ -13,7 +14,7 @@ namespace {
 
 /// Samples whose draws are taken out of the trajectories together: each trajectory is read in runs, and sums of several samples do
 /// not wait for one another.
-constexpr std::size_t at_once = 8;
+constexpr std::size_t at_once = sequences_at_once;
 
 /// Mean and variance over trajectories, as `mean` and `sample_variance` have them, of samples from `from` on.
 struct Moments {
@@ -21,14 +22,19 @@ struct Moments {
 
   Moments(std::vector<std::vector<double> const*> const& trajectories, std::size_t from, std::size_t count) {
     auto const n = static_cast<double>(trajectories.size());
-    for (std::vector<double> const* each : trajectories)
-      for (std::size_t k = 0; k < count; ++k) mean[k] += (*each)[from + k];
+    double next[at_once] = {};  // those beyond `count` stay 0
+    auto const take = [&](std::vector<double> const& trajectory) {
+      std::copy_n(trajectory.begin() + static_cast<std::ptrdiff_t>(from), count, next);
+    };
+    for (std::vector<double> const* each : trajectories) {
+      take(*each);
+      for (std::size_t k = 0; k < at_once; ++k) mean[k] += next[k];
+    }
     for (double& each : mean) each /= n;
-    for (std::vector<double> const* each : trajectories)
-      for (std::size_t k = 0; k < count; ++k) {
-        double const apart = (*each)[from + k] - mean[k];
-        variance[k] += apart * apart;
-      }
+    for (std::vector<double> const* each : trajectories) {
+      take(*each);
+      for (std::size_t k = 0; k < at_once; ++k) variance[k] += (next[k] - mean[k]) * (next[k] - mean[k]);
+    }
     for (double& each : variance) each /= n - 1;
   }
 };
@@ -41,17 +47,10 @@ class Tails {
   Tails(std::vector<std::vector<double> const*> const& trajectories, std::size_t depth, std::size_t from, std::size_t count) {
     for (std::size_t r = 0; r < depth; ++r)
       for (std::size_t k = 0; k < at_once; ++k) smallest_[r][k] = infinity, largest_[r][k] = -infinity;
+    double next[at_once] = {};
     for (std::vector<double> const* each : trajectories) {
-      double up[at_once] = {}, down[at_once] = {};
-      for (std::size_t k = 0; k < count; ++k) up[k] = down[k] = (*each)[from + k];
-      for (std::size_t r = 0; r < depth; ++r)
-        for (std::size_t k = 0; k < at_once; ++k) {
-          double const small = smallest_[r][k], large = largest_[r][k];
-          smallest_[r][k] = up[k] < small ? up[k] : small;
-          up[k] = up[k] < small ? small : up[k];
-          largest_[r][k] = down[k] > large ? down[k] : large;
-          down[k] = down[k] > large ? large : down[k];
-        }
+      std::copy_n(each->begin() + static_cast<std::ptrdiff_t>(from), count, next);
+      add_to_tails(smallest_[0], largest_[0], static_cast<int>(depth), next);
     }
   }
 
@@ -73,15 +72,15 @@ class Tails {
 
 Band band(std::vector<std::vector<double>> const& trajectories) {
   // Samples that no draw can predict, because what they follow from was not measured, say nothing about a draw.
-  std::vector<bool> predictable(trajectories.empty() ? 0 : trajectories.front().size(), false);
+  std::vector<char> predictable(trajectories.empty() ? 0 : trajectories.front().size(), 0);
   for (std::vector<double> const& trajectory : trajectories)
-    for (std::size_t i = 0; i < trajectory.size(); ++i) predictable[i] = predictable[i] || std::isfinite(trajectory[i]);
-  bool const any = std::find(predictable.begin(), predictable.end(), true) != predictable.end();
+    for (std::size_t i = 0; i < trajectory.size(); ++i) predictable[i] |= std::isfinite(trajectory[i]) ? 1 : 0;
+  bool const any = std::find(predictable.begin(), predictable.end(), 1) != predictable.end();
   std::vector<std::vector<double> const*> usable;
   for (std::vector<double> const& trajectory : trajectories) {
-    bool good = any;
-    for (std::size_t i = 0; i < trajectory.size(); ++i) good = good && (std::isfinite(trajectory[i]) || !predictable[i]);
-    if (good) usable.push_back(&trajectory);
+    int missing = 0;
+    for (std::size_t i = 0; i < trajectory.size(); ++i) missing |= std::isfinite(trajectory[i]) ? 0 : predictable[i];
+    if (any && missing == 0) usable.push_back(&trajectory);
   }
   Band out;
   out.draws = static_cast<int>(trajectories.size());
@@ -97,7 +96,7 @@ Band band(std::vector<std::vector<double>> const& trajectories) {
     Moments const moments(usable, from, count);
     Tails const tails(usable, few ? depth : 0, from, count);
     for (std::size_t k = 0; k < count; ++k) {
-      if (!predictable[from + k]) {
+      if (predictable[from + k] == 0) {
         for (auto* column : {&out.mean, &out.sd, &out.lower, &out.upper}) column->push_back(std::nan(""));
         continue;
       }

@@ -1,6 +1,7 @@
 // Compiled loops by name.
 #include "native/machine_code.hpp"
 
+#include <algorithm>
 #include <atomic>
 
 namespace sysid::native {
@@ -32,6 +33,7 @@ Function MachineCode::function(LoopName const& name, std::function<Loop()> const
 
 bool MachineCode::pays(LoopName const& name, double seconds, double compilation) {
   std::lock_guard const lock(mutex_);
+  expected_ = std::max(0.0, expected_ - seconds);
   auto const found = machines_.find(name);
   if (found != machines_.end()) return found->second != nullptr;
   double& spent = spent_[name];

@@ -31,7 +31,7 @@ class MachineCode {
   /// again; a job below 50 ms never waits for a compiler.
   bool pays(LoopName const& name, double seconds, double compilation);
 
-  /// Adds `seconds` of interpretation that are known to come, in loops that are not known yet: a loop pays sooner then.
+  /// Adds `seconds` of interpretation that are known to come, in loops that are not known yet: until then a loop pays sooner.
   void expect(double seconds);
 
  private:

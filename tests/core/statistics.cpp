@@ -3,11 +3,15 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/numeric/normal_quantile.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "core/numeric/random.hpp"
+#include "core/numeric/tails.hpp"
 
 using namespace sysid;
 
@@ -85,4 +89,27 @@ TEST_CASE("quantiles of the standard normal invert its cumulative probability") 
   }
   for (double const q : {-0.49, -0.425, -1e-9, 1e-9, 0.2, 0.4251})
     CHECK(standard_normal_quantile_from_middle(q) == doctest::Approx(standard_normal_quantile(0.5 + q)).epsilon(1e-7));
+}
+
+TEST_CASE("the tails of several sequences are those of each when it is sorted") {
+  constexpr int depth = 5, count = 37;
+  Stream stream({9, Purpose::test, 0, 0});
+  double smallest[depth][sequences_at_once], largest[depth][sequences_at_once];
+  std::fill_n(smallest[0], depth * sequences_at_once, infinity);
+  std::fill_n(largest[0], depth * sequences_at_once, -infinity);
+  std::vector<std::vector<double>> all(sequences_at_once);
+  for (int i = 0; i < count; ++i) {
+    double next[sequences_at_once];
+    for (int k = 0; k < sequences_at_once; ++k)
+      all[static_cast<std::size_t>(k)].push_back(next[k] = std::round(5 * stream.normal()));
+    add_to_tails(smallest[0], largest[0], depth, next);
+  }
+  for (int k = 0; k < sequences_at_once; ++k) {
+    std::vector<double>& sorted = all[static_cast<std::size_t>(k)];
+    std::sort(sorted.begin(), sorted.end());
+    for (int r = 0; r < depth; ++r) {
+      CHECK(smallest[r][k] == sorted[static_cast<std::size_t>(r)]);
+      CHECK(largest[r][k] == sorted[static_cast<std::size_t>(count - 1 - r)]);
+    }
+  }
 }

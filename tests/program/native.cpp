@@ -239,4 +239,8 @@ TEST_CASE("of much interpretation that is known to come, a part is enough for ma
   CHECK_FALSE(much.pays(narrow, 0.002, compilation));
   CHECK_FALSE(much.pays(wide, 0.002, compilation));
   CHECK(much.pays(wide, 0.002, compilation));
+  native::MachineCode over;  // what was expected has come
+  over.expect(0.2);
+  CHECK(over.pays(wide, 0.19, compilation));
+  CHECK_FALSE(over.pays(narrow, 0.004, compilation));
 }

@@ -9,6 +9,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/normals.hpp"
 #include "inference/backend/checkpoint.hpp"
+#include "inference/chain/substitution.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid::metropolis {
@@ -235,10 +236,7 @@ void Independence::log_part(Part const& part, ConstLanes theta, std::span<double
     auto const x = theta.row(static_cast<int>(i));
     auto const rest = z.row(static_cast<int>(i));
     for (std::size_t w = 0; w < lanes; ++w) rest[w] = x[w] - part.mean[i];
-    for (std::size_t j = 0; j < i; ++j) {
-      auto const before = z.row(static_cast<int>(j));
-      for (std::size_t w = 0; w < lanes; ++w) rest[w] -= factor[j] * before[w];
-    }
+    subtract_rows(rest.data(), z.view().data(), width, factor, static_cast<long>(i), width);
     for (std::size_t w = 0; w < lanes; ++w) {
       rest[w] /= factor[i];
       squares[w] += rest[w] * rest[w];
