@@ -138,20 +138,9 @@ TEST_CASE("what cannot be calibrated is refused with the reason") {
   CHECK(desk.refusal(model).starts_with("there is no fit task in "));
   std::string const improper = with(model, "slope ~ normal(0, sd = 10)", "slope ~ flat()");
   CHECK(desk.refusal(improper + fit).find("needs proper priors") != std::string::npos);
-  std::string const twice = with(fit, "fit line to bench.train", "fit line to bench, bench.train");
-  CHECK(desk.refusal(model + twice).find("two of its experiments have row 3 of `bench`") != std::string::npos);
   // Overflows wherever the parameter is not tiny.
   std::string const wild = with(model, "slope*u", "exp(exp(abs(100*slope)))*u");
   CHECK(desk.refusal(wild + fit).find("of its prior cannot be simulated") != std::string::npos);
-}
-
-TEST_CASE("of the fits of a file those that cannot be calibrated are skipped, and said") {
-  CalibrationDesk const desk;
-  std::string const twice = with(with(fit, "fit line to bench.train", "fit line to bench, bench.train"), "posterior", "doubled");
-  CalibrateResult const result = desk.run(model + twice + fit, 10);
-  CHECK(result.notices.find("skipped: `doubled` cannot be calibrated") != std::string::npos);
-  CHECK(std::filesystem::exists(desk.options.output / "posterior/summary.json"));
-  CHECK_FALSE(std::filesystem::exists(desk.options.output / "doubled"));
 }
 
 TEST_CASE("optima are calibrated by the normal distribution that their sd stands for") {
