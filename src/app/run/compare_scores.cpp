@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <tuple>
 
 #include "criteria/model_weights.hpp"
 #include "criteria/scores.hpp"
@@ -26,6 +29,32 @@ std::vector<std::size_t> known_to_all(std::vector<ScoredFit const*> const& fits,
   return places;
 }
 
+struct Series {
+  std::string channel;
+  int experiment = 0;
+};
+
+/// The series that the comments name, `channel on experiment`. Those of an experiment stand together, each channel once.
+std::vector<Series> series_of(NumberTable const& table) {
+  std::vector<Series> all;
+  std::set<std::string> channels;  // of the experiment
+  std::string last;
+  int experiment = -1;
+  while (true) {
+    auto const named = table.head.find(fmt::format("series {}", all.size() + 1));
+    std::size_t const on = named == table.head.end() ? std::string::npos : named->second.find(" on ");
+    if (on == std::string::npos) return all;
+    std::string channel = named->second.substr(0, on), name = named->second.substr(on + 4);
+    if (experiment < 0 || name != last || channels.contains(channel)) {
+      ++experiment;
+      channels.clear();
+      last = std::move(name);
+    }
+    channels.insert(channel);
+    all.push_back({std::move(channel), experiment});
+  }
+}
+
 }  // namespace
 
 std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& model, std::filesystem::path const& folder,
@@ -39,18 +68,30 @@ std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& 
   });
   if (!stored) return std::nullopt;
   NumberTable const table = read_number_table(path);
+  auto const damaged = [&] { return unusable_result(fmt::format("`{}` is damaged", path.string())); };
   auto const column = [&](char const* of) {
     std::vector<double> const* const found = table.find(of);
-    if (found == nullptr) throw unusable_result(fmt::format("`{}` is damaged", path.string()));
+    if (found == nullptr) throw damaged();
     return *found;
   };
-  std::vector<double> const series = column("series"), rows = column("row"), k = column("pareto_k");
+  std::vector<double> const series = column("series"), rows = column("row"), k = column("pareto_k"), loo = column("elpd_loo"),
+                            future = column("elpd_future");
+  std::vector<Series> const names = series_of(table);
+  std::vector<ScoredSample> samples;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    fit.samples.emplace_back(series[i], rows[i]);
+    if (!(series[i] >= 1 && series[i] <= static_cast<double>(names.size()))) throw damaged();
+    Series const& of = names[static_cast<std::size_t>(series[i]) - 1];
+    samples.push_back({of.channel, of.experiment, static_cast<int>(rows[i])});
     fit.doubtful += k[i] > largest_k ? 1 : 0;
   }
-  fit.elpd_loo = column("elpd_loo");
-  fit.elpd_future = column("elpd_future");
+  std::vector<std::size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return std::tie(samples[i].channel, samples[i].experiment, samples[i].row); });
+  for (std::size_t const i : order) {
+    fit.samples.push_back(std::move(samples[i]));
+    fit.elpd_loo.push_back(loo[i]);
+    fit.elpd_future.push_back(future[i]);
+  }
   return fit;
 }
 

@@ -1,5 +1,6 @@
 // Fits weighed by what each says of samples that it has not seen.
 #pragma once
+#include <compare>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -10,13 +11,22 @@
 
 namespace sysid {
 
+/// One that is scored, whatever order a model has its channels in.
+struct ScoredSample {
+  std::string channel;
+  int experiment = 0;  // its place in the data
+  int row = 0;         // of the file
+
+  auto operator<=>(ScoredSample const&) const = default;
+};
+
 /// A fit's pointwise scores, as its folder has them.
 struct ScoredFit {
   std::string name, model;
   bool in_time = false;
-  int doubtful = 0;                                // samples with k above 0.7
-  std::vector<std::pair<double, double>> samples;  // series and row of each
-  std::vector<double> elpd_loo, elpd_future;       // NaN where there is no score
+  int doubtful = 0;                           // samples with k above 0.7
+  std::vector<ScoredSample> samples;          // sorted
+  std::vector<double> elpd_loo, elpd_future;  // NaN where there is no score
 };
 
 /// Nothing of a fit without draws. summary: verified, with all its files. UserError (E6209) where the file is not as it is written.
