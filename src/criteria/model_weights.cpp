@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/random.hpp"
@@ -57,7 +58,9 @@ std::vector<double> pseudo_bma_weights(PointwiseElpd const& elpd, std::uint64_t 
 
 ElpdDifference elpd_difference(std::span<double const> a, std::span<double const> b) {
   std::vector<double> difference(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] - b[i];
+  for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] == b[i] ? 0 : a[i] - b[i];  // also of two infinite ones
+  bool const finite = std::ranges::all_of(difference, [](double each) { return std::isfinite(each); });
+  if (!finite) return {std::accumulate(difference.begin(), difference.end(), 0.0), std::nan("")};
   auto const n = static_cast<double>(a.size());
   return {n * mean(difference), std::sqrt(n * sample_variance(difference))};
 }

@@ -6,7 +6,7 @@
 
 namespace sysid {
 
-/// elpd[k][i]: log predictive density of sample i under model k. At least two models, of the same samples.
+/// elpd[k][i]: log predictive density of sample i under model k. Finite, of at least two models and the same samples.
 using PointwiseElpd = std::vector<std::vector<double>>;
 
 /// The mixture of predictive distributions with the largest sum_i log sum_k w_k exp(elpd_ik): weights on the simplex.
@@ -18,7 +18,8 @@ std::vector<double> stacking_weights(PointwiseElpd const& elpd);
 /// Weights exp(elpd_k) / sum, averaged over 1000 Bayesian bootstraps of the samples.  Yao et al. 2018, sec. 3.4: pseudo-BMA+
 std::vector<double> pseudo_bma_weights(PointwiseElpd const& elpd, std::uint64_t seed);
 
-/// sum_i (a_i - b_i) and its standard error sqrt(n) sd(a_i - b_i).
+/// sum_i (a_i - b_i) and its standard error sqrt(n) sd(a_i - b_i), which an infinite sum has not (NaN). Two infinite ones do not
+/// differ.
 struct ElpdDifference {
   double sum = 0, error = 0;
 };

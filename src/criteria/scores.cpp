@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
@@ -56,6 +57,8 @@ LogScore sum_of(std::span<double const> values) {
   for (double const each : values)
     if (!std::isnan(each)) known.push_back(each);
   auto const n = static_cast<double>(known.size());
+  if (std::ranges::any_of(known, [](double each) { return std::isinf(each); }))
+    return {std::accumulate(known.begin(), known.end(), 0.0), std::nan(""), static_cast<int>(known.size()), 0};
   return {n * (known.empty() ? 0 : mean(known)), std::sqrt(n * sample_variance(known)), static_cast<int>(known.size()), 0};
 }
 

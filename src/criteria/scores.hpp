@@ -53,7 +53,7 @@ class FutureOut {
   std::vector<double> log_likelihood_;  // of what has been left out, under each draw
 };
 
-/// The sum with its standard error, of the values that are not NaN.
+/// The sum with its standard error, of the values that are not NaN; an infinite sum has none (NaN).
 LogScore sum_of(std::span<double const> values);
 
 /// Where a record of so many scored rows is cut into blocks: the first of each, and the end. At most `blocks`, none empty.

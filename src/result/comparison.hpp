@@ -47,6 +47,7 @@ struct ComparedScore {
   double difference = 0, difference_error = 0;  // from the best
   double stacking = 0, pseudo_bma = 0;          // weights
   int doubtful = 0;                             // samples with a Pareto k above 0.7, by leave-one-out
+  int impossible = 0;                           // samples that it gives no density: elpd is -infinity, weights are 0
 };
 
 /// Of fits that have draws, by the same samples.
@@ -54,7 +55,8 @@ struct ComparedScores {
   bool future = false;  // by leave-future-out; else by leave-one-out
   bool in_time = false;
   int samples = 0;
-  std::vector<ComparedScore> fits;  // none, or two at least
+  std::vector<ComparedScore> fits;    // none, or two at least
+  std::vector<std::string> left_out;  // fits whose scored samples are not those of the first
 };
 
 struct Comparison {

@@ -15,6 +15,7 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "model/lags.hpp"
 #include "report/file/stored_files.hpp"
 
@@ -296,6 +297,9 @@ Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model
   for (StoredSummary const& each : fits)
     if (auto found = scored_fit(each.name, each.model, each.folder, each.summary)) scored.push_back(std::move(*found));
   comparison.scores = compare_scores(scored);
+  if (!comparison.scores.left_out.empty())
+    comparison.notes.push_back(fmt::format("predictive scores: {} left out, because the scored samples are not those of `{}`",
+                                           quoted(comparison.scores.left_out), scored.front().name));
   std::vector<std::string> models;
   std::vector<json> evidences;
   for (StoredSummary const& each : fits) {

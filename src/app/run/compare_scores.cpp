@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/numeric/not_finite.hpp"
 #include "criteria/model_weights.hpp"
 #include "criteria/scores.hpp"
 #include "report/file/number_table.hpp"
@@ -21,12 +22,31 @@ using json = nlohmann::json;
 
 constexpr std::uint64_t bootstrap_seed = 0;  // the same weights for the same results
 
-/// Which samples have a score under every fit.
+/// Which samples have a score under every fit; -infinity is one, of a fit that says that they cannot be.
 std::vector<std::size_t> known_to_all(std::vector<ScoredFit const*> const& fits, std::vector<double> ScoredFit::*column) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < fits.front()->samples.size(); ++i)
-    if (std::ranges::all_of(fits, [&](ScoredFit const* each) { return std::isfinite((each->*column)[i]); })) places.push_back(i);
+    if (std::ranges::all_of(fits, [&](ScoredFit const* each) { return !std::isnan((each->*column)[i]); })) places.push_back(i);
   return places;
+}
+
+/// Of the fits that give each sample some density; no weight to others.
+void weigh(PointwiseElpd const& elpd, std::vector<ComparedScore>& fits) {
+  PointwiseElpd weighed;
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < fits.size(); ++k)
+    if (fits[k].impossible == 0) {
+      places.push_back(k);
+      weighed.push_back(elpd[k]);
+    }
+  if (places.empty()) return;
+  bool const one = places.size() == 1;
+  std::vector<double> const alone = {1}, stacking = one ? alone : stacking_weights(weighed),
+                            pseudo_bma = one ? alone : pseudo_bma_weights(weighed, bootstrap_seed);
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    fits[places[p]].stacking = stacking[p];
+    fits[places[p]].pseudo_bma = pseudo_bma[p];
+  }
 }
 
 struct Series {
@@ -96,29 +116,33 @@ std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& 
 }
 
 ComparedScores compare_scores(std::vector<ScoredFit> const& all) {
+  ComparedScores out;
   std::vector<ScoredFit const*> fits;
   for (ScoredFit const& each : all)
-    if (each.samples == all.front().samples) fits.push_back(&each);
-  if (fits.size() < 2 || fits.front()->samples.size() < 2) return {};
-  ComparedScores out;
+    if (each.samples == all.front().samples)
+      fits.push_back(&each);
+    else
+      out.left_out.push_back(each.name);
+  if (fits.size() < 2 || fits.front()->samples.size() < 2) return out;
   out.in_time = std::ranges::any_of(fits, [](ScoredFit const* each) { return each->in_time; });
   std::vector<double> ScoredFit::*column = &ScoredFit::elpd_future;
   std::vector<std::size_t> places = out.in_time ? known_to_all(fits, column) : std::vector<std::size_t>{};
   out.future = places.size() > 1;
   if (!out.future) places = known_to_all(fits, column = &ScoredFit::elpd_loo);
-  if (places.size() < 2) return {};
+  if (places.size() < 2) return out;
   out.samples = static_cast<int>(places.size());
   PointwiseElpd elpd;
   for (ScoredFit const* each : fits) {
     elpd.emplace_back();
     for (std::size_t const i : places) elpd.back().push_back((each->*column)[i]);
   }
-  std::vector<double> const stacking = stacking_weights(elpd), pseudo_bma = pseudo_bma_weights(elpd, bootstrap_seed);
   std::size_t best = 0;
   for (std::size_t k = 0; k < fits.size(); ++k) {
     LogScore const score = sum_of(elpd[k]);
-    out.fits.push_back(
-        {fits[k]->name, fits[k]->model, score.sum, score.error, 0, 0, stacking[k], pseudo_bma[k], fits[k]->doubtful});
+    ComparedScore fit{fits[k]->name, fits[k]->model, score.sum, score.error};
+    fit.doubtful = fits[k]->doubtful;
+    fit.impossible = static_cast<int>(std::ranges::count(elpd[k], -infinity));
+    out.fits.push_back(std::move(fit));
     if (score.sum > out.fits[best].elpd) best = k;
   }
   for (std::size_t k = 0; k < fits.size(); ++k) {
@@ -126,6 +150,7 @@ ComparedScores compare_scores(std::vector<ScoredFit> const& all) {
     out.fits[k].difference = from_best.sum;
     out.fits[k].difference_error = from_best.error;
   }
+  weigh(elpd, out.fits);
   return out;
 }
 

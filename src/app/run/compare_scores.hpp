@@ -34,7 +34,8 @@ std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& 
                                     nlohmann::json const& summary);
 
 /// Nothing of fewer than two; of records in time by leave-future-out over the rows that all reach, by leave-one-out where a fit
-/// reaches none. Fits whose samples are not those of the first are left out.
+/// reaches none. Fits whose samples are not those of the first are left out, and named. A fit that gives a sample no density at all
+/// has the score -infinity and no weight.
 ComparedScores compare_scores(std::vector<ScoredFit> const& fits);
 
 }  // namespace sysid

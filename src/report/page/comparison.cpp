@@ -53,6 +53,9 @@ ReportTable fits_table(Comparison const& comparison) {
 }
 
 /// Of fits with draws, by what each says of samples that it has not seen.
+/// An error, of which there is none where a score is infinite.
+std::string known(double error) { return std::isnan(error) ? "-" : fmt::format("{:.1f}", error); }
+
 ReportTable scores_table(ComparedScores const& scores) {
   ReportTable table;
   table.title = fmt::format("expected log predictive density (elpd) of {}, {}", counted(scores.samples, "sample"),
@@ -60,12 +63,14 @@ ReportTable scores_table(ComparedScores const& scores) {
                                           : "each left out (leave-one-out)");
   table.header = {"fit", "model", "elpd", "error", "difference", "error of difference", "stacking weight", "pseudo-BMA+ weight"};
   for (ComparedScore const& fit : scores.fits) {
-    table.rows.push_back({fit.name, fit.model, fmt::format("{:.1f}", fit.elpd), fmt::format("{:.1f}", fit.error),
-                          with_error(fit.difference, {}, 1), fmt::format("{:.1f}", fit.difference_error),
-                          fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
+    table.rows.push_back({fit.name, fit.model, fmt::format("{:.1f}", fit.elpd), known(fit.error), with_error(fit.difference, {}, 1),
+                          known(fit.difference_error), fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
     if (fit.doubtful > 0 && !scores.future)
       table.caption += fmt::format("{}{}: Pareto's k is above 0.7 for {}, so its elpd is too high",
                                    table.caption.empty() ? "" : "\n", fit.name, counted(fit.doubtful, "sample"));
+    if (fit.impossible > 0)
+      table.caption += fmt::format("{}{}: no draw gives {} any density, so it has no weight", table.caption.empty() ? "" : "\n",
+                                   fit.name, counted(fit.impossible, "sample"));
   }
   if (scores.in_time && !scores.future)
     table.caption += fmt::format(
@@ -169,7 +174,8 @@ std::string comparison_json(Comparison const& comparison) {
                                        {"difference_error", fit.difference_error},
                                        {"stacking", fit.stacking},
                                        {"pseudo_bma", fit.pseudo_bma},
-                                       {"doubtful", fit.doubtful}});
+                                       {"doubtful", fit.doubtful},
+                                       {"impossible", fit.impossible}});
   }
   for (ComparedPrediction const& each : comparison.predictions)
     out["predictions"].push_back({{"name", each.name},
