@@ -295,7 +295,10 @@ Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model
   if (!fits.empty()) comparison.data = data_text(fits.front());
   std::vector<ScoredFit> scored;
   for (StoredSummary const& each : fits)
-    if (auto found = scored_fit(each.name, each.model, each.folder, each.summary)) scored.push_back(std::move(*found));
+    if (auto found = scored_fit(each.name, each.model, each.folder, each.summary)) {
+      found->identity = identity(each);
+      scored.push_back(std::move(*found));
+    }
   comparison.scores = compare_scores(scored);
   if (!comparison.scores.left_out.empty())
     comparison.notes.push_back(fmt::format("predictive scores: {} left out, because the scored samples are not those of `{}`",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
@@ -30,12 +31,13 @@ std::vector<std::size_t> known_to_all(std::vector<ScoredFit const*> const& fits,
   return places;
 }
 
-/// Of the fits that give each sample some density; no weight to others.
-void weigh(PointwiseElpd const& elpd, std::vector<ComparedScore>& fits) {
+/// Of the models that give each sample some density, each by its first fit; no weight to others. identities: of the fits.
+void weigh(PointwiseElpd const& elpd, std::vector<std::string> const& identities, std::vector<ComparedScore>& fits) {
   PointwiseElpd weighed;
   std::vector<std::size_t> places;
+  std::map<std::string, std::size_t> standing;  // fit of a model
   for (std::size_t k = 0; k < fits.size(); ++k)
-    if (fits[k].impossible == 0) {
+    if (fits[k].impossible == 0 && standing.emplace(identities[k], k).second) {
       places.push_back(k);
       weighed.push_back(elpd[k]);
     }
@@ -47,6 +49,11 @@ void weigh(PointwiseElpd const& elpd, std::vector<ComparedScore>& fits) {
     fits[places[p]].stacking = stacking[p];
     fits[places[p]].pseudo_bma = pseudo_bma[p];
   }
+  for (std::size_t k = 0; k < fits.size(); ++k)
+    if (auto const of = standing.find(identities[k]); fits[k].impossible == 0 && of != standing.end()) {
+      fits[k].stacking = fits[of->second].stacking;
+      fits[k].pseudo_bma = fits[of->second].pseudo_bma;
+    }
 }
 
 struct Series {
@@ -80,7 +87,9 @@ std::vector<Series> series_of(NumberTable const& table) {
 std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& model, std::filesystem::path const& folder,
                                     json const& summary) {
   std::filesystem::path const path = folder / "pointwise.csv";
-  ScoredFit fit{name, model, false, 0, {}, {}, {}};
+  ScoredFit fit;
+  fit.name = name;
+  fit.model = model;
   bool const stored = interpreted(folder / "summary.json", [&] {
     if (!summary.at("versions").at("files").contains("pointwise.csv")) return false;
     fit.in_time = summary.at("criteria").at("in_time").get<bool>();
@@ -150,7 +159,9 @@ ComparedScores compare_scores(std::vector<ScoredFit> const& all) {
     out.fits[k].difference = from_best.sum;
     out.fits[k].difference_error = from_best.error;
   }
-  weigh(elpd, out.fits);
+  std::vector<std::string> identities;
+  for (ScoredFit const* each : fits) identities.push_back(each->identity);
+  weigh(elpd, identities, out.fits);
   return out;
 }
 

@@ -23,6 +23,7 @@ struct ScoredSample {
 /// A fit's pointwise scores, as its folder has them.
 struct ScoredFit {
   std::string name, model;
+  std::string identity = {};  // fits that agree in it are of one and the same model
   bool in_time = false;
   int doubtful = 0;                           // samples with k above 0.7
   std::vector<ScoredSample> samples;          // sorted
@@ -35,7 +36,8 @@ std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& 
 
 /// Nothing of fewer than two; of records in time by leave-future-out over the rows that all reach, by leave-one-out where a fit
 /// reaches none. Fits whose samples are not those of the first are left out, and named. A fit that gives a sample no density at all
-/// has the score -infinity and no weight.
+/// has the score -infinity and no weight. A model that was fitted more than once
+/// counts once, by its first fit, whose weights the others show.
 ComparedScores compare_scores(std::vector<ScoredFit> const& fits);
 
 }  // namespace sysid
