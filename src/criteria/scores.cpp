@@ -52,6 +52,11 @@ BlockScore FutureOut::score(ConstLanes log_density, DrawInfluence& influence) co
   return score_block(leave_out(log_likelihood_, chains_), log_density, influence);
 }
 
+bool FutureOut::tells_nothing() const {
+  double const k = leave_out(log_likelihood_, chains_).pareto_k;
+  return std::isinf(k) && k < 0;
+}
+
 LogScore sum_of(std::span<double const> values) {
   std::vector<double> known;
   for (double const each : values)

@@ -47,6 +47,8 @@ class FutureOut {
   void leave(ConstLanes log_density);
   /// Scores the block that was left out last. Without scores where k is above `largest_k`: earlier blocks would be worse.
   BlockScore score(ConstLanes log_density, DrawInfluence& influence) const;
+  /// Whether what was left out tells nothing of the parameters: its weights do not differ.
+  bool tells_nothing() const;
 
  private:
   int chains_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -84,10 +85,15 @@ TEST_CASE("smoothed weights are those of R") {
 TEST_CASE("weights without a tail stay as they are") {
   Values const equal(100, -3), few = {1, 2, 3, 4, 5, 6};
   CHECK(smooth_weights(equal, 20).log_weights == equal);
-  CHECK(std::isinf(smooth_weights(equal, 20).k));
+  CHECK(smooth_weights(equal, 20).k == -std::numeric_limits<double>::infinity());  // harmless
+  Values capped = spread_ratios(1000, 1.2);                                        // two fifths of them share the largest value
+  for (double& each : capped) each = std::min(each, 1.0);
+  CHECK(smooth_weights(capped, 95).k == -std::numeric_limits<double>::infinity());
+  Values const nowhere(100, -std::numeric_limits<double>::infinity());
+  CHECK(smooth_weights(nowhere, 20).k == std::numeric_limits<double>::infinity());
   CHECK(smooth_weights(few, 2).log_weights == few);
   CHECK(smooth_weights(few, 6).log_weights == few);
-  CHECK(std::isinf(smooth_weights(few, 6).k));
+  CHECK(smooth_weights(few, 6).k == std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("smoothed weights keep their order and do not exceed the largest of before") {

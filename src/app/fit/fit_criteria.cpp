@@ -188,7 +188,8 @@ class RecordScores {
 
   void predict_from_past(int b, LaneArray const& block, DrawInfluence& influence) {
     future_.leave(block);
-    BlockScore before = by_own_draws(b);
+    BlockScore before;
+    if (!future_.tells_nothing()) before = by_own_draws(b);
     if (before.elpd.empty())
       before = future_.score(block, influence);
     else

@@ -74,7 +74,10 @@ SmoothedWeights smooth_weights(std::span<double const> log_ratios, int tail_leng
   std::nth_element(order.begin(), first, order.end(), below);
   std::sort(first, order.end(), below);
   double const largest = value(order.back());
-  if (!(largest - value(*first) >= std::numeric_limits<double>::epsilon() / 100)) return out;
+  if (!(largest - value(*first) >= std::numeric_limits<double>::epsilon() / 100)) {
+    if (std::isfinite(largest)) out.k = -none;
+    return out;
+  }
   double const threshold = elementary::exp(value(*std::max_element(order.begin(), first, below)) - largest);
   std::vector<double> exceedances;
   for (auto each = first; each != order.end(); ++each) exceedances.push_back(elementary::exp(value(*each) - largest) - threshold);

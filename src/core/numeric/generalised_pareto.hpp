@@ -25,8 +25,9 @@ GeneralisedPareto fit_generalised_pareto(std::span<double const> rising);
 /// Importance weights whose tail is replaced by expected order statistics of its fit.
 struct SmoothedWeights {
   std::vector<double> log_weights;  // not normalised
-  /// Shape of the tail; infinite where there is none (fewer than 5 in it, or they do not differ): weights are as they were. Below
-  /// 1/2 their variance is finite, and above 0.7 averages by the weights are not to be trusted.
+  /// Shape of the tail; infinite where there is none (fewer than 5 in it), -infinity where those in it do not differ, which is
+  /// harmless: weights are as they were. Below 1/2 their variance is finite, and above 0.7 averages by the weights are not to be
+  /// trusted.
   double k = 0;
 };
 

@@ -100,7 +100,7 @@ std::optional<Ratios> ratios_of(PriorInfo const& prior, std::vector<double> cons
 bool has_variance(std::vector<double> const& log_ratio, double relative_efficiency) {
   int const tail = pareto_tail_length(static_cast<int>(log_ratio.size()), relative_efficiency);
   double const k = smooth_weights(log_ratio, tail).k, largest = *std::max_element(log_ratio.begin(), log_ratio.end());
-  if (std::isfinite(k)) return k <= heaviest_tail;
+  if (k < infinity) return k <= heaviest_tail;
   auto const alike = std::count_if(log_ratio.begin(), log_ratio.end(), [&](double each) { return each > largest - 1e-9; });
   return alike >= tail;
 }

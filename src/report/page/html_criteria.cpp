@@ -42,10 +42,13 @@ std::string rows_text(std::vector<LeftOutBlocks> const& blocks) {
 
 std::string pareto_words(Criteria const& criteria) {
   int const doubtful = criteria.pareto_counts[2] + criteria.pareto_counts[3];
+  std::string worst;
+  if (doubtful > 0)
+    worst = fmt::format(", above 1 for {}", criteria.pareto_counts[3]);
+  else if (std::isfinite(criteria.worst_k))
+    worst = fmt::format(" (largest {})", significant(criteria.worst_k, 2));
   std::string words =
-      fmt::format("Leave-one-out: of {} samples, Pareto’s k is above 0.7 for {}{}. ", criteria.loo->samples, doubtful,
-                  doubtful == 0 ? fmt::format(" (largest {})", significant(criteria.worst_k, 2))
-                                : fmt::format(", above 1 for {}", criteria.pareto_counts[3]));
+      fmt::format("Leave-one-out: of {} samples, Pareto’s k is above 0.7 for {}{}. ", criteria.loo->samples, doubtful, worst);
   if (doubtful > 0)
     words +=
         "Without such a sample the posterior would be another; the weighted draws do not reach it, and the score is too high. ";
