@@ -17,6 +17,7 @@ namespace sysid {
 namespace {
 
 constexpr int most_draws = 1000, fewest_draws = 100;
+constexpr double share_of_fit = 0.05;          // of its simulations, that the scores of its draws take
 constexpr int blocks_of_record = 10;           // that are left out one by one
 constexpr int history = blocks_of_record / 2;  // of these, before the first that is predicted from its past alone
 constexpr double most_densities = (std::size_t{1} << 27) / sizeof(double);  // that are held at once
@@ -41,18 +42,27 @@ Deviance deviance_of(FinishedFit& fit) {
   return out;
 }
 
-/// At equal distances along each chain, the same number of each.
-LaneArray spread_evenly(Draws const& draws, int per_chain) {
-  auto const chains = static_cast<int>(draws.chains.size());
-  LaneArray columns(draws.parameter_count, chains * per_chain);
+/// Some of the draws, chain after chain, all chains of one length.
+struct SomeDraws {
+  LaneArray columns;  // [parameters x draws]
+  int chains;
+};
+
+/// At equal distances along each chain, the same number of each; of more chains than `most`, one draw of some of them.
+SomeDraws spread_evenly(Draws const& draws, int most) {
+  auto const all = static_cast<int>(draws.chains.size());
+  int const chains = std::min(all, most);
+  int per_chain = most / chains;
+  for (Chain const& chain : draws.chains) per_chain = std::min(per_chain, static_cast<int>(chain.values.size()));
+  SomeDraws out{LaneArray(draws.parameter_count, chains * per_chain), chains};
   for (int c = 0; c < chains; ++c) {
-    auto const& values = draws.chains[static_cast<std::size_t>(c)].values;
+    auto const& values = draws.chains[static_cast<std::size_t>(static_cast<long long>(c) * all / chains)].values;
     for (int w = 0; w < per_chain; ++w) {
       auto const pick = static_cast<std::size_t>((2LL * w + 1) * static_cast<long long>(values.size()) / (2LL * per_chain));
-      for (int p = 0; p < draws.parameter_count; ++p) columns(p, c * per_chain + w) = values[pick][static_cast<std::size_t>(p)];
+      for (int p = 0; p < draws.parameter_count; ++p) out.columns(p, c * per_chain + w) = values[pick][static_cast<std::size_t>(p)];
     }
   }
-  return columns;
+  return out;
 }
 
 /// The rows of an experiment that are scored in any channel, and where blocks of them end.
@@ -73,19 +83,20 @@ struct ScoredRows {
 
 class RecordScores {
  public:
-  RecordScores(FinishedFit& fit, Criteria& criteria, int experiment, LaneArray const& draws)
+  RecordScores(FinishedFit& fit, Criteria& criteria, int experiment, SomeDraws const& draws, int own_draws)
       : fit_(fit),
         criteria_(criteria),
         index_(experiment),
         experiment_(fit.data[static_cast<std::size_t>(experiment)].experiment),
         pointwise_(fit.likelihood.pointwise(experiment)),
         scored_(*pointwise_),
-        chains_(static_cast<int>(fit.result.draws.chains.size())),
-        parameters_(static_cast<int>(fit.likelihood.model().parameters.size()), draws.width()),
-        future_(draws.width(), chains_),
+        chains_(draws.chains),
+        own_draws_(own_draws),
+        parameters_(static_cast<int>(fit.likelihood.model().parameters.size()), draws.columns.width()),
+        future_(draws.columns.width(), chains_),
         first_series_(criteria.pointwise.size()) {
     ParameterSpace const& space = fit.likelihood.space();
-    space.select(space.values_of_declared(draws), experiment, parameters_);
+    space.select(space.values_of_declared(draws.columns), experiment, parameters_);
     for (int c = 0; c < pointwise_->channels(); ++c) add_series(c);
     if (!criteria.in_time) return;
     left_out_.experiment = futures_.experiment = experiment_.name;
@@ -105,7 +116,8 @@ class RecordScores {
       for (int b = last - 1; b >= first; --b) {
         if (fit_.session.interrupted()) return false;
         LaneArray const block = samples_of(b, densities, from);
-        if (!finite(block)) return false;
+        failed_ = lanes_without_density(block);
+        if (failed_ > 0) return false;
         score(b, block, loo, block_influence, future_influence);
       }
       last = first;
@@ -120,6 +132,8 @@ class RecordScores {
   }
 
   double own_variance() const { return own_variance_; }
+  /// Draws without a solution; 0 where the user has interrupted.
+  int failed() const { return failed_; }
 
  private:
   void add_series(int channel) {
@@ -162,10 +176,12 @@ class RecordScores {
     return out;
   }
 
-  static bool finite(LaneArray const& values) {
+  static int lanes_without_density(LaneArray const& values) {
+    std::vector<char> without(static_cast<std::size_t>(values.width()), 0);
     for (int i = 0; i < values.rows(); ++i)
-      if (!std::ranges::all_of(values.row(i), [](double v) { return std::isfinite(v); })) return false;
-    return true;
+      for (int s = 0; s < values.width(); ++s)
+        if (!std::isfinite(values(i, s))) without[static_cast<std::size_t>(s)] = 1;
+    return static_cast<int>(std::ranges::count(without, 1));
   }
 
   PointwiseScores& series_of(Place const& place) { return criteria_.pointwise[first_series_ + place.channel]; }
@@ -204,9 +220,9 @@ class RecordScores {
   /// By draws of the posterior of the rows before the block.
   BlockScore by_own_draws(int b) {
     int const from = scored_.first_row(b), to = scored_.end_row(b);
-    auto const draws = earlier_draws(fit_, index_, from, parameters_.width());
+    auto const draws = earlier_draws(fit_, index_, from, own_draws_);
     if (!draws || fit_.session.interrupted()) return {std::numeric_limits<double>::infinity(), {}};
-    LaneArray parameters(parameters_.rows(), parameters_.width());
+    LaneArray parameters(parameters_.rows(), own_draws_);
     ParameterSpace const& space = fit_.likelihood.space();
     space.select(space.values_of_declared(draws->declared), index_, parameters);
     LaneArray densities((to - from) * pointwise_->channels(), parameters.width());
@@ -235,7 +251,8 @@ class RecordScores {
   Experiment const& experiment_;
   std::unique_ptr<PointwiseLikelihood> pointwise_;
   ScoredRows scored_;
-  int chains_;
+  int chains_, own_draws_;
+  int failed_ = 0;
   LaneArray parameters_;
   FutureOut future_;
   std::size_t first_series_;
@@ -269,14 +286,42 @@ void add_waic_and_counts(Criteria& criteria) {
   criteria.waic = sum_of(elpd_waic);
 }
 
-int draws_per_chain(FinishedFit const& fit, int longest_row_count) {
-  auto const chains = static_cast<int>(fit.result.draws.chains.size());
+/// Simulations of the whole model that the search and the sampling took.
+double simulations(FinishedFit const& fit) {
+  return static_cast<double>(fit.preparation.ledger.solves()) + static_cast<double>(fit.sampling.solves());
+}
+
+/// The most rows from the first to the last of a block, and from the first to the last of a record: unscored gaps are simulated
+/// too.
+struct Spans {
+  int block = 1, record = 1;
+
+  explicit Spans(std::vector<ExperimentData> const& data) {
+    for (ExperimentData const& each : data) {
+      std::vector<int> rows;
+      for (std::size_t i = 0; i < each.experiment.time.size(); ++i)
+        for (std::size_t c = 0; c < each.experiment.measured.size(); ++c)
+          if (each.experiment.is_scored(c, i)) {
+            rows.push_back(static_cast<int>(i));
+            break;
+          }
+      std::vector<int> const ends = block_ends(static_cast<int>(rows.size()), blocks_of_record);
+      for (std::size_t b = 1; b < ends.size(); ++b)
+        block = std::max(block, 1 + rows[static_cast<std::size_t>(ends[b] - 1)] - rows[static_cast<std::size_t>(ends[b - 1])]);
+      if (!rows.empty()) record = std::max(record, 1 + rows.back() - rows.front());
+    }
+  }
+};
+
+/// As many as a share of the fit's simulations allows, by counts, so that the same fit has the same draws on every machine. A
+/// record that is simulated part by part, each from its beginning, takes the more of them the more draws there are.
+int number_of_draws(FinishedFit const& fit) {
+  Spans const spans(fit.data);
   auto const channels = static_cast<double>(fit.likelihood.model().channels.size());
-  double const block = channels * std::ceil(longest_row_count / static_cast<double>(blocks_of_record));
-  int const held = std::clamp(static_cast<int>(std::min(2 * most_densities / block, 1e6)), fewest_draws, most_draws);
-  int shortest = std::max(held / chains, 1);
-  for (Chain const& chain : fit.result.draws.chains) shortest = std::min(shortest, static_cast<int>(chain.values.size()));
-  return shortest;
+  int draws = std::clamp(static_cast<int>(std::min(2 * most_densities / (channels * spans.block), 1e6)), fewest_draws, most_draws);
+  auto const cost = [&] { return draws * (std::ceil(draws * channels * spans.record / most_densities) + 1) / 2; };
+  while (draws > fewest_draws && cost() > share_of_fit * simulations(fit)) draws = std::max(fewest_draws, draws * 19 / 20);
+  return draws;
 }
 
 std::string why_none(FinishedFit const& fit) {
@@ -287,19 +332,24 @@ std::string why_none(FinishedFit const& fit) {
 }
 
 void score_draws(FinishedFit& fit, Criteria& criteria) {
-  int longest = 0;
-  for (ExperimentData const& each : fit.data) longest = std::max(longest, static_cast<int>(each.experiment.time.size()));
-  LaneArray const draws = spread_evenly(fit.result.draws, draws_per_chain(fit, longest));
-  criteria.draws = draws.width();
+  SomeDraws const draws = spread_evenly(fit.result.draws, number_of_draws(fit));
+  criteria.draws = draws.columns.width();
   criteria.in_time = fit.likelihood.model().dynamics != Dynamics::none;
-  auto const width = static_cast<std::size_t>(draws.width());
+  auto const width = static_cast<std::size_t>(criteria.draws);
+  double const shared = share_of_fit * simulations(fit) / static_cast<double>(fit.data.size());
+  int const own_draws = std::min(criteria.draws, std::max(fewest_draws, static_cast<int>(std::min(shared, 1e6))));
   DrawInfluence loo(width), block(width), future(width);
   double own_variance = 0;
   for (int e = 0; e < static_cast<int>(fit.data.size()); ++e) {
-    RecordScores record(fit, criteria, e, draws);
+    RecordScores record(fit, criteria, e, draws, own_draws);
     if (!record.run(loo, block, future)) {
+      criteria.reason = record.failed() == 0 ? "the run was interrupted"
+                                             : fmt::format("{} of {} draws have no solution on {}", record.failed(), criteria.draws,
+                                                           fit.data[static_cast<std::size_t>(e)].experiment.name);
       criteria.pointwise.clear();
-      criteria.reason = "a draw has no solution";
+      criteria.blocks.clear();
+      criteria.futures.clear();
+      criteria.draws = 0;
       return;
     }
     own_variance += record.own_variance();
