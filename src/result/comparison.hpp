@@ -48,6 +48,7 @@ struct ComparedScore {
   double stacking = 0, pseudo_bma = 0;          // weights
   int doubtful = 0;                             // samples with a Pareto k above 0.7, by leave-one-out
   int impossible = 0;                           // samples that it gives no density: elpd is -infinity, weights are 0
+  bool one_step = false;                        // each sample from measured ones before it
 };
 
 /// Of fits that have draws, by the same samples.

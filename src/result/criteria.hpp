@@ -11,7 +11,7 @@ namespace sysid {
 /// An estimate of the expected log predictive density.
 struct LogScore {
   double sum = 0;
-  double error = 0;  // one standard error, by the spread of the samples; NaN for one sample
+  double error = 0;  // one standard error, by the spread of samples as if independent; NaN for one sample
   int samples = 0;
   double monte_carlo_error = 0;  // by the number of draws
 };
@@ -50,7 +50,7 @@ using ParetoCounts = std::array<int, 4>;
 struct LeftOutBlocks {
   std::string experiment;
   std::vector<double> pareto_k;  // of each block, in the order of time
-  int asked = 0;                 // blocks; the last of them have a score
+  int asked = 0;                 // the earliest of these blocks may have no score; 0: the record is too short
   int first_row = 0;             // from which row of the file on there is a score; 0: nowhere
   int last_row = 0;
   int own_draws = 0;  // so many of these blocks are predicted by draws of their own, not by weighted draws of the fit

@@ -93,6 +93,7 @@ std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& 
   bool const stored = interpreted(folder / "summary.json", [&] {
     if (!summary.at("versions").at("files").contains("pointwise.csv")) return false;
     fit.in_time = summary.at("criteria").at("in_time").get<bool>();
+    fit.one_step = summary.value("measured_past", false);
     return true;
   });
   if (!stored) return std::nullopt;
@@ -150,6 +151,7 @@ ComparedScores compare_scores(std::vector<ScoredFit> const& all) {
     LogScore const score = sum_of(elpd[k]);
     ComparedScore fit{fits[k]->name, fits[k]->model, score.sum, score.error};
     fit.doubtful = fits[k]->doubtful;
+    fit.one_step = fits[k]->one_step;
     fit.impossible = static_cast<int>(std::ranges::count(elpd[k], -infinity));
     out.fits.push_back(std::move(fit));
     if (score.sum > out.fits[best].elpd) best = k;

@@ -25,6 +25,7 @@ struct ScoredFit {
   std::string name, model;
   std::string identity = {};  // fits that agree in it are of one and the same model
   bool in_time = false;
+  bool one_step = false;                      // from measured past samples
   int doubtful = 0;                           // samples with k above 0.7
   std::vector<ScoredSample> samples;          // sorted
   std::vector<double> elpd_loo, elpd_future;  // NaN where there is no score

@@ -72,6 +72,12 @@ ReportTable scores_table(ComparedScores const& scores) {
       table.caption += fmt::format("{}{}: no draw gives {} any density, so it has no weight", table.caption.empty() ? "" : "\n",
                                    fit.name, counted(fit.impossible, "sample"));
   }
+  std::vector<std::string> one_step;
+  for (ComparedScore const& fit : scores.fits)
+    if (fit.one_step) one_step.push_back(fit.name);
+  if (scores.future && !one_step.empty())
+    table.caption += fmt::format("{}{}: only parameters are from the rows before its tenth, each sample is one step ahead",
+                                 table.caption.empty() ? "" : "\n", listed(one_step));
   if (scores.in_time && !scores.future)
     table.caption += fmt::format(
         "{}the rows follow one another in time: leave-one-out shows how well a model interpolates, not how "

@@ -50,30 +50,49 @@ std::string pareto_words(Criteria const& criteria) {
   std::string words =
       fmt::format("Leave-one-out: of {} samples, Pareto’s k is above 0.7 for {}{}. ", criteria.loo->samples, doubtful, worst);
   if (doubtful > 0)
-    words +=
-        "Without such a sample the posterior would be another; the weighted draws do not reach it, and the score is too high. ";
+    words += "The posterior without such a sample lies where there are too few draws; its score is usually too high. ";
   if (criteria.unstable_waic > 0)
     words += fmt::format("WAIC: the log density of {} varies by more than 0.4 among the draws, so use leave-one-out instead. ",
                          counted(criteria.unstable_waic, "sample"));
   return words;
 }
 
-std::string time_words(Criteria const& criteria) {
+/// Which records have no leave-future-out, or one of their later rows only, and why.
+std::string future_words(std::vector<LeftOutBlocks> const& futures) {
+  std::vector<std::string> short_ones, far;
+  for (LeftOutBlocks const& each : futures)
+    if (each.asked == 0)
+      short_ones.push_back(each.experiment);
+    else if (each.first_row == 0)
+      far.push_back(each.experiment);
+  std::string words;
+  auto const on = [&](std::vector<std::string> const& names) { return futures.size() > 1 ? " of " + listed(names) : ""; };
+  if (!short_ones.empty()) words += fmt::format("No leave-future-out{}: it needs six scored rows. ", on(short_ones));
+  if (!far.empty())
+    words += fmt::format(
+        "No leave-future-out{}: the posterior from the rows before the last tenth is too far from that of the whole record "
+        "(Pareto’s k above 0.7). ",
+        on(far));
+  bool const partly =
+      std::ranges::any_of(futures, [](LeftOutBlocks const& each) { return each.first_row > 0 && !all_reached({each}); });
+  if (partly)
+    words += fmt::format("Leave-future-out covers only rows {}: for earlier ones Pareto’s k is above 0.7. ", rows_text(futures));
+  return words;
+}
+
+std::string time_words(Criteria const& criteria, bool measured_past) {
   std::string words =
       "The rows follow one another in time. If one is left out, its neighbours remain, so leave-one-out and WAIC show how well the "
       "model interpolates. Leave-block-out predicts each tenth of the record from the other nine, leave-future-out each of the "
-      "last "
-      "five tenths from the rows before it. ";
+      "last five tenths from the rows before it. ";
+  if (measured_past)
+    words +=
+        "In both only the parameters are from those rows: each sample is predicted one step ahead, from the measured ones before "
+        "it. ";
+  words += "The standard errors take samples for independent; if residuals are correlated, they are too small. ";
   if (!all_reached(criteria.blocks))
     words += "Leave-block-out: Pareto’s k of a block is above 0.7, and its score is not reliable. ";
-  if (!criteria.future)
-    words +=
-        "Leave-future-out: without its last tenth the record has another posterior, which the weighted draws do not reach "
-        "(Pareto’s k above 0.7). ";
-  else if (!all_reached(criteria.futures))
-    words += fmt::format("Leave-future-out covers only rows {}: for earlier ones Pareto’s k is above 0.7. ",
-                         rows_text(criteria.futures));
-  return words;
+  return words + future_words(criteria.futures);
 }
 
 std::string none_words(Criteria const& criteria) {
@@ -107,10 +126,10 @@ std::string criteria_html(Report const& report) {
   if (table.rows.empty()) return paragraph(none_words(criteria), "note");
   std::string const out = html(table);
   if (!criteria.loo) return out + paragraph(none_words(criteria), "note");
-  return out + paragraph((criteria.in_time ? time_words(criteria) : "") + pareto_words(criteria)) +
+  return out + paragraph((criteria.in_time ? time_words(criteria, report.measured_past) : "") + pareto_words(criteria)) +
          paragraph(
-             fmt::format("A log score is a sum of log densities of samples that the draws are made not to have seen, by {} "
-                         "draws; larger is better. It is meaningful only in comparison with another model of the same samples "
+             fmt::format("A log score is a sum of log densities of samples, each predicted without having been used ({} draws); "
+                         "larger is better. It is meaningful only in comparison with another model of the same samples "
                          "(`sysid compare`).",
                          criteria.draws),
              "note");
