@@ -63,8 +63,9 @@ ReportTable scores_table(ComparedScores const& scores) {
                                           : "each left out (leave-one-out)");
   table.header = {"fit", "model", "elpd", "error", "difference", "error of difference", "stacking weight", "pseudo-BMA+ weight"};
   for (ComparedScore const& fit : scores.fits) {
-    table.rows.push_back({fit.name, fit.model, fmt::format("{:.1f}", fit.elpd), known(fit.error), with_error(fit.difference, {}, 1),
-                          known(fit.difference_error), fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
+    table.rows.push_back({fit.name, fit.model, fmt::format("{:.1f}", fit.elpd), known(fit.error),
+                          std::isnan(fit.difference) ? "-" : with_error(fit.difference, {}, 1), known(fit.difference_error),
+                          fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
     if (fit.doubtful > 0 && !scores.future)
       table.caption += fmt::format("{}{}: Pareto's k is above 0.7 for {}, so its elpd is too high",
                                    table.caption.empty() ? "" : "\n", fit.name, counted(fit.doubtful, "sample"));
