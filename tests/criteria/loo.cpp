@@ -209,9 +209,11 @@ TEST_CASE("the Monte Carlo error of a sum covers what other draws of slow chains
     for (int i = 0; i < samples; ++i) sums.back() += score_sample(density.row(i), chains, influence).elpd_loo;
     errors.push_back(influence.error());
   }
-  double const spread = std::sqrt(sample_variance(sums));
-  MESSAGE("mean Monte Carlo error over the spread of the sums: ", mean(errors) / spread);
-  CHECK(mean(errors) == approximately(spread, 0.25));  // the sd of an sd of 100 is 7 %
+  double const ratio = mean(errors) / std::sqrt(sample_variance(sums));  // the sd of an sd of 100 is 7 %
+  CAPTURE(ratio);
+  CHECK(ratio > 0.9);  // 0.77 if draws counted as independent ones
+  // Samples pull the mean both ways, so their sum varies less slowly than each of them, by whose efficiency draws are counted.
+  CHECK(ratio < 1.6);
 }
 
 TEST_CASE("sums leave out what has no score, and blocks share the rows") {
