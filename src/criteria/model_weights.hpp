@@ -11,8 +11,8 @@ using PointwiseElpd = std::vector<std::vector<double>>;
 
 /// The mixture of predictive distributions with the largest sum_i log sum_k w_k exp(elpd_ik): weights on the simplex.
 ///                                                                                    Yao, Vehtari, Simpson and Gelman 2018, eq. 4
-/// By multiplicative updates, which climb the concave score; ended where no weights can score more by 1e-7 per sample, or after
-/// 20,000 rounds.
+/// By multiplicative updates, which climb the concave score, and steps ahead along them where these climb more; ended where no
+/// weights can score more by 1e-7 per sample, or after 20,000 updates.
 std::vector<double> stacking_weights(PointwiseElpd const& elpd);
 
 /// Weights exp(elpd_k) / sum, averaged over 1000 Bayesian bootstraps of the samples.  Yao et al. 2018, sec. 3.4: pseudo-BMA+
