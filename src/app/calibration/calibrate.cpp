@@ -30,12 +30,21 @@ namespace {
 
 using json = nlohmann::json;
 
+/// Of the file; else of the result that a resumed calibration goes on from, which was drawn.
+std::optional<std::uint64_t> seed_in_force(Session const& session, Task const& task) {
+  std::optional<std::uint64_t> const stated = std::get<FitTask>(task.what).seed;
+  auto const folder = session.result_folder(task);
+  if (stated || !session.options.resume || !complete(folder)) return stated;
+  auto const summary = json::parse(read_whole_summary(folder));
+  return interpreted(folder / "summary.json", [&] { return summary.at("seed").get<std::uint64_t>(); });
+}
+
 class Calibration {
  public:
   Calibration(Session& session, int index, CalibrateOptions const& options)
       : session_(session),
         task_(session.file.tasks[static_cast<std::size_t>(index)]),
-        checkpoint_(session, task_, std::get<FitTask>(task_.what).seed),
+        checkpoint_(session, task_, seed_in_force(session, task_), "calibrate"),
         replications_(options.replications) {
     plan_.index = index;
     plan_.task = &task_;
@@ -188,16 +197,21 @@ class Calibration {
   int failed_ = 0;
 };
 
-/// Whether a result of as many replications of this very task stands there already; UserError (E6208) where it is of another.
+/// Whether a calibration of as many replications of this very task stands there already; UserError (E6208) where what stands there is
+/// something else, or a calibration of more replications, of which some would be lost. One of fewer is gone on from.
 bool kept(Session const& session, Task const& task, CalibrateOptions const& options) {
   auto const folder = session.result_folder(task);
   if (!session.options.resume || !complete(folder)) return false;
   std::optional<std::uint64_t> const seed = session.options.seed ? session.options.seed : std::get<FitTask>(task.what).seed;
-  if (auto const wrong = stored_otherwise(session, task, seed)) throw UserError(*wrong);
+  if (auto const wrong = stored_otherwise(session, task, seed, "calibrate")) throw UserError(*wrong);
   auto const summary = json::parse(read_whole_summary(folder));
-  return interpreted(folder / "summary.json", [&] {
-    return summary.at("verb") == "calibrate" && summary.at("settings").value("replications", 0) == options.replications;
-  });
+  int const replications =
+      interpreted(folder / "summary.json", [&] { return summary.at("settings").at("replications").get<int>(); });
+  if (replications > options.replications)
+    throw UserError(result_error("E6208", fmt::format("the calibration in `{}` has {} replications, more than {}", folder.string(),
+                                                      replications, options.replications),
+                                 replace_results()));
+  return replications == options.replications;
 }
 
 /// Those that can be calibrated: of all of the file the others are skipped with a notice, one that is named alone is refused.

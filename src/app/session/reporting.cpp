@@ -200,7 +200,7 @@ std::string model_digest(Session const& session, std::string const& model) {
 namespace {
 
 std::optional<Diagnostic> otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed,
-                                    nlohmann::json const& summary) {
+                                    std::string const& verb, nlohmann::json const& summary) {
   auto const folder = session.result_folder(task);
   auto const refuse = [&](std::string const& what) {
     Help help = run_again();
@@ -209,6 +209,7 @@ std::optional<Diagnostic> otherwise(Session const& session, Task const& task, st
     return result_error("E6208", fmt::format("the results in `{}` were computed with another {}", folder.string(), what),
                         std::move(help));
   };
+  if (summary.value("verb", "") != verb) return refuse("verb");
   if (summary.at("versions").value("model_sha256", "") != task_digest(session, task))
     return refuse("text of " + task_row(task).name(session, task));
   std::vector<ExperimentUse> const experiments = task_row(task).experiments(task);
@@ -229,10 +230,11 @@ std::optional<Diagnostic> otherwise(Session const& session, Task const& task, st
 
 }  // namespace
 
-std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed) {
+std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed,
+                                           std::string const& verb) {
   auto const folder = session.result_folder(task);
   auto const summary = nlohmann::json::parse(read_whole_summary(folder));
-  return interpreted(folder / "summary.json", [&] { return otherwise(session, task, seed, summary); });
+  return interpreted(folder / "summary.json", [&] { return otherwise(session, task, seed, verb.empty() ? verb_of(task) : verb, summary); });
 }
 
 }  // namespace sysid

@@ -42,7 +42,9 @@ std::string task_digest(Session const& session, Task const& task);
 std::string statement_digest(Session const& session, Task const& task);
 
 /// What is wrong with taking up stored results of a task: they are of another text of what the task is about, of another statement
-/// or other experiments, of other contents of their files, or of another seed (when one is stated); nothing when they fit.
-std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed);
+/// or other experiments, of other contents of their files, of another seed (when one is stated), or of another verb than `verb`
+/// (empty: the task's own); nothing when they fit.
+std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed,
+                                           std::string const& verb = {});
 
 }  // namespace sysid

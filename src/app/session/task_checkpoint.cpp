@@ -59,11 +59,12 @@ std::uint64_t seed_of(Session& session, Task const& task, std::optional<std::uin
 
 }  // namespace
 
-TaskCheckpoint::TaskCheckpoint(Session& session, Task const& task, std::optional<std::uint64_t> const& stated)
+TaskCheckpoint::TaskCheckpoint(Session& session, Task const& task, std::optional<std::uint64_t> const& stated, std::string verb)
     : session_(session),
       task_(task),
       path_(checkpoint_path(session.result_folder(task))),
-      seed_(seed_of(session, task, stated, path_)) {}
+      seed_(seed_of(session, task, stated, path_)),
+      verb_(std::move(verb)) {}
 
 void TaskCheckpoint::of_data(std::vector<ExperimentData> const& data) {
   for (ExperimentData const& each : data) digests_.emplace_back(each.experiment.name, each.record.digest);
@@ -72,7 +73,9 @@ void TaskCheckpoint::of_data(std::vector<ExperimentData> const& data) {
 json TaskCheckpoint::who() const {
   json digests = json::array();
   for (auto const& [name, digest] : digests_) digests.push_back({name, digest});
-  return {{"model", session_.source.all_text()}, {"data", std::move(digests)}, {"task", task_.name}, {"seed", seed_}};
+  json who = {{"model", session_.source.all_text()}, {"data", std::move(digests)}, {"task", task_.name}, {"seed", seed_}};
+  if (!verb_.empty()) who["verb"] = verb_;
+  return who;
 }
 
 std::shared_ptr<json const> TaskCheckpoint::stored() const {
@@ -80,7 +83,7 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
   auto const stored = read(path_);
   if (!stored) return nullptr;
   if (stored->at("who") != who())
-    throw refused("E6208", path_, "belongs to another text, data or seed",
+    throw refused("E6208", path_, "belongs to another text, data, seed or verb",
                   "restore the files of that run, or start again with --force");
   return std::make_shared<json const>(stored->at("content"));
 }

@@ -26,8 +26,8 @@ class TaskCheckpoint {
  public:
   TaskCheckpoint(Session& session, Task const& task, Unkept unkept) : session_(session), task_(task), seed_(unkept.seed) {}
   /// stated: the seed in the file. The seed in force is the command line's, the file's, that of a checkpoint to go on from, or one
-  /// drawn and printed.
-  TaskCheckpoint(Session& session, Task const& task, std::optional<std::uint64_t> const& stated);
+  /// drawn and printed. verb: of another work on the task than its own, whose checkpoints are not those of the task.
+  TaskCheckpoint(Session& session, Task const& task, std::optional<std::uint64_t> const& stated, std::string verb = {});
 
   std::uint64_t seed() const { return seed_; }
   std::filesystem::path const& path() const { return path_; }
@@ -60,6 +60,7 @@ class TaskCheckpoint {
   Task const& task_;
   std::filesystem::path path_;  // empty: kept nowhere
   std::uint64_t seed_;
+  std::string verb_;  // empty: the task's own
   bool saved_ = false;
   std::vector<std::pair<std::string, std::string>> digests_;  // of each experiment, by its name
 };

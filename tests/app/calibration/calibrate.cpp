@@ -50,9 +50,9 @@ struct CalibrationDesk {
     return calibrate_text(folder.path() / "case.sysid", text, options, calibrate);
   }
   std::string file(std::string const& name) const { return read_file(options.output / name); }
-  std::string refusal(std::string const& text, std::string const& task = {}) const {
+  std::string refusal(std::string const& text, std::string const& task = {}, int replications = 20) const {
     try {
-      run(text, 20, task);
+      run(text, replications, task);
     } catch (UserError const& error) {
       return error.diagnostic().message;
     }
@@ -115,6 +115,43 @@ TEST_CASE("the bytes of a calibration depend neither on threads nor on interrupt
   whole.run(model + fit, 30);
   CHECK(stopped.file("posterior/ranks.csv") == whole.file("posterior/ranks.csv"));
   CHECK_THROWS_AS(whole.run(model + fit, 30), UserError);
+}
+
+TEST_CASE("a finished result that is not this calibration is never overwritten without --force") {
+  CalibrationDesk desk;
+  CHECK(desk.run(model + fit).exit == 0);
+  std::string const ranks = desk.file("posterior/ranks.csv");
+  desk.options.resume = true;
+  CHECK(desk.refusal(model + fit, {}, 10).find("has 20 replications, more than 10") != std::string::npos);
+  CHECK(desk.file("posterior/ranks.csv") == ranks);
+  desk.options.seed = 5;
+  CHECK(desk.refusal(model + fit, {}, 30).find("were computed with another seed") != std::string::npos);
+  CHECK(desk.file("posterior/ranks.csv") == ranks);
+}
+
+TEST_CASE("a calibration whose seed was drawn goes on with that seed") {
+  CalibrationDesk desk;
+  std::string const drawn = with(fit, ", seed = 4", "");
+  CHECK(desk.run(model + drawn, 10).exit != 75);
+  auto const seed = [&] { return json::parse(desk.file("posterior/summary.json")).at("seed").get<std::uint64_t>(); };
+  std::uint64_t const first = seed();
+  desk.options.resume = true;
+  CHECK(desk.run(model + drawn, 12).notices.find("continuing after 10 of 12 replications") != std::string::npos);
+  CHECK(seed() == first);
+}
+
+TEST_CASE("a fit does not take the result or the checkpoint of a calibration for its own") {
+  CalibrationDesk desk;
+  auto const run = [&] { return run_text(desk.folder.path() / "case.sysid", model + fit, desk.options); };
+  desk.options.resume = true;
+  desk.options.interrupt_after = 3;
+  CHECK(desk.run(model + fit).exit == 75);
+  clear_interrupt();
+  desk.options.interrupt_after = 0;
+  CHECK_THROWS_AS(run(), UserError);
+  CHECK(desk.run(model + fit).exit == 0);
+  CHECK_THROWS_AS(run(), UserError);
+  CHECK(json::parse(desk.file("posterior/summary.json")).at("verb") == "calibrate");
 }
 
 TEST_CASE("a checkpoint of a calibration that has been changed is refused") {
