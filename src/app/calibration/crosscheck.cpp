@@ -13,6 +13,7 @@
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
 #include "app/session/results.hpp"
+#include "core/numeric/random.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/calibration/agreement.hpp"
@@ -34,7 +35,14 @@ ChainValues column_of(Draws const& draws, std::size_t column) {
 bool is_optimum(Report const& report) { return report.draws.total() == 1; }
 
 /// Another way of sampling: trajectories where there were random moves, and moves where there were trajectories or none.
-std::string other_than(std::string const& backend) { return backend == "mh" || backend == "auto" ? "nuts" : "mh"; }
+std::string other_than(std::string const& backend) { return backend == "mh" ? "nuts" : "mh"; }
+
+UserError refused(std::string message, std::string help) {
+  return UserError({Severity::error, "", std::move(message), std::nullopt, {}, std::move(help)});
+}
+
+/// Draws from the same random numbers would differ less than their errors say.
+std::uint64_t other_seed(std::uint64_t seed) { return Stream({seed, Purpose::calibration, 0, 3}).bits() >> 11; }
 
 std::vector<ComparedNumber> compared(Report const& first, Report const& second) {
   std::vector<ComparedNumber> all;
@@ -74,33 +82,22 @@ class Crosscheck {
       : session_(session),
         index_(index),
         task_(session.file.tasks[static_cast<std::size_t>(index)]),
-        own_(std::get<FitTask>(task_.what)) {
+        own_(std::get<FitTask>(task_.what)),
+        against_(against) {
     own_.near.reset();
-    other_ = own_;
-    other_.backend = against.empty() ? other_than(own_.backend) : against;
-    BackendRow const* const row = find_backend(other_.backend);
-    other_.settings = Settings(row->settings);
-    if (other_.backend == own_.backend)
-      throw UserError({Severity::error,
-                       "",
-                       fmt::format("`{}` is fitted by `{}` already", task_.name, own_.backend),
-                       std::nullopt,
-                       {},
-                       "name another back end with --against"});
-    if (row->objective_kind != ObjectiveKind::posterior)
-      throw UserError({Severity::error,
-                       "",
-                       fmt::format("`{}` finds an optimum and does not sample: nothing can be checked against it", other_.backend),
-                       std::nullopt,
-                       {},
-                       "name a back end that samples with --against: mh, nuts or tempering"});
+    if (against_.empty()) return;
+    require_another(own_.backend);
+    std::string const help = "name a back end that samples with --against: mh, nuts or tempering";
+    if (against_ == "auto") throw refused("`auto` stands for another back end, which may be that of the fit", help);
+    if (find_backend(against_)->objective_kind != ObjectiveKind::posterior)
+      throw refused(fmt::format("`{}` finds an optimum and does not sample: nothing can be checked against it", against_), help);
   }
 
   ExitCode run() {
     auto const began = std::chrono::steady_clock::now();
     std::uint64_t const seed = session_.seed(task_, own_.seed);
     auto const first = fit(own_, seed);
-    auto const second = first ? fit(other_, seed) : std::nullopt;
+    auto const second = first ? fit(other_fit(first->backend), other_seed(seed)) : std::nullopt;
     if (!second) {
       session_.notices << fmt::format("{}: interrupted; nothing is kept\n", task_.name);
       return ExitCode::interrupted;
@@ -113,6 +110,20 @@ class Crosscheck {
   }
 
  private:
+  void require_another(std::string const& backend) const {
+    if (against_ == backend)
+      throw refused(fmt::format("`{}` is fitted by `{}` already", task_.name, backend), "name another back end with --against");
+  }
+
+  /// backend: that has fitted, where `auto` has chosen it too.
+  FitTask const& other_fit(std::string const& backend) {
+    require_another(backend);
+    other_ = own_;
+    other_.backend = against_.empty() ? other_than(backend) : against_;
+    other_.settings = Settings(find_backend(other_.backend)->settings);
+    return other_;
+  }
+
   std::optional<UnkeptFit> fit(FitTask const& what, std::uint64_t seed) {
     session_.notices << fmt::format("{}: fitting with {}\n", task_.name, what.backend);
     return fit_unkept(session_, index_, task_, what, seed, {}, find_backend(what.backend));
@@ -127,8 +138,10 @@ class Crosscheck {
     report.verb = "crosscheck";
     add_repetition(session_, task_, report, {"crosscheck", fmt::format(" --task {} --against {}", task_.name, other_.backend)});
     report.data = first.report.data;
-    for (UnkeptFit const* each : {&first, &second})
+    for (UnkeptFit const* each : {&first, &second}) {
+      report.settings.emplace_back(each->backend + " seed", static_cast<std::int64_t>(each->report.seed));
       for (auto const& [name, value] : each->report.settings) report.settings.emplace_back(each->backend + " " + name, value);
+    }
     bool const with_optimum = is_optimum(first.report);
     std::vector<ComparedNumber> const numbers = compared(first.report, second.report);
     report.tables.push_back(number_table(numbers, first.backend, second.backend, with_optimum));
@@ -162,6 +175,7 @@ class Crosscheck {
   int index_;
   Task const& task_;
   FitTask own_, other_;
+  std::string against_;  // as it was asked for; empty: what suits
 };
 
 }  // namespace

@@ -69,7 +69,19 @@ TEST_CASE("the other back end is the one that is named, and none that cannot jud
   CHECK(desk.out.find("nuts and tempering agree") != std::string::npos);
   CHECK_THROWS_AS(desk.run("mh", {{}, "mh"}), UserError);
   CHECK_THROWS_AS(desk.run("mh", {{}, "map"}), UserError);
+  CHECK_THROWS_AS(desk.run("mh", {{}, "auto"}), UserError);
   CHECK_THROWS_AS(desk.run("mh", {"prior", {}}), UserError);
+}
+
+TEST_CASE("what `auto` has chosen is compared with another back end, drawn with other random numbers") {
+  CrosscheckDesk desk;
+  CHECK(desk.run("auto") == 0);
+  CHECK(desk.out.find("mh and nuts agree") != std::string::npos);
+  json const settings = desk.summary().at("settings");
+  CHECK(settings.at("mh seed") == 3);
+  CHECK(settings.at("nuts seed") != 3);
+  desk.options.force = true;
+  CHECK_THROWS_AS(desk.run("auto", {{}, "mh"}), UserError);
 }
 
 TEST_CASE("an optimum is held to the draws of a sampler") {
