@@ -59,6 +59,7 @@ std::vector<ComparedNumber> compared(Report const& first, Report const& second) 
 
 /// To two digits of its error.
 std::string to_error(double value, double error) {
+  if (!std::isfinite(value) || !std::isfinite(error)) return fmt::format("{:.4g}", value);
   double const digits = value == 0 || !(error > 0) ? 4 : std::ceil(std::log10(std::fabs(value) / error)) + 2;
   return significant(value, static_cast<int>(std::clamp(digits, 2.0, 12.0)));
 }
@@ -72,7 +73,8 @@ ReportTable number_table(std::vector<ComparedNumber> const& numbers, std::string
                     {}};
   for (ComparedNumber const& each : numbers)
     table.rows.push_back({each.quantity, each.unit, each.what, to_error(each.first, each.error), to_error(each.second, each.error),
-                          significant(each.error, 2), fmt::format("{:.2f}", each.z())});
+                          std::isfinite(each.error) ? significant(each.error, 2) : "-",
+                          std::isfinite(each.z()) ? fmt::format("{:.2f}", each.z()) : "-"});
   return table;
 }
 

@@ -136,6 +136,17 @@ void Replicator::fit(MadeRecords const& made, Replication& replication) {
     replication.failure = "there are fewer draws than ranks";
     return;
   }
+  // Of no rank, which NaN would have too: it is below nothing.
+  if (optimum)
+    for (std::size_t p = 0; p < made.truth.size(); ++p)
+      if (Summary const& each = report.summary[p]; !each.coefficient && !(std::isfinite(each.mean) && std::isfinite(each.sd))) {
+        replication.failure = "the optimum or its sd is not finite";
+        return;
+      }
+  if (!optimum && std::isnan(fitted->log_likelihood)) {
+    replication.failure = "the likelihood of the true values is not a number";
+    return;
+  }
   Stream ties({replication.seed, Purpose::calibration, 0, 2});
   for (std::size_t p = 0; p < made.truth.size(); ++p) {
     Summary const& summary = report.summary[p];
@@ -143,7 +154,7 @@ void Replicator::fit(MadeRecords const& made, Replication& replication) {
     replication.places.push_back(optimum ? place_in_normal(summary.mean, summary.sd, made.truth[p], plan_.draws)
                                          : place_among(report.draws.column(p), made.truth[p], plan_.draws, ties));
     if (optimum) continue;
-    double const worth = std::isnan(summary.ess_bulk) ? 1 : summary.ess_bulk;
+    double const worth = std::isfinite(summary.ess_bulk) ? summary.ess_bulk : 1;
     replication.independent = replication.places.size() == 1 ? worth : std::min(replication.independent, worth);
   }
   if (!optimum) replication.places.push_back(place_among(log_likelihoods(report.draws), fitted->log_likelihood, plan_.draws, ties));

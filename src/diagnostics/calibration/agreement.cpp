@@ -21,10 +21,8 @@ ChainValues changed(ChainValues chains, Change const& change) {
   return chains;
 }
 
-/// At least one draw, at most all.
-double worth(double ess, std::size_t draws) {
-  return std::isfinite(ess) ? std::clamp(ess, 1.0, static_cast<double>(draws)) : static_cast<double>(draws);
-}
+/// At least one draw, at most all; one where it is not known.
+double worth(double ess, std::size_t draws) { return std::isfinite(ess) ? std::clamp(ess, 1.0, static_cast<double>(draws)) : 1.0; }
 
 struct Estimate {
   double value, error;
@@ -32,11 +30,14 @@ struct Estimate {
 
 std::vector<Estimate> estimates(ChainValues const& chains) {
   std::vector<double> const all = pooled(chains);
+  double const nan = std::nan("");
+  if (all.empty() || std::any_of(all.begin(), all.end(), [](double x) { return !std::isfinite(x); }))
+    return std::vector<Estimate>(5, {nan, nan});
   double const center = mean(all), variance = sample_variance(all), sd = std::sqrt(variance);
   std::vector<Estimate> out = {{center, sd / std::sqrt(worth(ess_mean(chains), all.size()))}};
   ChainValues const squares = changed(chains, [&](double x) { return (x - center) * (x - center); });
   double const of_variance = std::sqrt(sample_variance(pooled(squares)) / worth(ess_mean(squares), all.size()));
-  out.push_back({sd, of_variance / (2 * sd)});
+  out.push_back({sd, sd > 0 ? of_variance / (2 * sd) : 0});
   std::vector<double> sorted = all;
   std::sort(sorted.begin(), sorted.end());
   for (double const p : {0.05, 0.5, 0.95}) {
@@ -86,8 +87,9 @@ Findings agreement_findings(std::vector<ComparedNumber> const& numbers, std::str
   for (ComparedNumber const* each : wrong)
     if (std::find(concerned.begin(), concerned.end(), each->quantity) == concerned.end()) concerned.push_back(each->quantity);
   std::string const unit = worst.unit.empty() || worst.unit == "-" ? "" : " " + worst.unit;
-  std::string const size = with_optimum ? "more than a fifth of the posterior sd"
-                                        : fmt::format("{:.1f} Monte Carlo standard errors", std::fabs(worst.z()));
+  std::string const size = !std::isfinite(worst.z()) ? "an unknown number of standard errors"
+                           : with_optimum            ? "more than a fifth of the posterior sd"
+                                                     : fmt::format("{:.1f} Monte Carlo standard errors", std::fabs(worst.z()));
   return {{FindingCode::backends_disagree, !with_optimum && p(worst) < wrong_p ? Severity::error : Severity::warning, concerned,
            fmt::format("{} and {} differ: the {} of {} is {:.4g}{} by one and {:.4g}{} by the other, {} apart{}", first, second,
                        worst.what, worst.quantity, worst.first, unit, worst.second, unit, size,

@@ -1,5 +1,7 @@
 // Two samples of one posterior: how far their summaries differ, in Monte Carlo standard errors.
 #pragma once
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,14 @@ struct ComparedNumber {
   std::string quantity, unit, what;  // "k", "N/m", "mean", "sd", "q5", "median", "q95"
   double first = 0, second = 0;
   double error = 0;  // of their difference
-  double z() const { return (first - second) / error; }
+  /// 0 where both are the same number; infinite where the difference cannot be judged: it is of what is not finite, or has no
+  /// error.
+  double z() const {
+    if (first == second) return 0;
+    double const z = (first - second) / error;
+    return std::isfinite(first) && std::isfinite(second) && error > 0 && !std::isnan(z) ? z
+                                                                                        : std::numeric_limits<double>::infinity();
+  }
 };
 
 /// draws: of each chain, one quantity. Mean, sd, median, 5 and 95 % quantiles with errors by effective sample sizes: of the mean by
@@ -26,7 +35,8 @@ std::vector<ComparedNumber> compare_draws(std::string const& name, std::string c
 std::vector<ComparedNumber> compare_optimum(std::string const& name, std::string const& unit, ChainValues const& draws,
                                             double optimum, double sd);
 
-/// Numbers that differ by more than chance explains, all taken together (Bonferroni). first, second: names of the back ends.
+/// Numbers that differ by more than chance explains, all taken together (Bonferroni), or cannot be compared. first, second: names
+/// of the back ends.
 Findings agreement_findings(std::vector<ComparedNumber> const& numbers, std::string const& first, std::string const& second,
                             bool with_optimum);
 

@@ -64,6 +64,40 @@ TEST_CASE("samples of two distributions differ") {
   CHECK(wider.front().message.find("sd") != std::string::npos);
 }
 
+TEST_CASE("what is not finite or has no error never agrees, unless both are the same") {
+  double const nan = std::nan("");
+  auto const code = [](ComparedNumber const& each, bool with_optimum) {
+    return agreement_findings({each}, "mh", "nuts", with_optimum).size();
+  };
+  for (bool const with_optimum : {false, true}) {
+    CHECK(code({"k", "", "mean", nan, 1, 0.1}, with_optimum) == 1);
+    CHECK(code({"k", "", "mean", 1, 1.1, nan}, with_optimum) == 1);
+    CHECK(code({"k", "", "mean", 1, 1.1, 0}, with_optimum) == 1);
+    CHECK(code({"k", "", "mean", nan, nan, nan}, with_optimum) == 1);
+    CHECK(code({"k", "", "mean", 1, 1, 0}, with_optimum) == 0);
+    CHECK(code({"k", "", "mean", 1, 1, nan}, with_optimum) == 0);
+  }
+  ChainValues const still(4, std::vector<double>(100, 2.0)), other(4, std::vector<double>(100, 3.0));
+  CHECK(findings_of(still, still).empty());
+  CHECK(findings_of(still, other).size() == 1);
+  CHECK(findings_of(normal_chains(0, 1, 1), ChainValues(4, std::vector<double>(1000, nan))).size() == 1);
+}
+
+TEST_CASE("correlated draws of one distribution agree") {
+  auto const autoregression = [](std::uint64_t number) {
+    ChainValues chains(4);
+    for (std::size_t c = 0; c < chains.size(); ++c) {
+      Stream stream({42, Purpose::test, number, c});
+      double x = stream.normal();
+      for (int i = 0; i < 2000; ++i) chains[c].push_back(x = 0.9 * x + std::sqrt(1 - 0.81) * stream.normal());
+    }
+    return chains;
+  };
+  int doubted = 0;  // one time in a hundred
+  for (std::uint64_t r = 0; r < 40; ++r) doubted += findings_of(autoregression(r), autoregression(100 + r)).empty() ? 0 : 1;
+  CHECK(doubted <= 5);
+}
+
 TEST_CASE("an optimum differs from a posterior by parts of its sd") {
   ChainValues const draws = normal_chains(1, 0.5, 1);
   auto const findings = [&](double optimum, double sd) {
