@@ -40,6 +40,53 @@ bool same_response(Trajectory const& trajectory, Trajectory::Result const& coars
   return true;
 }
 
+/// Rows that no likelihood reads are not simulated, where they could fail.
+Experiment up_to_last_scored(Experiment experiment) {
+  auto const last = std::find_if(experiment.scored.rbegin(), experiment.scored.rend(), [](std::uint8_t each) { return each != 0; });
+  auto const scored = static_cast<std::size_t>(experiment.scored.rend() - last);
+  std::size_t const rows = std::max<std::size_t>(scored, 2);  // two make a step
+  if (scored == 0 || rows >= experiment.time.size()) return experiment;
+  experiment.time.resize(rows);
+  experiment.scored.resize(rows);
+  for (InputSignal& input : experiment.inputs) input = input.view(0, static_cast<int>(rows));
+  for (auto& channel : experiment.measured)
+    if (!channel.empty()) channel.resize(rows);
+  for (auto& channel : experiment.has_lags)
+    if (!channel.empty()) channel.resize(rows);
+  return experiment;
+}
+
+/// What is made, before it is.
+Experiment with_zeros(Experiment experiment) {
+  for (std::size_t c = 0; c < experiment.measured.size(); ++c)
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i)
+      if (experiment.is_scored(c, i)) experiment.measured[c][i] = 0;
+  return experiment;
+}
+
+/// Rows of which the likelihood of an experiment reads samples that it does not score, by number in the file: those that are looked
+/// back to, and those that a start is estimated from.
+std::set<int> rows_only_read(ExperimentData const& data, Model const& model, StartRule start) {
+  Experiment const& experiment = data.experiment;
+  int const samples = static_cast<int>(experiment.time.size());
+  std::set<int> rows;
+  auto const read = [&](int channel, int index) {
+    auto const c = static_cast<std::size_t>(channel);
+    if (index < 0 || !experiment.is_scored(c, static_cast<std::size_t>(index))) rows.insert(experiment.first_row + index);
+  };
+  for (PastSample const& each : lagged_samples(model, -2)) read(each.channel, -each.lag);
+  for (PastSample const& each : lagged_samples(model, -1))
+    for (int i = 0; i + 1 < samples; ++i) read(each.channel, i - each.lag);
+  for (int c = 0; c < static_cast<int>(experiment.measured.size()); ++c) {
+    for (PastSample const& each : lagged_samples(model, c))
+      for (int i = 0; i < samples; ++i)
+        if (experiment.is_scored(static_cast<std::size_t>(c), static_cast<std::size_t>(i))) read(each.channel, i - each.lag);
+    if (start.kind == StartRule::Kind::estimated)
+      for (int i = 0; i < std::min(start.rows, samples); ++i) read(c, i);
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task const& task, FitTask const& what,
@@ -61,6 +108,18 @@ std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task cons
                                    session.file.data[static_cast<std::size_t>(each.use.data)].name),
                        "fit to parts without common rows");
     }
+  // It would be made in one experiment, and as it was measured in the other.
+  Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
+  Model const model = with_prediction(written, what.prediction).value_or(written);
+  for (ExperimentData const& each : data)
+    for (int const row : rows_only_read(each, model, what.start))
+      if (row > 0 && taken.contains({each.use.data, static_cast<std::size_t>(row)}))
+        return refused(
+            task,
+            fmt::format("`{}` cannot be calibrated: `{}` reads row {} without scoring it, which another of its experiments "
+                        "scores",
+                        task.name, each.experiment.name, row),
+            "fit to parts that lie further apart, or to one of them alone");
   return std::nullopt;
 }
 
@@ -94,7 +153,7 @@ std::optional<MadeRecords> RecordMaker::make(std::uint64_t seed) const {
       for (std::size_t c = 0; c < record.measured.size(); ++c)
         for (std::size_t i = 0; i < each.experiment.time.size() && !record.measured[c].empty(); ++i)
           if (double& sample = record.measured[c][i + static_cast<std::size_t>(each.experiment.first_row) - 1];
-              each.experiment.scored[i] != 0 && !std::isnan(sample))
+              each.experiment.is_scored(c, i))
             sample = made[e][c][i];
     }
     return out;
@@ -115,10 +174,19 @@ std::vector<std::vector<std::vector<double>>> RecordMaker::samples(ConstLanes va
 }
 
 std::optional<std::vector<std::vector<double>>> RecordMaker::samples(int e, ConstLanes parameters, StreamKey noise) const {
-  Model const& model = compiled_->model;
-  Experiment experiment = data_[static_cast<std::size_t>(e)].experiment;
+  Experiment const experiment = up_to_last_scored(data_[static_cast<std::size_t>(e)].experiment);
   // Streams of noise go by the number of the trajectory, which is 0 here.
   noise.seed = Stream(noise).bits();
+  if (predicts_from_data(compiled_->model))
+    // Wherever rounds begin they end in the same record. What was measured begins them only where zeros cannot: else it would
+    // decide which true values are drawn again.
+    if (auto made = samples(with_zeros(experiment), parameters, noise)) return made;
+  return samples(experiment, parameters, noise);
+}
+
+std::optional<std::vector<std::vector<double>>> RecordMaker::samples(Experiment experiment, ConstLanes parameters,
+                                                                     StreamKey noise) const {
+  Model const& model = compiled_->model;
   SolverSettings solver = what_.solver;
   bool const refine = model.integrated() && !solver.as_model && !solver.row().exact;
   auto const trajectory_of = [&](SolverSettings const& with) {
@@ -126,10 +194,16 @@ std::optional<std::vector<std::vector<double>>> RecordMaker::samples(int e, Cons
   };
   Trajectory::Result result = trajectory_of(solver).run(parameters, noise);
   for (int i = 0; refine && i < most_refinements && solver.finer().within_limits(); ++i) {
+    SolverSettings const coarser = solver;
     solver = solver.finer();
     Trajectory const finer = trajectory_of(solver);
     Trajectory::Result fine = finer.run(parameters, noise);
-    bool const same = result.failed() == 0 && fine.failed() == 0 && same_response(finer, result, fine);
+    // What one solver can follow is not drawn again because a finer one cannot.
+    if (result.failed() == 0 && fine.failed() > 0) {
+      solver = coarser;
+      break;
+    }
+    bool const same = result.failed() == 0 && same_response(finer, result, fine);
     result = std::move(fine);
     if (same) break;
   }
@@ -139,18 +213,20 @@ std::optional<std::vector<std::vector<double>>> RecordMaker::samples(int e, Cons
     for (std::size_t c = 0; c < experiment.measured.size(); ++c)
       for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
         double& sample = experiment.measured[c][i];
-        if (experiment.scored[i] == 0 || std::isnan(sample)) continue;
+        if (!experiment.is_scored(c, i)) continue;
         double const made = model.channels[c].to_si(result.noisy[c][0][i]);
+        if (!std::isfinite(made)) continue;
         changed = changed || made != sample;
         sample = made;
       }
     return changed;
   };
-  for (std::size_t round = 0; predicts_from_data(model) && round <= experiment.time.size(); ++round) {
-    if (result.failed() > 0 || !replace()) break;
-    result = trajectory_of(solver).run(parameters, noise);
+  bool settles = !predicts_from_data(model);
+  for (std::size_t round = 0; !settles && result.failed() == 0 && round <= experiment.time.size(); ++round) {
+    settles = !replace();
+    if (!settles) result = trajectory_of(solver).run(parameters, noise);
   }
-  if (result.failed() > 0) return std::nullopt;
+  if (!settles || result.failed() > 0) return std::nullopt;
   std::vector<std::vector<double>> made;
   for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
     made.push_back(result.noisy[c][0]);

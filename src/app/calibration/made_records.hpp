@@ -37,6 +37,7 @@ class RecordMaker {
   /// Of all experiments, SI [experiment][channel][sample]; empty where the model cannot be simulated with these values.
   std::vector<std::vector<std::vector<double>>> samples(ConstLanes values, std::uint64_t seed) const;
   std::optional<std::vector<std::vector<double>>> samples(int experiment, ConstLanes parameters, StreamKey noise) const;
+  std::optional<std::vector<std::vector<double>>> samples(Experiment experiment, ConstLanes parameters, StreamKey noise) const;
 
   Session& session_;
   FitTask const& what_;
