@@ -56,16 +56,20 @@ class Calibration {
     checkpoint_.of_data(data_);
   }
 
-  ExitCode run() {
+  /// What is stored, and whether the prior can be simulated: UserError where that is refused.
+  void prepare() {
     restore();
     require_prior();
+  }
+
+  ExitCode run() {
+    began_ = saved_ = std::chrono::steady_clock::now();
     begin_progress();
     if (!run_replications()) {
       session_.progress.end(false);
       if (!done_.empty()) save();
-      session_.notices << fmt::format("{}: interrupted after {} of {} replications; {} {}\n", task_.name, done_.size(),
-                                      replications_, to_resume(session_.options.surface),
-                                      done_.empty() ? "starts it again" : "continues from there");
+      session_.notices << fmt::format("{}: interrupted after {} of {} replications; {}\n", task_.name, done_.size(), replications_,
+                                      after_interruption());
       return ExitCode::interrupted;
     }
     session_.progress.end();
@@ -74,6 +78,11 @@ class Calibration {
 
  private:
   Model const& model() const { return session_.file.models[static_cast<std::size_t>(plan_.what.model)]; }
+
+  std::string after_interruption() const {
+    if (done_.empty() && complete(session_.result_folder(task_))) return "its earlier results are kept";
+    return fmt::format("{} {}", to_resume(session_.options.surface), done_.empty() ? "starts it again" : "continues from there");
+  }
 
   // Of an interrupted run; else of a complete one of fewer or more replications, which have the same numbers.
   void restore() {
@@ -191,14 +200,14 @@ class Calibration {
   int replications_;
   CalibrationPlan plan_;
   std::vector<ExperimentData> data_;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now(), saved_ = began_;
+  std::chrono::steady_clock::time_point began_, saved_;
   std::mutex mutex_;
   std::map<int, Replication> done_;  // by number
   int failed_ = 0;
 };
 
-/// Whether a calibration of as many replications of this very task stands there already; UserError (E6208) where what stands there is
-/// something else, or a calibration of more replications, of which some would be lost. One of fewer is gone on from.
+/// Whether a calibration of as many replications of this very task stands there already; UserError (E6208) where what stands there
+/// is something else, or a calibration of more replications, of which some would be lost. One of fewer is gone on from.
 bool kept(Session const& session, Task const& task, CalibrateOptions const& options) {
   auto const folder = session.result_folder(task);
   if (!session.options.resume || !complete(folder)) return false;
@@ -208,10 +217,28 @@ bool kept(Session const& session, Task const& task, CalibrateOptions const& opti
   int const replications =
       interpreted(folder / "summary.json", [&] { return summary.at("settings").at("replications").get<int>(); });
   if (replications > options.replications)
-    throw UserError(result_error("E6208", fmt::format("the calibration in `{}` has {} replications, more than {}", folder.string(),
-                                                      replications, options.replications),
+    throw UserError(result_error("E6208",
+                                 fmt::format("the calibration in `{}` has {} replications, more than {}", folder.string(),
+                                             replications, options.replications),
                                  replace_results()));
   return replications == options.replications;
+}
+
+/// Of a back end whose settings say how many draws it keeps; else no refusal: the fits themselves are counted.
+std::optional<Diagnostic> too_few_draws(Task const& task, FitTask const& what) {
+  auto const& all = what.settings.all();
+  for (char const* each : {"samples", "burn_in", "thin", "chains"})
+    if (!all.contains(each)) return std::nullopt;
+  std::int64_t const kept = (what.settings.integer("samples") - what.settings.integer("burn_in")) / what.settings.integer("thin") *
+                            what.settings.integer("chains");
+  if (kept >= CalibrationPlan().draws) return std::nullopt;
+  return Diagnostic{Severity::error,
+                    "E6210",
+                    fmt::format("`{}` cannot be calibrated: it keeps {} draws, and a true value is ranked among {}", task.name,
+                                kept, CalibrationPlan().draws),
+                    Label{task.span, {}},
+                    {},
+                    "take more samples, or a smaller `thin`"};
 }
 
 /// Those that can be calibrated: of all of the file the others are skipped with a notice, one that is named alone is refused.
@@ -222,8 +249,9 @@ std::vector<int> possible_fits(Session& session, std::vector<int> const& fits) {
     Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
     FitTask const& what = std::get<FitTask>(task.what);
     Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
-    auto const why = RecordMaker::refusal(
-        session, task, what, load_experiments(session, what.experiments, model, what.start, what.prediction, what.solver));
+    auto why = RecordMaker::refusal(session, task, what,
+                                    load_experiments(session, what.experiments, model, what.start, what.prediction, what.solver));
+    if (!why) why = too_few_draws(task, what);
     if (!why)
       possible.push_back(index);
     else
@@ -234,32 +262,48 @@ std::vector<int> possible_fits(Session& session, std::vector<int> const& fits) {
   return possible;
 }
 
+/// All that can be refused is refused before the first begins.
+ExitCode calibrate_all(Session& session, std::vector<int> const& fits, CalibrateOptions const& options) {
+  std::vector<int> open;
+  for (int const index : possible_fits(session, fits)) {
+    Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
+    if (kept(session, task, options))
+      session.notices << fmt::format("{}: complete, kept\n", task.name);
+    else
+      open.push_back(index);
+  }
+  ClaimedFolders claimed;
+  for (int const index : open)
+    claimed.folders.emplace_back(session.result_folder(session.file.tasks[static_cast<std::size_t>(index)]), session.options);
+  std::vector<std::unique_ptr<Calibration>> calibrations;
+  for (int const index : open) {
+    calibrations.push_back(std::make_unique<Calibration>(session, index, options));
+    calibrations.back()->prepare();
+  }
+  ExitCode worst = ExitCode::success;
+  for (auto& calibration : calibrations) {
+    ExitCode const code = calibration->run();
+    if (code == ExitCode::interrupted) return code;
+    worst = std::max(worst, code);
+    calibration.reset();
+  }
+  return worst;
+}
+
 }  // namespace
 
 ExitCode calibrate(Session& session, CalibrateOptions const& options) {
-  std::vector<int> const fits = chosen_fits(session, options.task, "calibrate");
-  check_preconditions(session, [&](Task const& task) {
-    auto const index = static_cast<int>(&task - session.file.tasks.data());
-    return std::find(fits.begin(), fits.end(), index) != fits.end();
-  }).require();
-  ExitCode worst = ExitCode::success;
-  for (int const index : possible_fits(session, fits)) {
-    Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
-    if (kept(session, task, options)) {
-      session.notices << fmt::format("{}: complete, kept\n", task.name);
-      continue;
-    }
-    ClaimedFolder const claimed(session.result_folder(task), session.options);
-    try {
-      ExitCode const code = Calibration(session, index, options).run();
-      if (code == ExitCode::interrupted) return code;
-      worst = std::max(worst, code);
-    } catch (Interrupted const&) {
-      session.notices << fmt::format("{}: interrupted; {} starts it again\n", task.name, to_resume(session.options.surface));
-      return ExitCode::interrupted;
-    }
+  try {
+    std::vector<int> const fits = chosen_fits(session, options.task, "calibrate");
+    check_preconditions(session, [&](Task const& task) {
+      auto const index = static_cast<int>(&task - session.file.tasks.data());
+      return std::find(fits.begin(), fits.end(), index) != fits.end();
+    }).require();
+    return calibrate_all(session, fits, options);
+  } catch (Interrupted const&) {
+    session.notices << "interrupted before the first replication; what is stored is kept\n";
+    return ExitCode::interrupted;
   }
-  return worst;
 }
 
 }  // namespace sysid

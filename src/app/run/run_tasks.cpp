@@ -33,14 +33,6 @@ ExitCode run_or_stop(Session& session, int index, Task const& task) {
   }
 }
 
-/// Given up in reverse: the first claim may have made the folder that all lie in.
-struct Claims {
-  std::vector<ClaimedFolder> folders;
-  ~Claims() {
-    while (!folders.empty()) folders.pop_back();
-  }
-};
-
 ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& asked) {
   CheckedFile const& file = session.file;
   RunOptions const& options = session.options;
@@ -69,7 +61,7 @@ ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& a
       else
         fitted_model(session, index);
     }
-  Claims claimed;
+  ClaimedFolders claimed;
   for (Task const& task : file.tasks) {
     if (!wanted(task)) continue;
     if (kind_of(task) == TaskKind::simulate && kept(task) && !options.force)

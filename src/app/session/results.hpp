@@ -33,6 +33,16 @@ class ClaimedFolder {
   FolderLock lock_;
 };
 
+/// Given up in reverse: the first claim may have made the folder that all lie in.
+struct ClaimedFolders {
+  ClaimedFolders() = default;
+  ClaimedFolders(ClaimedFolders const&) = delete;
+  ~ClaimedFolders() {
+    while (!folders.empty()) folders.pop_back();
+  }
+  std::vector<ClaimedFolder> folders;
+};
+
 /// Removes results and checkpoint of an earlier run, whose place something else takes.
 void remove_earlier(std::filesystem::path const& folder);
 

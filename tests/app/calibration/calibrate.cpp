@@ -175,9 +175,33 @@ TEST_CASE("what cannot be calibrated is refused with the reason") {
   CHECK(desk.refusal(model).starts_with("there is no fit task in "));
   std::string const improper = with(model, "slope ~ normal(0, sd = 10)", "slope ~ flat()");
   CHECK(desk.refusal(improper + fit).find("needs proper priors") != std::string::npos);
+  std::string const few = with(fit, "samples = 800", "samples = 224");
+  CHECK(desk.refusal(model + few).find("it keeps 96 draws") != std::string::npos);
   // Overflows wherever the parameter is not tiny.
   std::string const wild = with(model, "slope*u", "exp(exp(abs(100*slope)))*u");
   CHECK(desk.refusal(wild + fit).find("of its prior cannot be simulated") != std::string::npos);
+}
+
+TEST_CASE("a row that one experiment scores and another looks back to is refused") {
+  CalibrationDesk const desk;
+  std::string const looks_back = R"(model line {
+  time discrete 1 [s]
+  input     u
+  parameter slope ~ normal(0, sd = 0.5)
+  parameter sigma ~ log_uniform(0.01, 1)
+  observe d ~ normal(slope*lag(measured(d), 1) + u, sd = sigma)
+}
+data bench {
+  file    "bench.csv"
+  step    1 [s]
+  input   u = u
+  measure d = d
+  split   first = rows 6..14, second = rows 15..25, third = rows 16..25
+}
+)";
+  auto const of = [](std::string const& part) { return with(fit, "bench.train", "bench.first, bench." + part); };
+  CHECK(desk.refusal(looks_back + of("second")).find("`bench.second` reads row 14 without scoring it") != std::string::npos);
+  CHECK(desk.refusal(looks_back + of("third"), {}, 10).empty());
 }
 
 TEST_CASE("optima are calibrated by the normal distribution that their sd stands for") {
