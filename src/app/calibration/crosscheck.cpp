@@ -12,8 +12,10 @@
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
+#include "app/session/resolved.hpp"
 #include "app/session/results.hpp"
 #include "core/numeric/random.hpp"
+#include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/calibration/agreement.hpp"
@@ -86,7 +88,10 @@ class Crosscheck {
         task_(session.file.tasks[static_cast<std::size_t>(index)]),
         own_(std::get<FitTask>(task_.what)),
         against_(against) {
-    own_.near.reset();
+    if (own_.near) {
+      own_.near.reset();
+      left_out_ = search_text(session.file, std::get<FitTask>(task_.what));
+    }
     if (against_.empty()) return;
     require_another(own_.backend);
     std::string const help = "name a back end that samples with --against: mh, nuts or tempering";
@@ -97,9 +102,15 @@ class Crosscheck {
 
   ExitCode run() {
     auto const began = std::chrono::steady_clock::now();
+    if (!left_out_.empty())
+      session_.notices << fmt::format("{}: `search = {}` is left out: both fits search everywhere\n", task_.name, left_out_);
     std::uint64_t const seed = session_.seed(task_, own_.seed);
-    auto const first = fit(own_, seed);
-    auto const second = first ? fit(other_fit(first->backend), other_seed(seed)) : std::nullopt;
+    std::optional<UnkeptFit> first, second;
+    try {
+      first = fit(own_, seed);
+      if (first) second = fit(other_fit(first->backend), other_seed(seed));
+    } catch (Interrupted const&) {
+    }
     if (!second) {
       session_.notices << fmt::format("{}: interrupted; nothing is kept\n", task_.name);
       return ExitCode::interrupted;
@@ -108,6 +119,7 @@ class Crosscheck {
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
     report.timing.emplace_back("wall_seconds", wall.count());
     keep_result(session_, task_, report);
+    remove_file(checkpoint_path(session_.result_folder(task_)));  // that of an earlier run, which this result replaces
     return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
   }
 
@@ -144,6 +156,7 @@ class Crosscheck {
       report.settings.emplace_back(each->backend + " seed", static_cast<std::int64_t>(each->report.seed));
       for (auto const& [name, value] : each->report.settings) report.settings.emplace_back(each->backend + " " + name, value);
     }
+    if (!left_out_.empty()) report.settings.emplace_back("left_out", "search = " + left_out_);
     bool const with_optimum = is_optimum(first.report);
     std::vector<ComparedNumber> const numbers = compared(first.report, second.report);
     report.tables.push_back(number_table(numbers, first.backend, second.backend, with_optimum));
@@ -177,31 +190,45 @@ class Crosscheck {
   int index_;
   Task const& task_;
   FitTask own_, other_;
-  std::string against_;  // as it was asked for; empty: what suits
+  std::string left_out_;  // a search near another result, which is not kept beside this one
+  std::string against_;   // as it was asked for; empty: what suits
 };
+
+/// All that can be refused is refused before the first fit.
+ExitCode crosscheck_all(Session& session, std::vector<int> const& fits, std::string const& against) {
+  ClaimedFolders claimed;
+  std::vector<std::unique_ptr<Crosscheck>> all;
+  for (int const index : fits) {
+    auto const folder = session.result_folder(session.file.tasks[static_cast<std::size_t>(index)]);
+    // There is nothing that could be resumed.
+    if (!session.options.force && std::filesystem::exists(checkpoint_path(folder)))
+      throw UserError(result_error("", fmt::format("`{}` contains an interrupted run", folder.string()), replace_results()));
+    claimed.folders.emplace_back(folder, session.options);
+    all.push_back(std::make_unique<Crosscheck>(session, index, against));
+  }
+  ExitCode worst = ExitCode::success;
+  for (auto const& each : all) {
+    ExitCode const code = each->run();
+    if (code == ExitCode::interrupted) return code;
+    worst = std::max(worst, code);
+  }
+  return worst;
+}
 
 }  // namespace
 
 ExitCode crosscheck(Session& session, CrosscheckOptions const& options) {
   std::vector<int> const fits = chosen_fits(session, options.task, "crosscheck");
-  check_preconditions(session, [&](Task const& task) {
-    auto const index = static_cast<int>(&task - session.file.tasks.data());
-    return std::find(fits.begin(), fits.end(), index) != fits.end();
-  }).require();
-  ExitCode worst = ExitCode::success;
-  for (int const index : fits) {
-    Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
-    ClaimedFolder const claimed(session.result_folder(task), session.options);
-    try {
-      ExitCode const code = Crosscheck(session, index, options.against).run();
-      if (code == ExitCode::interrupted) return code;
-      worst = std::max(worst, code);
-    } catch (Interrupted const&) {
-      session.notices << fmt::format("{}: interrupted; nothing is kept\n", task.name);
-      return ExitCode::interrupted;
-    }
+  try {
+    check_preconditions(session, [&](Task const& task) {
+      auto const index = static_cast<int>(&task - session.file.tasks.data());
+      return std::find(fits.begin(), fits.end(), index) != fits.end();
+    }).require();
+    return crosscheck_all(session, fits, options.against);
+  } catch (Interrupted const&) {
+    session.notices << "interrupted while the data were read\n";
+    return ExitCode::interrupted;
   }
-  return worst;
 }
 
 }  // namespace sysid

@@ -22,7 +22,9 @@ Diagnostic no_result(Task const& task, Finding const& failure) {
   return {Severity::error, code, failure.message, Label{task.span, {}}, {}, failure.help};
 }
 
+// Of a fit of which nothing is kept whoever asked for it says what becomes of it.
 ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& checkpoint) {
+  if (checkpoint.path().empty()) return ExitCode::interrupted;
   session.notices << fmt::format("{}: interrupted before the first kept draw; {} {}\n", task.name,
                                  to_resume(session.options.surface),
                                  checkpoint.kept() ? "continues from there" : "starts it again");
@@ -30,6 +32,7 @@ ExitCode stop_early(Session& session, Task const& task, TaskCheckpoint const& ch
 }
 
 ExitCode stop_late(Session& session, Task const& task, TaskCheckpoint& checkpoint, Preparation const& preparation) {
+  if (checkpoint.path().empty()) return ExitCode::interrupted;
   if (!checkpoint.kept()) checkpoint.save({{"preparation", store(preparation)}});
   session.notices << fmt::format("{}: interrupted before its result was checked; {} continues from there\n", task.name,
                                  to_resume(session.options.surface));

@@ -8,6 +8,7 @@
 
 #include "core/numeric/random.hpp"
 #include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
 #include "core/text/number.hpp"
 #include "load/load.hpp"
 #include "temporary_folder.hpp"
@@ -20,7 +21,7 @@ namespace {
 struct CrosscheckDesk {
   TemporaryFolder folder;
   RunOptions options;
-  std::string out;
+  std::string out, said;
 
   CrosscheckDesk() {
     Stream stream({51, Purpose::test, 0, 0});
@@ -41,10 +42,11 @@ struct CrosscheckDesk {
     auto const file = load(source, diagnostics);
     REQUIRE(file);
     SilentProgress silent;
-    std::ostringstream said, notices;
-    Session session(source, *file, options, silent, said, notices);
+    std::ostringstream printed, notices;
+    Session session(source, *file, options, silent, printed, notices);
     ExitCode const code = crosscheck(session, asked);
-    out = said.str();
+    out = printed.str();
+    said = notices.str();
     return static_cast<int>(code);
   }
   json summary() const { return json::parse(read_file(options.output / "posterior/summary.json")); }
@@ -71,6 +73,27 @@ TEST_CASE("the other back end is the one that is named, and none that cannot jud
   CHECK_THROWS_AS(desk.run("mh", {{}, "map"}), UserError);
   CHECK_THROWS_AS(desk.run("mh", {{}, "auto"}), UserError);
   CHECK_THROWS_AS(desk.run("mh", {"prior", {}}), UserError);
+}
+
+TEST_CASE("an interrupted comparison keeps nothing, and promises nothing that there is not") {
+  CrosscheckDesk desk;
+  desk.options.interrupt_after = 1;
+  CHECK(desk.run("mh") == 75);
+  clear_interrupt();
+  CHECK(desk.said.find("interrupted; nothing is kept") != std::string::npos);
+  CHECK(desk.said.find("--resume") == std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(desk.options.output / "posterior/summary.json"));
+  CHECK_FALSE(std::filesystem::exists(desk.options.output / "posterior/checkpoint.cbor"));
+}
+
+TEST_CASE("a comparison takes the place of an interrupted run only when it is told to") {
+  CrosscheckDesk desk;
+  std::filesystem::create_directories(desk.options.output / "posterior");
+  write_file(desk.options.output / "posterior/checkpoint.cbor", "of another run");
+  CHECK_THROWS_AS(desk.run("mh"), UserError);
+  desk.options.force = true;
+  CHECK(desk.run("mh") == 0);
+  CHECK_FALSE(std::filesystem::exists(desk.options.output / "posterior/checkpoint.cbor"));
 }
 
 TEST_CASE("what `auto` has chosen is compared with another back end, drawn with other random numbers") {
