@@ -97,6 +97,18 @@ std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task cons
         fmt::format("`{}` cannot be calibrated: records of Gaussian processes that are integrated out cannot be made yet",
                     task.name),
         "calibrate a fit of the same model without `gp(...)`, or with a function that is estimated as a finite sum");
+  // A made sample would still be read as it was measured.
+  for (ExperimentData const& each : data) {
+    DataBlock const& block = session.file.data[static_cast<std::size_t>(each.use.data)];
+    for (DataInputUse const& input : block.inputs)
+      for (DataMeasureUse const& measured : block.measured)
+        if (input.column == measured.column)
+          return refused(
+              task,
+              fmt::format("`{}` cannot be calibrated: `{}` reads the column `{}` both as an input and as what is measured",
+                          task.name, block.name, input.column),
+              "let the model read measured samples by `lag(measured(...), 1)`, so that made ones are read");
+  }
   // A made sample belongs to one experiment.
   std::set<std::pair<int, std::size_t>> taken;
   for (ExperimentData const& each : data)

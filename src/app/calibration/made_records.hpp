@@ -27,8 +27,8 @@ class RecordMaker {
   RecordMaker(Session& session, FitTask const& what, std::vector<ExperimentData> const& data);
 
   /// A draw of the prior that can be simulated, and its record: scored samples that are not missing are replaced, all others, times
-  /// and inputs stay. What cannot be simulated has no likelihood, so that drawing again leaves the posterior as it is. Nothing
-  /// where none of `most_draws` can be simulated. Interrupted where an interruption is asked for.
+  /// and inputs stay. What the solver of the fit cannot simulate has no likelihood, so that drawing again leaves the posterior as
+  /// it is. Nothing where none of `most_draws` can be simulated. Interrupted where an interruption is asked for.
   std::optional<MadeRecords> make(std::uint64_t seed) const;
 
   static constexpr int most_draws = 50;
