@@ -49,7 +49,8 @@ CalibratedQuantity calibrated(QuantityName const& quantity, std::size_t index, C
   }
   if (n == 0) return out;
   for (double* each : {&out.covered_50, &out.covered_90, &out.covered_95}) *each /= n;
-  if (z.size() > 1) {
+  // The log likelihood of the true values is no normal variable around its posterior mean.
+  if (z.size() > 1 && quantity.parameter) {
     out.mean_z = mean(z);
     out.sd_z = std::sqrt(sample_variance(z));
   }
@@ -148,8 +149,8 @@ Findings calibration_findings(CalibrationReport const& calibration) {
         {FindingCode::replications_failed,
          20 * (all - n) > all ? Severity::error : Severity::warning,
          {},
-         fmt::format("{} of {} made records have no fit, first: {}; what is said of the others may be better than the truth",
-                     all - n, all,
+         fmt::format("{} of {} made records have no fit, first: {}; the ranks of the others may look better than they are", all - n,
+                     all,
                      std::find_if(calibration.records.begin(), calibration.records.end(),
                                   [](Replication const& each) { return !each.has_draws(); })
                          ->failure),
@@ -168,7 +169,7 @@ Findings calibration_findings(CalibrationReport const& calibration) {
          20 * failed > all ? Severity::warning : Severity::note,
          {},
          fmt::format("{} of {} fits failed checks of their own; their ranks are among those that are tested", failed, all),
-         "see which checks in the table; a user would not have used these results"});
+         "see which checks in the table; a user who reads findings would not have used these results"});
   if (int const few = count([&](Replication const& each) {
         return each.has_draws() && each.independent > 0 && each.independent < calibration.draws;
       });

