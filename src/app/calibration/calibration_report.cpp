@@ -58,17 +58,27 @@ ReportTable check_table(CalibrationReport const& calibration) {
   return table;
 }
 
+/// Below it hardly anything is found but what is wrong by half.
+constexpr int few_records = 100;
+
+/// By how many percent one sd of five must be too small to be found more often than not: the table of docs/methods/calibration.md.
+int shown_percent(int n) { return 5 * static_cast<int>(std::ceil(70 / std::sqrt(n))); }
+
 std::string headline(CalibrationReport const& calibration, Findings const& findings) {
   Verdict const verdict = verdict_of(findings);
   bool uniform = true;
   for (CalibratedQuantity const& each : calibration.quantities) uniform = uniform && each.adjusted_p >= doubtful_p;
   if (!uniform) return verdict.pass ? "doubtful: ranks may not be uniform" : "not calibrated: ranks are not uniform";
+  int const n = calibration.with_draws();
+  if (n == 0) return "not known: no record has a fit";
   std::string const words =
-      fmt::format("the ranks of {} are uniform over {} records",
-                  calibration.quantities.size() == 1 ? std::string("the parameter")
-                                                     : fmt::format("all {} quantities", calibration.quantities.size()),
-                  calibration.with_draws());
-  return verdict.pass ? "calibrated: " + words : "not known: " + words + ", but too many records have no fit";
+      fmt::format("the ranks of {} look uniform", calibration.quantities.size() == 1
+                                                      ? std::string("the parameter")
+                                                      : fmt::format("all {} quantities", calibration.quantities.size()));
+  std::string const found = fmt::format("nothing found in {} records: {}", n, words);
+  if (!verdict.pass) return fmt::format("not known: {}, but too many records have no fit", words);
+  return n < few_records ? found + "; so few show gross errors only"
+                         : fmt::format("{}; an sd too small by {} % would probably have shown", found, shown_percent(n));
 }
 
 }  // namespace

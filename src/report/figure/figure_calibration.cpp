@@ -87,10 +87,8 @@ Figure true_ranks_figure(CalibrationReport const& calibration) {
              multiples(calibration, "true_ranks", "95 % of uniform ranks, each group alone", histogram_plot)};
   out.caption = fmt::format(
       "Of each record the rank of the true value among {} posterior draws, as a fraction, in {} equal groups. Ranks are uniform "
-      "where "
-      "posteriors are right. Raised ends show posteriors that are too narrow, a hump posteriors that are too wide, a slope "
-      "posteriors "
-      "that lie too low or too high.",
+      "where posteriors are right. Raised ends show posteriors that are too narrow, a hump posteriors that are too wide, a slope "
+      "posteriors that lie too low or too high.",
       calibration.draws, calibration.bins);
   out.caption += multiples_excluded(calibration.quantities.size());
   return out;
@@ -101,8 +99,8 @@ Figure rank_difference_figure(CalibrationReport const& calibration) {
              multiples(calibration, "rank_differences", "95 % of uniform ranks, all along the curve", ecdf_plot)};
   out.caption =
       "The share of records with at most this rank minus the share that is expected. The band contains the whole curve with "
-      "probability 0.95 where ranks are uniform (Säilynoja et al. 2022); the curve has another colour where the test over all "
-      "quantities finds that it does not." +
+      "probability 0.95 where ranks are uniform (Säilynoja et al. 2022), of this quantity alone: one of twenty right curves leaves "
+      "it. The curve has another colour where p together, of both tests and all quantities, is below 0.01." +
       multiples_excluded(calibration.quantities.size());
   return out;
 }

@@ -100,15 +100,13 @@ namespace {
 std::string calibration_meaning(Report const& report) {
   switch (grade(report)) {
     case Severity::error:
-      return "Until this is fixed, intervals and probabilities of such fits are not what they state, for records like those that "
-             "the "
-             "priors make.";
+      return "Until this is fixed, intervals and probabilities of such fits are not what they state, for records like those "
+             "that the priors make.";
     case Severity::warning:
       return "Check the points below before you rely on intervals of such fits.";
     default:
-      return "For records that the model itself makes, with values from its priors, intervals of these fits contain the true "
-             "values "
-             "as often as they state. This does not prove the model: real records are not made by it.";
+      return "For records that the model itself makes, with values from its priors, nothing contradicts that intervals of these "
+             "fits contain the true values as often as they state. This does not prove the model: real records are not made by it.";
   }
 }
 
