@@ -25,6 +25,7 @@ struct Replication {
   std::vector<std::string> failed, warned;  // codes of checks of the fit, each once
   double independent = 0;                   // draws: the smallest effective size of a quantity; 0: not known
   std::uint64_t solves = 0;
+  bool settled = true;            // the record: a finer solver would not change it
   std::vector<TruePlace> places;  // of each quantity; empty without draws
 
   bool has_draws() const { return failure.empty(); }

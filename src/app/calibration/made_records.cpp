@@ -150,9 +150,10 @@ std::optional<MadeRecords> RecordMaker::make(std::uint64_t seed) const {
     space_->sample_prior({seed, Purpose::calibration, draw, 0}, theta);
     space_->constrain(theta, declared);
     // By declared values, as the posterior is compared with them.
-    auto const made = samples(space_->values_of_declared(declared), Stream({seed, Purpose::calibration, draw, 1}).bits());
-    if (made.empty()) continue;
     MadeRecords out;
+    auto const made =
+        samples(space_->values_of_declared(declared), Stream({seed, Purpose::calibration, draw, 1}).bits(), out.settled);
+    if (made.empty()) continue;
     out.redrawn = attempt;
     for (int p = 0; p < declared.rows(); ++p) out.truth.push_back(declared(p, 0));
     for (std::size_t e = 0; e < data_.size(); ++e) {
@@ -173,31 +174,32 @@ std::optional<MadeRecords> RecordMaker::make(std::uint64_t seed) const {
   return std::nullopt;
 }
 
-std::vector<std::vector<std::vector<double>>> RecordMaker::samples(ConstLanes values, std::uint64_t seed) const {
+std::vector<std::vector<std::vector<double>>> RecordMaker::samples(ConstLanes values, std::uint64_t seed, bool& settled) const {
   std::vector<std::vector<std::vector<double>>> all;
   for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
     LaneArray parameters(static_cast<int>(compiled_->model.parameters.size()), 1);
     space_->select(values, e, parameters);
-    auto of_one = samples(e, parameters, {seed, Purpose::noise, static_cast<std::uint64_t>(e), 0});
+    auto of_one = samples(e, parameters, {seed, Purpose::noise, static_cast<std::uint64_t>(e), 0}, settled);
     if (!of_one) return {};
     all.push_back(std::move(*of_one));
   }
   return all;
 }
 
-std::optional<std::vector<std::vector<double>>> RecordMaker::samples(int e, ConstLanes parameters, StreamKey noise) const {
+std::optional<std::vector<std::vector<double>>> RecordMaker::samples(int e, ConstLanes parameters, StreamKey noise,
+                                                                     bool& settled) const {
   Experiment const experiment = up_to_last_scored(data_[static_cast<std::size_t>(e)].experiment);
   // Streams of noise go by the number of the trajectory, which is 0 here.
   noise.seed = Stream(noise).bits();
   if (predicts_from_data(compiled_->model))
     // Wherever rounds begin they end in the same record. What was measured begins them only where zeros cannot: else it would
     // decide which true values are drawn again.
-    if (auto made = samples(with_zeros(experiment), parameters, noise)) return made;
-  return samples(experiment, parameters, noise);
+    if (auto made = samples(with_zeros(experiment), parameters, noise, settled)) return made;
+  return samples(experiment, parameters, noise, settled);
 }
 
-std::optional<std::vector<std::vector<double>>> RecordMaker::samples(Experiment experiment, ConstLanes parameters,
-                                                                     StreamKey noise) const {
+std::optional<std::vector<std::vector<double>>> RecordMaker::samples(Experiment experiment, ConstLanes parameters, StreamKey noise,
+                                                                     bool& settled) const {
   Model const& model = compiled_->model;
   SolverSettings solver = what_.solver;
   bool const refine = model.integrated() && !solver.as_model && !solver.row().exact;
@@ -205,7 +207,8 @@ std::optional<std::vector<std::vector<double>>> RecordMaker::samples(Experiment 
     return Trajectory(compiled_, experiment, with, start_rows(what_.start), session_.abandonable());
   };
   Trajectory::Result result = trajectory_of(solver).run(parameters, noise);
-  for (int i = 0; refine && i < most_refinements && solver.finer().within_limits(); ++i) {
+  bool fine_enough = !refine;
+  for (int i = 0; !fine_enough && i < most_refinements && solver.finer().within_limits(); ++i) {
     SolverSettings const coarser = solver;
     solver = solver.finer();
     Trajectory const finer = trajectory_of(solver);
@@ -215,9 +218,8 @@ std::optional<std::vector<std::vector<double>>> RecordMaker::samples(Experiment 
       solver = coarser;
       break;
     }
-    bool const same = result.failed() == 0 && same_response(finer, result, fine);
+    fine_enough = result.failed() == 0 && same_response(finer, result, fine);
     result = std::move(fine);
-    if (same) break;
   }
   // What reads measured samples reads made ones: rounds, each of which makes at least one more sample right.
   auto const replace = [&] {
@@ -239,6 +241,7 @@ std::optional<std::vector<std::vector<double>>> RecordMaker::samples(Experiment 
     if (!settles) result = trajectory_of(solver).run(parameters, noise);
   }
   if (!settles || result.failed() > 0) return std::nullopt;
+  settled = settled && fine_enough;
   std::vector<std::vector<double>> made;
   for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
     made.push_back(result.noisy[c][0]);

@@ -14,6 +14,7 @@ namespace sysid {
 struct MadeRecords {
   std::vector<double> truth;                      // [P] of the sampled parameters, declared
   std::vector<std::pair<int, Record>> of_blocks;  // by index of the data block
+  bool settled = true;                            // a finer solver would not change them
   int redrawn = 0;                                // prior draws before it that could not be simulated
 };
 
@@ -34,10 +35,13 @@ class RecordMaker {
   static constexpr int most_draws = 50;
 
  private:
-  /// Of all experiments, SI [experiment][channel][sample]; empty where the model cannot be simulated with these values.
-  std::vector<std::vector<std::vector<double>>> samples(ConstLanes values, std::uint64_t seed) const;
-  std::optional<std::vector<std::vector<double>>> samples(int experiment, ConstLanes parameters, StreamKey noise) const;
-  std::optional<std::vector<std::vector<double>>> samples(Experiment experiment, ConstLanes parameters, StreamKey noise) const;
+  /// Of all experiments, SI [experiment][channel][sample]; empty where the model cannot be simulated with these values. settled:
+  /// false where a finer solver would change them.
+  std::vector<std::vector<std::vector<double>>> samples(ConstLanes values, std::uint64_t seed, bool& settled) const;
+  std::optional<std::vector<std::vector<double>>> samples(int experiment, ConstLanes parameters, StreamKey noise,
+                                                          bool& settled) const;
+  std::optional<std::vector<std::vector<double>>> samples(Experiment experiment, ConstLanes parameters, StreamKey noise,
+                                                          bool& settled) const;
 
   Session& session_;
   FitTask const& what_;

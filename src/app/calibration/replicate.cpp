@@ -111,6 +111,7 @@ std::optional<Replication> Replicator::run(int number) {
       return replication;
     }
     replication.redrawn = made->redrawn;
+    replication.settled = made->settled;
     for (auto const& [block, record] : made->of_blocks) session_.replace_record(block, model_, record);
     fit(*made, replication);
   } catch (UserError const& error) {
@@ -163,9 +164,11 @@ void Replicator::fit(MadeRecords const& made, Replication& replication) {
 json store(Replication const& replication) {
   json places = json::array();
   for (TruePlace const& each : replication.places) places.push_back({each.truth, each.mean, each.sd, each.below, each.rank});
-  return {{"number", replication.number},           {"seed", replication.seed},     {"redrawn", replication.redrawn},
-          {"failure", replication.failure},         {"failed", replication.failed}, {"warned", replication.warned},
-          {"independent", replication.independent}, {"solves", replication.solves}, {"places", std::move(places)}};
+  return {{"number", replication.number},           {"seed", replication.seed},
+          {"redrawn", replication.redrawn},         {"failure", replication.failure},
+          {"failed", replication.failed},           {"warned", replication.warned},
+          {"independent", replication.independent}, {"solves", replication.solves},
+          {"settled", replication.settled},         {"places", std::move(places)}};
 }
 
 Replication restore_replication(json const& stored) {
@@ -178,6 +181,7 @@ Replication restore_replication(json const& stored) {
   stored.at("warned").get_to(out.warned);
   stored.at("independent").get_to(out.independent);
   stored.at("solves").get_to(out.solves);
+  stored.at("settled").get_to(out.settled);
   for (json const& each : stored.at("places"))
     out.places.push_back({each.at(0).get<double>(), each.at(1).get<double>(), each.at(2).get<double>(), each.at(3).get<double>(),
                           each.at(4).get<int>()});

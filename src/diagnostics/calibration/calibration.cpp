@@ -180,6 +180,12 @@ Findings calibration_findings(CalibrationReport const& calibration) {
                         fmt::format("{} of {} fits have fewer than {} independent draws, so that ranks among these are too extreme",
                                     few, all, calibration.draws),
                         "run longer chains"});
+  if (int const unsettled = count([](Replication const& each) { return !each.settled; }); unsettled > 0)
+    findings.push_back({FindingCode::step_not_settled,
+                        20 * unsettled > all ? Severity::warning : Severity::note,
+                        {},
+                        fmt::format("{} of {} records were made with a solver whose error may show in them", unsettled, all),
+                        "narrow the priors, or state an adaptive or exact solver"});
   int redrawn = 0;
   for (Replication const& each : calibration.records) redrawn += each.redrawn;
   if (redrawn > 0)

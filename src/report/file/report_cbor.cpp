@@ -261,7 +261,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measu
 // --- calibrations
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TruePlace, truth, mean, sd, below, rank)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Replication, number, seed, redrawn, failure, failed, warned, independent, solves, places)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Replication, number, seed, redrawn, failure, failed, warned, independent, solves, settled,
+                                   places)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibratedQuantity, name, unit, ranks, covered_50, covered_90, covered_95, mean_z, sd_z,
                                    contraction, chi_squared_p, ecdf_p, adjusted_p, shape)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FiredCheck, code, failed, warned)

@@ -55,6 +55,15 @@ TEST_CASE("right posteriors are covered as stated, have z of 0 ± 1, and their r
   CHECK(right.band_high.front() > 0);
 }
 
+TEST_CASE("records whose solver did not settle are counted") {
+  CalibrationReport report;
+  report.records.resize(30);
+  report.records.front().settled = false;
+  CHECK(has(calibration_findings(report), FindingCode::step_not_settled, Severity::note));
+  report.records[1].settled = false;
+  CHECK(has(calibration_findings(report), FindingCode::step_not_settled, Severity::warning));
+}
+
 TEST_CASE("each way of being wrong is found and has its name") {
   struct Way {
     std::function<void(double&, double&)> wrong;
