@@ -33,7 +33,8 @@ struct Deviance {
   std::optional<double> at_mean;  // none where the mean of the draws has no solution
 
   /// Spiegelhalter, Best, Carlin and van der Linde 2002
-  std::optional<double> p_d() const { return at_mean ? std::optional(mean - *at_mean) : std::nullopt; }
+  /// Nothing where it is not positive: the mean of the draws is then no estimate, as between two modes.
+  std::optional<double> p_d() const { return at_mean && mean > *at_mean ? std::optional(mean - *at_mean) : std::nullopt; }
   /// Gelman, Carlin, Stern and Rubin 2004, sec. 6.7
   double p_v() const { return variance / 2; }
 };

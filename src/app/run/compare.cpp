@@ -310,6 +310,7 @@ Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model
     evidences.push_back(each.summary.value("evidence", json::object()));
   }
   weigh_models(models, comparison.fits);
+  for (std::string& note : disagreements(models, comparison.fits)) comparison.notes.push_back(std::move(note));
   for (std::string& note : prior_width_notes(models, comparison.fits, evidences)) comparison.notes.push_back(std::move(note));
   for (std::string& note : models_of_one_name(fits)) comparison.notes.push_back(std::move(note));
   return comparison;

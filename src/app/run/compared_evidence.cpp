@@ -20,12 +20,24 @@ using json = nlohmann::json;
 
 constexpr double ruled_out = 10;  // nats below the best with every width that is tried
 
-/// Places in `fits` of those that stand for a model, the best one first.
+/// Whether the evidence of the first is the better known one: confirmed, then with an error, then with the smaller.
+bool better_known(ComparedFit const& one, ComparedFit const& other) {
+  if (one.not_confirmed.empty() != other.not_confirmed.empty()) return one.not_confirmed.empty();
+  if (one.error.has_value() != other.error.has_value()) return one.error.has_value();
+  return one.error.value_or(0) < other.error.value_or(0);
+}
+
+/// Places in `fits` of those that stand for a model, the best model first.
 std::vector<std::size_t> standing(std::vector<std::string> const& models, std::vector<ComparedFit> const& fits) {
   std::vector<std::size_t> places;
-  std::set<std::string> seen;
-  for (std::size_t f = 0; f < fits.size(); ++f)
-    if (fits[f].log_evidence && seen.insert(models[f]).second) places.push_back(f);
+  for (std::size_t f = 0; f < fits.size(); ++f) {
+    if (!fits[f].log_evidence) continue;
+    auto const known = std::find_if(places.begin(), places.end(), [&](std::size_t place) { return models[place] == models[f]; });
+    if (known == places.end())
+      places.push_back(f);
+    else if (better_known(fits[f], fits[*known]))
+      *known = f;
+  }
   std::stable_sort(places.begin(), places.end(),
                    [&](std::size_t a, std::size_t b) { return *fits[a].log_evidence > *fits[b].log_evidence; });
   return places;
@@ -56,6 +68,9 @@ struct Widths {
     return place < entry->second.size() ? entry->second[place] : std::nullopt;
   }
 };
+
+/// Never "-0.0".
+double to_tenth(double value) { return std::round(10 * value) / 10 + 0.0; }
 
 /// A log Bayes factor over half and twice the widths.
 struct Range {
@@ -123,6 +138,20 @@ void weigh_models(std::vector<std::string> const& models, std::vector<ComparedFi
   }
 }
 
+std::vector<std::string> disagreements(std::vector<std::string> const& models, std::vector<ComparedFit> const& fits) {
+  std::vector<std::string> notes;
+  for (std::size_t const place : standing(models, fits))
+    for (std::size_t f = 0; f < fits.size(); ++f) {
+      if (f == place || models[f] != models[place] || !fits[f].log_evidence) continue;
+      double const chance = 3 * std::hypot(fits[f].error.value_or(0), fits[place].error.value_or(0)) + 0.2;
+      if (std::fabs(*fits[f].log_evidence - *fits[place].log_evidence) > chance)
+        notes.push_back(fmt::format("{} and {} are fits of one model, but their evidences differ by {:.1f}: that of {} is used",
+                                    fits[f].name, fits[place].name, std::fabs(*fits[f].log_evidence - *fits[place].log_evidence),
+                                    fits[place].name));
+    }
+  return notes;
+}
+
 std::string evidence_strength(double log_bayes_factor) {
   double const size = std::fabs(log_bayes_factor);
   return size < 1 ? "hardly any" : size < 3 ? "positive" : size < 5 ? "strong" : "very strong";
@@ -139,11 +168,13 @@ std::vector<std::string> prior_width_notes(std::vector<std::string> const& model
     if (mine.change.empty() || other.change.empty()) continue;
     Range const range = range_of(factor, mine, other);
     if (range.high < -ruled_out || !range.known) continue;
-    std::string note =
-        fmt::format("{} against {}: the log Bayes factor lies between {:.1f} and {:.1f} if {} half or twice as wide", of.name,
-                    best.name, range.low, range.high, range.all ? "one prior or all priors are" : "one prior is");
+    std::string note = fmt::format("{} against {}: the log Bayes factor lies between {:.1f} and {:.1f} if {} half or twice as wide",
+                                   of.name, best.name, to_tenth(range.low), to_tenth(range.high),
+                                   range.all ? "one prior or all priors are" : "one prior is");
     if (!range.by.empty()) note += fmt::format("; the prior of `{}` changes it most", range.by);
-    if (!range.unknown.empty()) note += fmt::format("; the draws do not show what the prior of {} does", quoted(range.unknown));
+    if (!range.unknown.empty())
+      note += fmt::format("; the draws do not show what the {} of {} {}", plural("prior", range.unknown.size()),
+                          quoted(range.unknown), range.unknown.size() == 1 ? "does" : "do");
     notes.push_back(std::move(note));
   }
   return notes;

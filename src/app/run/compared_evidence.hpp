@@ -14,8 +14,12 @@ namespace sysid {
 ///   log B_i = log Z_i - log Z_best,   P_i = Z_i / sum_j Z_j                                    Kass and Raftery 1995
 ///   sd P_i = P_i sqrt((1 - P_i)^2 s_i^2 + sum over j != i of P_j^2 s_j^2)
 ///
-/// models: for each fit what model it is of; the first fit of a model that has an evidence stands for all of it.
+/// models: for each fit what model it is of; of several fits of a model the one whose evidence is known best stands for all: one
+/// that is confirmed, with the smallest error.
 void weigh_models(std::vector<std::string> const& models, std::vector<ComparedFit>& fits);
+
+/// Fits of one model whose evidences differ by more than their errors.
+std::vector<std::string> disagreements(std::vector<std::string> const& models, std::vector<ComparedFit> const& fits);
 
 /// The words of Kass and Raftery (1995, section 3.2) for a natural logarithm of a Bayes factor, its sign aside.
 std::string evidence_strength(double log_bayes_factor);

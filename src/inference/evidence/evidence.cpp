@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/random.hpp"
 #include "core/text/number.hpp"
 #include "inference/evidence/bridge.hpp"
 #include "inference/evidence/importance.hpp"
@@ -26,6 +28,11 @@ constexpr double precise = 0.02;   // nats: what no comparison needs better
 constexpr double tolerable = 0.3;  // nats: a number with a larger error is none to lean on
 constexpr double enough = 100;     // effective draws
 
+/// Why a number with that error is none to compare models by; empty: it is.
+std::string too_large(double error) {
+  return error > tolerable ? fmt::format("its error is {:.2f}, above {}", error, tolerable) : "";
+}
+
 /// What both methods say after some rounds.
 struct Estimates {
   ImportanceEstimate importance;
@@ -42,12 +49,14 @@ struct Estimates {
   /// Why the mean weight may miss mass; empty: it does not.
   std::string ill_weights() const {
     if (!std::isfinite(importance.log_evidence)) return "no draw of the mixture has a density";
+    if (bridge.posterior_effective < enough / 2)  // q follows the posterior's draws, and the error is taken from them too
+      return fmt::format("the posterior's draws are worth only {:.0f} independent ones", bridge.posterior_effective);
     if (importance.effective < enough)
       return fmt::format("{} weighted draws are worth only {:.0f} independent ones", draws, importance.effective);
     if (bridge.unseen > std::max(0.01, 2 * importance.plain_error))
       return fmt::format("{:.0f} % of the posterior's draws have weights that no draw of the mixture has", 100 * bridge.unseen);
     if (surplus() < 0) return fmt::format("bridge sampling gives {:.2f}", bridge.log_evidence);
-    return "";
+    return too_large(importance.error);
   }
   std::string ill_bridge() const {
     if (!std::isfinite(bridge.log_evidence)) return "the mixture and the posterior do not overlap";
@@ -56,8 +65,7 @@ struct Estimates {
     // The mean of weights may miss mass but does not invent it.
     if (surplus() > 0)
       return fmt::format("the draws miss a part of the posterior: importance sampling gives {:.2f}", importance.log_evidence);
-    if (bridge.error > tolerable) return fmt::format("its error is {:.1g}", bridge.error);
-    return "";
+    return too_large(bridge.error);
   }
   bool precise_enough(EvidenceMethod method) const {
     bool const by_weights = importance.error <= precise && ill_weights().empty();
@@ -133,18 +141,33 @@ bool estimate(Target const& target, EvidenceTask const& task, std::vector<Mode> 
   return true;
 }
 
-/// Whether it reached the posterior with the simulations that it may take.
+/// Why tempered SMC may have lost a part of the mass on its way; empty: nothing speaks against it. Its own error counts only what
+/// its particles have seen, and they see nothing of a narrow mode that few of them have entered.
+std::string doubt_of_tempering(Evidence const& evidence) {
+  if (std::string large = too_large(*evidence.error); !large.empty()) return large;
+  if (evidence.laplace && std::fabs(*evidence.laplace - *evidence.log_evidence) > 3 * *evidence.error + 0.2)
+    return fmt::format("Laplace's approximation gives {:.1f}", *evidence.laplace);
+  return "";
+}
+
+/// Whether two populations reached the posterior with the simulations that they may take together. What they differ by is an error
+/// that neither can see.
 bool temper(Target const& target, EvidenceTask const& task, std::uint64_t most, Evidence& evidence, Ledger& ledger,
             std::function<bool()> const& stop) {
-  SmcEstimate const found = smc(target, particles, most, task.seed, ledger, stop);
-  evidence.simulations += found.simulations;
-  if (!found.finished) return false;
+  std::uint64_t const other_seed = Stream({task.seed, Purpose::evidence, 0, scale_step}).bits() >> 11;
+  SmcEstimate const first = smc(target, particles, most / 2, task.seed, ledger, stop);
+  evidence.simulations += first.simulations;
+  if (!first.finished) return false;
+  SmcEstimate const second = smc(target, particles, most / 2, other_seed, ledger, stop);
+  evidence.simulations += second.simulations;
+  if (!second.finished) return false;
+  double const difference = second.log_evidence - first.log_evidence;
   evidence.method = EvidenceMethod::smc;
-  evidence.log_evidence = found.log_evidence;
-  evidence.error = found.error;
-  evidence.effective = found.effective;
+  evidence.log_evidence = first.log_evidence + elementary::log(0.5 * (1 + elementary::exp(difference)));
+  evidence.error = std::max(0.5 * std::hypot(first.error, second.error), 0.5 * std::fabs(difference));
+  evidence.effective = first.effective + second.effective;
   evidence.reason.clear();
-  evidence.doubt = found.error > tolerable ? fmt::format("its error is {:.1g}", found.error) : "";
+  evidence.doubt = doubt_of_tempering(evidence);
   return true;
 }
 
@@ -160,6 +183,7 @@ void prefer_weighted(EvidenceMethod method, Evidence& evidence) {
   evidence.error = std::max({sampled.error, std::fabs(evidence.along_axes), std::fabs(sampled.above) / 3});
   evidence.effective = sampled.effective;
   evidence.simulations = sampled.draws;
+  evidence.doubt = too_large(*evidence.error);
 }
 
 }  // namespace

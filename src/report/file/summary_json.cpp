@@ -143,7 +143,8 @@ Json criteria(Criteria const& criteria) {
   out["loo"]["p"] = criteria.p_loo;
   out["loo"]["pareto_k"] = {{"largest", criteria.worst_k}, {"to_0.5", k[0]}, {"to_0.7", k[1]}, {"to_1", k[2]}, {"above_1", k[3]}};
   if (criteria.block) out["leave_block_out"] = left_out(*criteria.block, criteria.blocks);
-  if (!criteria.futures.empty()) out["leave_future_out"] = left_out(criteria.future.value_or(LogScore{}), criteria.futures);
+  if (!criteria.futures.empty())
+    out["leave_future_out"] = criteria.future ? left_out(*criteria.future, criteria.futures) : Json(nullptr);
   return out;
 }
 

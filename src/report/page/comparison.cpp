@@ -32,7 +32,7 @@ std::string with_error(double value, std::optional<double> error, int decimals) 
 ReportTable fits_table(Comparison const& comparison) {
   ReportTable table;
   table.title = fmt::format("fitted to {}; probabilities of the models for equal prior probabilities", comparison.data);
-  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "strength", "probability", "checks"};
+  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "against it", "probability", "checks"};
   for (ComparedFit const& fit : comparison.fits) {
     table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
                           fit.log_evidence ? evidence_number(*fit.log_evidence, fit.error) : "-",
@@ -156,6 +156,7 @@ std::string comparison_json(Comparison const& comparison) {
                   {"noise", fit.noise},
                   {"log_evidence", number(fit.log_evidence)},
                   {"standard_error", number(fit.error)},
+                  {"not_confirmed", fit.not_confirmed.empty() ? Json(nullptr) : Json(fit.not_confirmed)},
                   {"log_bayes_factor", number(fit.log_bayes_factor)},
                   {"log_bayes_factor_error", number(fit.bayes_factor_error)},
                   {"strength", fit.strength},

@@ -46,6 +46,20 @@ TEST_CASE("errors of evidences are carried through to probabilities and Bayes fa
   CHECK(*fits[0].log_bayes_factor == 0);
   CHECK_FALSE(fits[3].probability);
   CHECK_FALSE(fits[3].log_bayes_factor);
+  // Of several fits of one model the best known evidence counts, in any order.
+  ComparedFit unsure = fit("unsure", 12, 0.01);
+  unsure.not_confirmed = "its error is 0.50, above 0.3";
+  for (bool const first : {true, false}) {
+    std::vector<ComparedFit> twice = {fit("cubic", 10, 0.1), unsure, fit("linear", 11, 0.1)};
+    if (first) std::swap(twice[0], twice[1]);
+    std::vector<std::string> const models = {"a", "a", "b"};
+    weigh_models(models, twice);
+    CHECK(*twice[0].log_bayes_factor == doctest::Approx(-1));
+    CHECK(*twice[1].log_bayes_factor == doctest::Approx(-1));
+    REQUIRE(disagreements(models, twice).size() == 1);
+    CHECK(disagreements(models, twice)[0] ==
+          "unsure and cubic are fits of one model, but their evidences differ by 2.0: that of cubic is used");
+  }
   // One error that is not known leaves the others unknown.
   std::vector<ComparedFit> of_map = {fit("cubic", 10, 0.1), fit("linear", 8, {})};
   weigh_models({"a", "b"}, of_map);
