@@ -80,7 +80,7 @@ void by_importance(Estimates const& found, Evidence& evidence) {
   evidence.method = EvidenceMethod::importance;
   evidence.log_evidence = found.importance.log_evidence;
   evidence.error = found.importance.error;
-  evidence.effective = found.importance.effective;
+  evidence.effective = std::min<double>(found.importance.effective, found.draws);
 }
 
 void by_bridge(Estimates const& found, Evidence& evidence) {
@@ -92,7 +92,9 @@ void by_bridge(Estimates const& found, Evidence& evidence) {
 
 void choose(Estimates const& found, EvidenceMethod method, Evidence& evidence) {
   std::string const weights = found.ill_weights(), bridge = found.ill_bridge();
-  bool const importance_better = weights.empty() && (!bridge.empty() || found.importance.error < 1.5 * found.bridge.error);
+  // Where neither is believed, weights near the modes say more than draws that have not moved.
+  bool const importance_better = weights.empty() ? !bridge.empty() || found.importance.error < 1.5 * found.bridge.error
+                                                 : !bridge.empty() && found.importance.effective >= enough;
   if (method == EvidenceMethod::importance || (method == EvidenceMethod::automatic && importance_better)) {
     by_importance(found, evidence);
     evidence.doubt = weights;
