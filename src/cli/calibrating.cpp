@@ -13,26 +13,12 @@
 namespace sysid::cli {
 namespace {
 
-/// What verbs on whole fits have in common.
-struct FitsOptions {
-  std::string file;
-  bool quiet = false;
-  RunOptions run;
-};
-
-void add_options(CLI::App& verb, FitsOptions& options, std::string& task) {
-  add_file(verb, options.file);
+void add_options(CLI::App& verb, ResultOptions& options, std::string& task) {
+  add_result_options(verb, options);
   verb.add_option("--task", task, "the fit task (default: all fit tasks of the file)")->type_name("NAME");
-  add_output(verb, options.run.output);
-  verb.add_flag("--force", options.run.force, "replace existing results");
-  add_seed(verb, options.run.seed, "seed of all random numbers, in place of those in the file");
-  verb.add_flag("-q,--quiet", options.quiet, "print no progress and no notices");
-  add_figures(verb, options.run, "write figures as scripts only");
-  options.run.execution.threads = 0;
-  add_threads(verb, options.run.execution.threads);
 }
 
-ExitCode with_session(Messages const& messages, FitsOptions const& options, std::function<ExitCode(Session&)> const& work) {
+ExitCode with_session(Messages const& messages, ResultOptions const& options, std::function<ExitCode(Session&)> const& work) {
   install_interrupt_handlers();
   return with_checked_file(messages, options.file, [&](Source const& source, CheckedFile const& file, Diagnostics const&) {
     std::ostream nowhere(nullptr);
@@ -50,7 +36,7 @@ ExitCode with_session(Messages const& messages, FitsOptions const& options, std:
 }  // namespace
 
 Work declare_calibrate(CLI::App& verb) {
-  struct Options : FitsOptions {
+  struct Options : ResultOptions {
     CalibrateOptions calibrate;
   };
   auto const options = std::make_shared<Options>();
@@ -73,7 +59,7 @@ Work declare_calibrate(CLI::App& verb) {
 }
 
 Work declare_crosscheck(CLI::App& verb) {
-  struct Options : FitsOptions {
+  struct Options : ResultOptions {
     CrosscheckOptions crosscheck;
   };
   auto const options = std::make_shared<Options>();

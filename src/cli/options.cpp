@@ -79,4 +79,15 @@ void add_figures(CLI::App& verb, RunOptions& run, char const* without) {
       ->default_str(run.figure_formats.empty() ? "" : "svg");
 }
 
+void add_result_options(CLI::App& verb, ResultOptions& options) {
+  add_file(verb, options.file);
+  add_output(verb, options.run.output);
+  verb.add_flag("--force", options.run.force, "replace existing results");
+  add_seed(verb, options.run.seed, "seed of all random numbers, in place of those in the file");
+  verb.add_flag("-q,--quiet", options.quiet, "print no progress and no notices");
+  add_figures(verb, options.run, "write figures as scripts only");
+  options.run.execution.threads = 0;
+  add_threads(verb, options.run.execution.threads);
+}
+
 }  // namespace sysid::cli

@@ -13,6 +13,14 @@ void add_threads(CLI::App& verb, int& threads);
 /// --figures and --no-figures; without: that there are none.
 void add_figures(CLI::App& verb, RunOptions& run, char const* without);
 
+/// What verbs that write results have in common.
+struct ResultOptions {
+  std::string file;
+  bool quiet = false;
+  RunOptions run;
+};
+void add_result_options(CLI::App& verb, ResultOptions& options);
+
 // Checks of values: why one is refused, or empty.
 std::string refuse_no_path(std::string const& path);
 std::string refuse_no_duration(std::string const& text);

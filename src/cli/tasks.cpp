@@ -13,10 +13,8 @@
 namespace sysid::cli {
 namespace {
 
-struct TaskOptions {
-  std::string file, dump, instruction_set;
-  bool quiet = false;
-  RunOptions run;
+struct TaskOptions : ResultOptions {
+  std::string dump, instruction_set;
 };
 
 /// Empty where the processor has it.
@@ -34,15 +32,8 @@ ExecutorKind executor_kind(std::string const& name) {
 }
 
 void add_run_options(CLI::App& verb, TaskOptions& options) {
-  add_file(verb, options.file);
-  add_output(verb, options.run.output);
-  verb.add_flag("--force", options.run.force, "replace existing results");
+  add_result_options(verb, options);
   verb.add_flag("--resume", options.run.resume, "continue after an interruption; keep tasks that are complete");
-  add_seed(verb, options.run.seed, "seed of all random numbers, in place of those in the file");
-  verb.add_flag("-q,--quiet", options.quiet, "print no progress and no notices");
-  add_figures(verb, options.run, "write figures as scripts only");
-  options.run.execution.threads = 0;
-  add_threads(verb, options.run.execution.threads);
   verb.add_option("--lanes", options.run.execution.lanes,
                   "number of simulations in one batch, 0: automatic; results do not depend on it")
       ->type_name("N")

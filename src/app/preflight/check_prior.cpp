@@ -179,7 +179,7 @@ double range(auto const& value, int first, int end) {
 }
 
 // One channel of one experiment: rows [first, end) of the predictions.
-void compare(Preflight const& preflight, int first, int end, LaneArray const& centres, std::vector<Draw>& draws) {
+void compare_ranges(Preflight const& preflight, int first, int end, LaneArray const& centres, std::vector<Draw>& draws) {
   std::vector<Output::Place> const& places = preflight.output().places();
   double const measured = range([&](int r) { return places[static_cast<std::size_t>(r)].measured; }, first, end);
   std::vector<double> finite;
@@ -256,7 +256,7 @@ std::vector<int> describe_prior(Preflight const& preflight, PriorDraws const& pr
   std::vector<Draw> draws;
   for (int w = 0; w < preflight.effort.prior_draws; ++w)
     if (prior.simulations.followed[static_cast<std::size_t>(w)]) draws.push_back({w, 0});
-  for (auto const& [first, end] : preflight.responses()) compare(preflight, first, end, prior.simulations.centres, draws);
+  for (auto const& [first, end] : preflight.responses()) compare_ranges(preflight, first, end, prior.simulations.centres, draws);
   std::erase_if(draws, [](Draw const& draw) { return !std::isfinite(draw.mismatch); });
   std::stable_sort(draws.begin(), draws.end(), [](Draw const& a, Draw const& b) { return a.mismatch < b.mismatch; });
   std::vector<int> lanes;

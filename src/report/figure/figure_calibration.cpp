@@ -31,7 +31,7 @@ Plot histogram_plot(CalibrationReport const& calibration, CalibratedQuantity con
   out.panel.x = axis(0, 1, 2);
   out.panel.y = axis(0, 1.08 * std::max(high, *std::max_element(counts.begin(), counts.end())), 3);
   out.panel.y.exponent = 0;
-  out.panel.x_label = of.name;
+  out.panel.x_label = "rank of " + of.name;
   out.panel.y_label = "records";
   out.panel.y_label_distance = 0;
   return out;
@@ -63,7 +63,7 @@ Plot ecdf_plot(CalibrationReport const& calibration, CalibratedQuantity const& o
   out.panel.x = axis(0, 1, 2);
   out.panel.y = axis(-largest, largest, 3, 0.05);
   out.panel.y.exponent = 0;
-  out.panel.x_label = of.name;
+  out.panel.x_label = "rank of " + of.name;
   out.panel.y_label = "";
   return out;
 }
