@@ -10,15 +10,6 @@
 namespace sysid {
 namespace {
 
-BlockScore under(LeftOut const& weights, ConstLanes log_density, DrawInfluence& influence) {
-  BlockScore out{weights.pareto_k, {}};
-  for (int i = 0; i < log_density.rows(); ++i) {
-    out.elpd.push_back(log_mean(weights.log_weights, log_density.row(i)));
-    influence.add(weights, log_density.row(i), out.elpd.back());
-  }
-  return out;
-}
-
 void add_rows(ConstLanes log_density, std::vector<double>& sum) {
   for (int i = 0; i < log_density.rows(); ++i)
     for (int s = 0; s < log_density.width(); ++s) sum[static_cast<std::size_t>(s)] += log_density(i, s);
@@ -36,20 +27,26 @@ SampleScore score_sample(std::span<double const> log_density, int chains, DrawIn
 }
 
 BlockScore score_block(LeftOut const& weights, ConstLanes log_density, DrawInfluence& influence) {
-  if (weights.pareto_k > largest_k) return {weights.pareto_k, {}};
-  return under(weights, log_density, influence);
+  BlockScore out{weights.pareto_k, {}};
+  for (int i = 0; i < log_density.rows(); ++i) {
+    out.elpd.push_back(log_mean(weights.log_weights, log_density.row(i)));
+    influence.add(weights, log_density.row(i), out.elpd.back());
+  }
+  return out;
 }
 
 BlockScore leave_block_out(ConstLanes log_density, int chains, DrawInfluence& influence) {
   std::vector<double> sum(static_cast<std::size_t>(log_density.width()), 0);
   add_rows(log_density, sum);
-  return under(leave_out(sum, chains), log_density, influence);
+  return score_block(leave_out(sum, chains), log_density, influence);
 }
 
 void FutureOut::leave(ConstLanes log_density) { add_rows(log_density, log_likelihood_); }
 
-BlockScore FutureOut::score(ConstLanes log_density, DrawInfluence& influence) const {
-  return score_block(leave_out(log_likelihood_, chains_), log_density, influence);
+BlockScore FutureOut::score(ConstLanes log_density, double most_k, DrawInfluence& influence) const {
+  LeftOut const weights = leave_out(log_likelihood_, chains_);
+  if (weights.pareto_k > most_k) return {weights.pareto_k, {}};
+  return score_block(weights, log_density, influence);
 }
 
 bool FutureOut::tells_nothing() const {

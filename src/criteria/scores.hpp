@@ -29,7 +29,6 @@ struct BlockScore {
 };
 
 /// Of samples that the weighted draws have not seen; log_density: [samples x draws], -infinity where a draw predicts nothing.
-/// Without scores where k is above `largest_k`.
 BlockScore score_block(LeftOut const& weights, ConstLanes log_density, DrawInfluence& influence);
 
 /// log_density: [samples x draws]. Scored whatever k is.
@@ -45,8 +44,8 @@ class FutureOut {
   FutureOut(int draws, int chains) : chains_(chains), log_likelihood_(static_cast<std::size_t>(draws), 0) {}
   /// The block before those of before.
   void leave(ConstLanes log_density);
-  /// Scores the block that was left out last. Without scores where k is above `largest_k`: earlier blocks would be worse.
-  BlockScore score(ConstLanes log_density, DrawInfluence& influence) const;
+  /// Scores the block that was left out last. Without scores where k is above `most_k`: earlier blocks would be worse.
+  BlockScore score(ConstLanes log_density, double most_k, DrawInfluence& influence) const;
   /// Whether what was left out tells nothing of the parameters: its weights do not differ.
   bool tells_nothing() const;
 

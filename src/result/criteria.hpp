@@ -50,7 +50,7 @@ using ParetoCounts = std::array<int, 4>;
 /// Blocks of consecutive rows of a record that were left out one by one, or with all later ones.
 struct LeftOutBlocks {
   std::string experiment;
-  std::vector<double> pareto_k;  // of each block, in the order of time
+  std::vector<double> pareto_k;  // of each block that has a score, in the order of time
   int asked = 0;                 // the earliest of these blocks may have no score; 0: the record is too short
   int first_row = 0;             // from which row of the file on there is a score; 0: nowhere
   int last_row = 0;

@@ -146,9 +146,9 @@ TEST_CASE("samples, blocks and futures left out of a normal mean have their clos
   FutureOut future(NormalMean::draws, 1);
   BlockScore const block = leave_block_out(last, 1, block_influence);
   future.leave(last);
-  BlockScore const ahead = future.score(last, future_influence);
+  BlockScore const ahead = future.score(last, largest_k, future_influence);
   future.leave(before);
-  BlockScore const earlier = future.score(before, future_influence);
+  BlockScore const earlier = future.score(before, largest_k, future_influence);
   CHECK(block.elpd == ahead.elpd);
   REQUIRE(earlier.elpd.size() == 5);
   double difference = 0;
@@ -169,7 +169,7 @@ TEST_CASE("a future that the weights do not reach has no score and no influence"
   DrawInfluence influence(NormalMean::draws);
   FutureOut future(NormalMean::draws, 1);
   future.leave(all);
-  BlockScore const score = future.score(all, influence);
+  BlockScore const score = future.score(all, largest_k, influence);
   CHECK(score.pareto_k > largest_k);
   CHECK(score.elpd.empty());
   CHECK(influence.error() == 0);

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
-#include "linear_algebra/decompositions.hpp"
+#include "inference/evidence/ensemble_walk.hpp"
+#include "inference/evidence/mixture.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 #include "search/refit.hpp"
@@ -17,81 +17,98 @@ namespace {
 
 constexpr int most_parameters = 40;
 constexpr int most_rounds = 3;
-constexpr double freedom = 5;
+constexpr double good_k = 0.3;   // above it, errors of the scores are stated too small
+constexpr int walk_steps = 32;   // enough for the ends of a curved ridge
+constexpr int walker_share = 2;  // of the draws, one in so many walks
+constexpr double share_of_wide = 0.2;
 constexpr std::uint64_t first_step = 8'000'000;  // of Purpose::start
+constexpr std::uint64_t steps_of_record = 1'000'000'000'000, steps_of_rows = 1000;
 
-/// Student's t of one place and shape.
-struct Component {
-  double share;
-  Eigen::VectorXd centre;
-  Eigen::MatrixXd root;
-
-  /// Without the constant that all have.
-  double log_density(Eigen::VectorXd const& u) const {
-    Eigen::VectorXd z = u - centre;
-    double log_volume = 0;
-    for (Eigen::Index i = 0; i < z.size(); ++i) {
-      for (Eigen::Index j = 0; j < i; ++j) z(i) -= root(i, j) * z(j);
-      z(i) /= root(i, i);
-      log_volume += elementary::log(root(i, i));
-    }
-    return elementary::log(share) - log_volume -
-           0.5 * (freedom + static_cast<double>(z.size())) * elementary::log1p(z.squaredNorm() / freedom);
-  }
-};
-
-std::vector<Component> at_modes(std::vector<Mode> const& modes) {
-  std::vector<Component> components;
+/// Student's t at the modes. Some are twice as wide: along a curved ridge weights are largest beyond the ends of its normal
+/// approximation.
+marginal::Mixture at_modes(std::vector<Mode> const& modes) {
+  std::vector<marginal::Mixture::Part> parts;
   double heaviest = -infinity, sum = 0;
   for (Mode const& mode : modes) heaviest = std::max(heaviest, mode.log_mass);
   for (Mode const& mode : modes) {
     double const share = elementary::exp(mode.log_mass - heaviest);
-    if (!(share > 1e-3)) continue;
-    components.push_back({share, theta_of(mode), cholesky_or_diagonal(covariance_of(mode))});
+    Component shape(theta_of(mode), covariance_of(mode));
+    if (!(share > 1e-3) || !(shape.root.diagonal().array() > 0).all()) continue;
     sum += share;
+    parts.push_back({Component(shape.centre, 4 * covariance_of(mode)), 0, share_of_wide * share});
+    parts.push_back({std::move(shape), 0, (1 - share_of_wide) * share});
   }
-  for (Component& each : components) each.share /= sum;
-  std::erase_if(components, [](Component const& each) { return !(each.root.diagonal().array() > 0).all(); });
-  return components;
+  for (marginal::Mixture::Part& part : parts) part.student /= sum;
+  return marginal::Mixture(std::move(parts));
 }
 
-std::vector<Eigen::VectorXd> draws_of(std::vector<Component> const& components, int draws, StreamKey key) {
-  std::vector<Eigen::VectorXd> places;
-  std::size_t which = 0;
-  double passed = components.front().share;
-  for (int d = 0; d < draws; ++d) {
-    while (which + 1 < components.size() && (d + 0.5) / draws > passed) passed += components[++which].share;
-    Stream stream(key.with_index(static_cast<std::uint64_t>(d)));
-    Eigen::VectorXd z(components[which].centre.size());
-    for (double& each : z) each = stream.normal();
-    double square = 0;
-    for (int i = 0; i < static_cast<int>(freedom); ++i) {
-      double const each = stream.normal();
-      square += each * each;
+/// Draws of mixtures, one for each round, that count against all of them together.
+class Rounds {
+ public:
+  Rounds(Objective const& objective, int draws, StreamKey key) : objective_(objective), draws_(draws), key_(key) {}
+
+  void add(marginal::Mixture mixture, Ledger& ledger, std::function<bool()> const& stop) {
+    LaneArray more(objective_.dimension(), draws_);
+    for (int d = 0; d < draws_; ++d) mixture.draw(key_.with_index(static_cast<std::uint64_t>(theta_.width() + d)), more, d);
+    std::vector<double> const density = log_density_in_blocks(objective_, more, ledger, stop);
+    log_density_.insert(log_density_.end(), density.begin(), density.end());
+    theta_ = beside(theta_, more);
+    mixtures_.push_back(std::move(mixture));
+  }
+
+  /// Draws of equal weight that have walked on, for a mixture that reaches further.
+  LaneArray walked(LeftOut const& weights, Ledger& ledger, std::function<bool()> const& stop) const {
+    LaneArray walkers(theta_.rows(), std::max(draws_ / walker_share, 8));
+    std::vector<double> log_density;
+    int d = 0;
+    double passed = elementary::exp(weights.log_weights.front());
+    for (int w = 0; w < walkers.width(); ++w) {
+      while (d + 1 < theta_.width() && (w + 0.5) / walkers.width() > passed)
+        passed += elementary::exp(weights.log_weights[static_cast<std::size_t>(++d)]);
+      for (int i = 0; i < theta_.rows(); ++i) walkers(i, w) = theta_(i, d);
+      log_density.push_back(log_density_[static_cast<std::size_t>(d)]);
     }
-    places.push_back(components[which].centre + std::sqrt(freedom / square) * (components[which].root * z));
+    auto const before = static_cast<std::uint64_t>(mixtures_.size() * walk_steps);
+    return marginal::walk(objective_, std::move(walkers), std::move(log_density), walk_steps, key_.with_step(key_.step + before),
+                          ledger, stop);
   }
-  return places;
-}
 
-double log_density(std::vector<Component> const& components, Eigen::VectorXd const& u) {
-  double sum = 0, largest = -infinity;
-  for (Component const& each : components) largest = std::max(largest, each.log_density(u));
-  for (Component const& each : components) sum += elementary::exp(each.log_density(u) - largest);
-  return largest + elementary::log(sum);
-}
+  LaneArray const& theta() const { return theta_; }
+  bool all_failed() const {
+    return std::ranges::none_of(log_density_, [](double each) { return std::isfinite(each); });
+  }
 
-/// Where the weighted draws are; something of the first shape is left, since a few span no volume.
-Component adapted(std::vector<Eigen::VectorXd> const& places, LeftOut const& weights, Component const& first) {
-  Component out{1, Eigen::VectorXd::Zero(first.centre.size()), {}};
-  auto const weight = [&](std::size_t d) { return elementary::exp(weights.log_weights[d]); };
-  for (std::size_t d = 0; d < places.size(); ++d) out.centre += weight(d) * places[d];
-  Eigen::MatrixXd covariance = 0.01 * first.root * first.root.transpose();
-  for (std::size_t d = 0; d < places.size(); ++d)
-    covariance += weight(d) * (places[d] - out.centre) * (places[d] - out.centre).transpose();
-  out.root = cholesky_or_diagonal(covariance);
-  return out;
-}
+  LeftOut weights() const {
+    std::vector<double> mixed(log_density_.size(), -infinity);
+    for (marginal::Mixture const& mixture : mixtures_) {
+      std::vector<double> const one = mixture.log_density(mixture.log_terms(theta_));
+      for (std::size_t d = 0; d < mixed.size(); ++d) {
+        double const more = std::max(mixed[d], one[d]), less = std::min(mixed[d], one[d]);
+        mixed[d] = more + elementary::log1p(elementary::exp(less - more));
+      }
+    }
+    std::vector<double> ratios = log_density_;
+    for (std::size_t d = 0; d < ratios.size(); ++d) ratios[d] -= mixed[d];
+    return weighted(ratios, 1);
+  }
+
+ private:
+  static LaneArray beside(LaneArray const& left, LaneArray const& right) {
+    LaneArray out(right.rows(), left.width() + right.width());
+    for (int i = 0; i < right.rows(); ++i) {
+      if (left.width() > 0) std::ranges::copy(left.row(i), out.row(i).begin());
+      std::ranges::copy(right.row(i), out.row(i).begin() + left.width());
+    }
+    return out;
+  }
+
+  Objective const& objective_;
+  int draws_;
+  StreamKey key_;
+  LaneArray theta_;  // [P x draws so far]
+  std::vector<double> log_density_;
+  std::vector<marginal::Mixture> mixtures_;
+};
 
 std::vector<Experiment> shortened(std::vector<ExperimentData> const& data, int experiment, int end) {
   std::vector<Experiment> experiments = experiments_of(data);
@@ -102,30 +119,28 @@ std::vector<Experiment> shortened(std::vector<ExperimentData> const& data, int e
 
 }  // namespace
 
-std::optional<EarlierDraws> earlier_draws(FinishedFit& fit, int experiment, int end, int draws) {
+std::optional<EarlierDraws> earlier_draws(FinishedFit& fit, int experiment, int end, int draws, int most) {
   if (fit.target.dimension() > most_parameters || fit.target.is_expensive()) return std::nullopt;
   auto const target =
       fit.likelihood.make_target(shortened(fit.data, experiment, end), fit.preparation.solver, fit.session.interruptible());
   auto const stop = [&] { return fit.session.interrupted(); };
   std::vector<Mode> modes = refit(*target, fit.objective_kind, fit.result.modes, fit.seed, fit.extra, stop);
   std::erase_if(modes, [](Mode const& each) { return !std::isfinite(each.log_density) || !std::isfinite(each.log_mass); });
-  std::vector<Component> components = at_modes(modes);
-  if (components.empty()) return std::nullopt;
+  marginal::Mixture mixture = at_modes(modes);
   Objective const objective = make_objective(*target, fit.objective_kind, fit.seed, first_step);
-  std::optional<EarlierDraws> found;
-  for (int round = 0; round < most_rounds && !stop(); ++round) {
-    auto const step = first_step + 1 + static_cast<std::uint64_t>(most_rounds * end + round);
-    std::vector<Eigen::VectorXd> const places =
-        draws_of(components, draws, {fit.seed, Purpose::start, static_cast<std::uint64_t>(experiment), step});
-    std::vector<double> ratios = log_density_in_blocks(objective, to_lanes(places), fit.extra, stop);
-    if (std::ranges::none_of(ratios, [](double each) { return std::isfinite(each); })) return std::nullopt;
-    for (std::size_t d = 0; d < places.size(); ++d) ratios[d] -= log_density(components, places[d]);
-    found = EarlierDraws{LaneArray(target->dimension(), draws), weighted(ratios, 1)};
-    target->constrain(to_lanes(places), found->declared);
-    if (found->weights.pareto_k <= largest_k) break;
-    components = {adapted(places, found->weights, components.front())};
-    if (!(components.front().root.diagonal().array() > 0).all()) break;
+  auto const record = static_cast<std::uint64_t>(experiment + 1), rows = static_cast<std::uint64_t>(end);
+  Rounds rounds(objective, draws, {fit.seed, Purpose::start, 0, first_step + record * steps_of_record + rows * steps_of_rows});
+  std::optional<LeftOut> weights;
+  for (int round = 0; round < most_rounds && !mixture.empty() && !stop(); ++round) {
+    rounds.add(std::move(mixture), fit.extra, stop);
+    if (rounds.all_failed()) return std::nullopt;
+    weights = rounds.weights();
+    if (weights->pareto_k <= good_k || (round + 2) * draws > most) break;
+    mixture = marginal::fit_mixture({}, rounds.walked(*weights, fit.extra, stop), fit.seed, stop);
   }
+  if (!weights) return std::nullopt;
+  EarlierDraws found{LaneArray(target->dimension(), rounds.theta().width()), std::move(*weights)};
+  target->constrain(rounds.theta(), found.declared);
   return found;
 }
 

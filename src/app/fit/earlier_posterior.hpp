@@ -14,8 +14,10 @@ struct EarlierDraws {
 };
 
 /// Of all rows of the other experiments and, of this one, those before index `end`: the fit's modes are followed to the shorter
-/// record, and draws from Student's t distributions there weighted by the density; twice more from where the weighted ones are,
-/// while k is above `largest_k`. Nothing above 40 parameters, and where no mode is left.
-std::optional<EarlierDraws> earlier_draws(FinishedFit& fit, int experiment, int end, int draws);
+/// record, and `draws` from Student's t distributions there are weighted by the density; further rounds of as many, from where the
+/// weighted ones are, while k is above 0.3 and the weights are worth less than half as many
+/// equal ones, and there are `most` in all at most. Each draw counts against the mixture of all rounds.
+/// Nothing above 40 parameters, and where no mode is left.                                 Cornuet, Marin, Mira and Robert 2012
+std::optional<EarlierDraws> earlier_draws(FinishedFit& fit, int experiment, int end, int draws, int most);
 
 }  // namespace sysid

@@ -10,6 +10,7 @@
 namespace sysid {
 namespace {
 
+constexpr double small_k = 0.5;  // of weighted draws of the whole posterior, where draws of its own do not reach an earlier one
 constexpr int history = blocks_of_record / 2;  // blocks before the first that is predicted from its past alone
 
 /// The rows of an experiment that are scored in any channel, and where blocks of them end.
@@ -151,38 +152,52 @@ class RecordScores {
 
   void predict_from_past(int b, LaneArray const& block, DrawInfluence& influence) {
     future_.leave(block);
-    BlockScore before;
-    if (!future_.tells_nothing()) before = by_own_draws(b);
-    if (before.elpd.empty())
-      before = future_.score(block, influence);
-    else
-      ++futures_.own_draws;
+    std::optional<BlockScore> own;
+    if (!future_.tells_nothing()) own = by_own_draws(b);
+    bool const by_own = own && !own->elpd.empty();
+    BlockScore const before = by_own ? *own : future_.score(block, own ? small_k : largest_k, influence);
     going_back_ = !before.elpd.empty();
-    if (going_back_)
-      keep(before, &PointwiseScores::elpd_future, b, futures_);
-    else
-      futures_.pareto_k.push_back(before.pareto_k);
+    if (!going_back_) return;
+    keep(before, &PointwiseScores::elpd_future, b, futures_);
+    if (by_own) ++futures_.own_draws;
   }
 
-  /// By draws of the posterior of the rows before the block.
-  BlockScore by_own_draws(int b) {
+  /// By draws of the posterior of the rows before the block; without scores where these do not reach it. Nothing where there are no
+  /// such draws.
+  std::optional<BlockScore> by_own_draws(int b) {
     int const from = scored_.first_row(b), to = scored_.end_row(b);
-    auto const draws = earlier_draws(fit_, index_, from, own_draws_);
-    if (!draws || fit_.session.interrupted()) return {std::numeric_limits<double>::infinity(), {}};
-    LaneArray parameters(parameters_.rows(), own_draws_);
-    ParameterSpace const& space = fit_.likelihood.space();
-    space.select(space.values_of_declared(draws->declared), index_, parameters);
-    LaneArray densities((to - from) * pointwise_->channels(), parameters.width());
-    pointwise_->records(parameters, from, to, densities);
-    fit_.extra.add_solves(static_cast<std::uint64_t>(parameters.width()));
-    LaneArray block = samples_of(b, densities, from);
+    double const samples = static_cast<double>(to - from) * pointwise_->channels();
+    auto const most = static_cast<int>(std::min(most_densities / samples, 1e6));
+    auto const draws = earlier_draws(fit_, index_, from, own_draws_, most);
+    if (!draws || fit_.session.interrupted()) return std::nullopt;
+    if (draws->weights.pareto_k > largest_k) return BlockScore{draws->weights.pareto_k, {}};
+    LaneArray block = densities_under(draws->declared, b);
     for (int i = 0; i < block.rows(); ++i)
       for (double& each : block.row(i))
         if (!std::isfinite(each)) each = -std::numeric_limits<double>::infinity();
-    DrawInfluence influence(static_cast<std::size_t>(parameters.width()));
+    DrawInfluence influence(static_cast<std::size_t>(block.width()));
     BlockScore score = score_block(draws->weights, block, influence);
     own_variance_ += influence.error() * influence.error();
     return score;
+  }
+
+  /// Of the samples of a block, as many draws at a time as a round has.
+  LaneArray densities_under(LaneArray const& declared, int b) {
+    int const from = scored_.first_row(b), to = scored_.end_row(b);
+    LaneArray parameters(parameters_.rows(), declared.width());
+    ParameterSpace const& space = fit_.likelihood.space();
+    space.select(space.values_of_declared(declared), index_, parameters);
+    LaneArray out;
+    for (int first = 0; first < parameters.width(); first += own_draws_) {
+      ConstLanes const part = parameters.view().columns(first, std::min(own_draws_, parameters.width() - first));
+      LaneArray densities((to - from) * pointwise_->channels(), part.width());
+      pointwise_->records(part, from, to, densities);
+      fit_.extra.add_solves(static_cast<std::uint64_t>(part.width()));
+      LaneArray const block = samples_of(b, densities, from);
+      if (first == 0) out = LaneArray(block.rows(), parameters.width());
+      for (int i = 0; i < block.rows(); ++i) std::ranges::copy(block.row(i), out.row(i).begin() + first);
+    }
+    return out;
   }
 
   void keep(BlockScore const& score, std::vector<double> PointwiseScores::*column, int b, LeftOutBlocks& blocks) {
