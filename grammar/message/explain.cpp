@@ -209,11 +209,11 @@ class Failure {
     if (sign != nullptr && verb != nullptr && sign->is("~") && words::contains(words::verbs, verb->text))
       diagnostic.help = fmt::format("the name of a task is followed by `=`: `{} = {}`", found().text, verb->text);
     if (verb != nullptr && verb->is("=") && words::contains(words::model_statements, found().text))
-      diagnostic.help = fmt::format("outside of blocks a task is written `NAME = fit ...`: remove `{}`", found().text);
+      diagnostic.help = fmt::format("outside a block, a task is written `NAME = fit ...`: remove `{}`", found().text);
     bool const module = words::translated(words::foreign_items(), found().text) == "use";
     if (module && sign != nullptr && is_word(*sign))
       diagnostic.help = fmt::format(
-          "write `use {}` if it is a module of the library or of this folder; functions such as `sqrt` need none", sign->text);
+          "write `use {}` if it is a module of the library or of this folder; functions such as `sqrt` need no `use`", sign->text);
     return diagnostic;
   }
 

@@ -104,7 +104,7 @@ constexpr std::array<Situation, 35> situations{{
      },
      "did you mean `with`?"},
     {[](Gap const& g) { return g.wanted == wanted::verb && g.found != nullptr && g.found->kind != TokenKind::word && g.at == 2; },
-     "outside of blocks `NAME =` begins a task; declare quantities inside a model: `constant g = 9.81 [m/s^2]`"},
+     "outside a block, `NAME =` begins a task; declare quantities inside a model: `constant g = 9.81 [m/s^2]`"},
     {[](Gap const& g) { return g.wanted == wanted::end_of_statement && found(g, ",") && g.begins_with("parameter"); },
      "declare each parameter in a statement of its own, without a start value: the fit chooses the start"},
     {[](Gap const& g) { return g.wanted == wanted::end_of_statement && found(g, ","); }, "begin a new line, or write `;`"},

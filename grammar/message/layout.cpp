@@ -180,13 +180,13 @@ class LayoutPass {
       std::string_view const written(tokens_[i].text.data(), 2);
       bool const numbers = before.kind == TokenKind::number && i + 2 < tokens_.size() && tokens_[i + 2].kind == TokenKind::number;
       mistake(
-          i,
-          errors::foreign_operator(
-              both, written,
-              written == "--" ? "a comment begins with `#` or `//`; a negative number is subtracted with a space between: `a - -b`"
-              : written == "++" ? "write a single `+`"
-              : numbers ? fmt::format("an uncertain value is a prior: `~ normal({}, sd = {})`", before.text, tokens_[i + 2].text)
-                        : "an uncertain value is a prior, `~ normal(value, sd = 1)`; else write one sign"));
+          i, errors::foreign_operator(
+                 both, written,
+                 written == "--"
+                     ? "a comment begins with `#` or `//`; to subtract a negative number, write a space between the signs: `a - -b`"
+                 : written == "++" ? "write a single `+`"
+                 : numbers ? fmt::format("an uncertain value is a prior: `~ normal({}, sd = {})`", before.text, tokens_[i + 2].text)
+                           : "an uncertain value is a prior, `~ normal(value, sd = 1)`; else write one sign"));
     }
   }
 

@@ -83,7 +83,7 @@ void add_result_options(CLI::App& verb, ResultOptions& options) {
   add_file(verb, options.file);
   add_output(verb, options.run.output);
   verb.add_flag("--force", options.run.force, "replace existing results");
-  add_seed(verb, options.run.seed, "seed of all random numbers, in place of those in the file");
+  add_seed(verb, options.run.seed, "seed of all random numbers, in place of the seeds in the file");
   verb.add_flag("-q,--quiet", options.quiet, "print no progress and no notices");
   add_figures(verb, options.run, "write figures as scripts only");
   options.run.execution.threads = 0;

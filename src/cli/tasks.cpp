@@ -56,7 +56,9 @@ void add_run_options(CLI::App& verb, TaskOptions& options) {
       ->check(refuse_no_duration)
       ->default_str("30");
   verb.add_option("--interrupt-after", options.run.interrupt_after, "interrupt the run at the n-th safe point")->group("");
-  verb.add_option("--dump", options.dump, "print a stage of the compiler and run nothing: ast, flat, model or program")
+  verb.add_option("--dump", options.dump,
+                  "print the file as the compiler sees it and run nothing: ast (syntax tree), flat (parts and vectors written "
+                  "out), model (first-order equations) or program (compiled form)")
       ->type_name("STAGE")
       ->check(CLI::IsMember({"ast", "flat", "model", "program"}));
 }

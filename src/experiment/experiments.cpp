@@ -48,8 +48,8 @@ void check_steps(Record const& record, DataBlock const& block, Model const& mode
                    i + 1, block.path, step, wanted, model.name),
          Label{block.time ? block.time->span : block.span, {}},
          {},
-         "correct `time discrete`, or resample the record to equal steps; differences of up to 1 % of the step, as of rounded "
-         "times, are accepted",
+         "correct `time discrete`, or resample the record to equal steps; differences of up to 1 % of the step, such as those of "
+         "rounded times, are accepted",
          {model.name}});
   }
 }
@@ -169,14 +169,15 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
   if (start.kind != StartRule::Kind::record) from = range.first;
   if (start.kind == StartRule::Kind::estimated) {
     if (range.first + start.rows > range.last)
-      throw UserError({Severity::error,
-                       "E4201",
-                       fmt::format("{} has {} rows, but estimating the start needs {}, and more are needed to score", what,
-                                   range.last - range.first + 1, start.rows),
-                       Label{rows.span, {}},
-                       {},
-                       "use more rows, or estimate the start from fewer rows",
-                       {part < 0 ? block.name : rows.name}});
+      throw UserError(
+          {Severity::error,
+           "E4201",
+           fmt::format("{} has {} rows, but estimating the initial state uses {} rows, and the fit needs further rows to score",
+                       what, range.last - range.first + 1, start.rows),
+           Label{rows.span, {}},
+           {},
+           "use more rows, or estimate the start from fewer rows",
+           {part < 0 ? block.name : rows.name}});
     range.first += start.rows;
   }
   Experiment experiment = make_experiment(record, name, from, range, rows.span);

@@ -20,7 +20,7 @@ BackendRow const backend_rows[] = {
      &mh::refuse,
      &mh::run},
     {"nuts",
-     "no-U-turn chains: trajectories along the gradient of the log density",
+     "no-U-turn chains: trajectories guided by the gradient of the log density",
      {.proper_prior = true},
      ObjectiveKind::posterior,
      nuts::settings(),

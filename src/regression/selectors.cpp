@@ -16,7 +16,8 @@ namespace {
 SelectorRow const selector_rows[] = {
     {"spike_slab", "posterior probabilities of terms and of sets of terms", "inclusion probability", spike_slab::settings(),
      &no_refusal, &spike_slab::choose},
-    {"ard", "one prior precision per coefficient, evidence maximised", "contribution", ard::settings(), &no_refusal, &ard::choose},
+    {"ard", "a prior precision for each coefficient, chosen such that the evidence is largest", "contribution", ard::settings(),
+     &no_refusal, &ard::choose},
     {"threshold", "removes the term with the smallest contribution, repeatedly", "contribution", threshold::settings(), &no_refusal,
      &threshold::choose},
 };

@@ -54,7 +54,7 @@ TEST_CASE("fits of a session are compared by their evidence, and what has not be
   REQUIRE(d.enter("parameter k3 [N/m^3] ~ log_uniform(1e7, 1e11); 1 [kg]*y'' + c*y' + k*y + k3*y^3 = x"));
   REQUIRE(d.enter("refit"));
   REQUIRE_MESSAGE(d.enter("compare"), d.messages());
-  CHECK(has(d.answers(), "fitted to bench.train, rows 1..200 (200)"));
+  CHECK(has(d.answers(), "fitted to bench.train, rows 1..200 (200 scored)"));
   // The model has changed in between: `list` has two names for it.
   CHECK(has(d.answers(), "first   oscillator_1 "));
   CHECK(has(d.answers(), "first2  oscillator "));

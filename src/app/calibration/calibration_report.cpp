@@ -77,7 +77,7 @@ std::string headline(CalibrationReport const& calibration, Findings const& findi
                                                       : fmt::format("all {} quantities", calibration.quantities.size()));
   std::string const found = fmt::format("nothing found in {} records: {}", n, words);
   if (!verdict.pass) return fmt::format("not known: {}, but too many records have no fit", words);
-  return n < few_records ? found + "; so few show gross errors only"
+  return n < few_records ? found + "; so few records can reveal only gross errors"
                          : fmt::format("{}; an sd too small by {} % would probably have shown", found, shown_percent(n));
 }
 

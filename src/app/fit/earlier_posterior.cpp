@@ -16,10 +16,8 @@ namespace sysid {
 namespace {
 
 constexpr int most_parameters = 40;
-constexpr int most_rounds = 3;
-constexpr double good_k = 0.3;   // above it, errors of the scores are stated too small
-constexpr int walk_steps = 32;   // enough for the ends of a curved ridge
-constexpr int walker_share = 2;  // of the draws, one in so many walks
+constexpr int most_rounds = 2;
+constexpr double good_k = 0.3;  // above it, errors of the scores are stated too small
 constexpr double share_of_wide = 0.2;
 constexpr std::uint64_t first_step = 8'000'000;  // of Purpose::start
 constexpr std::uint64_t steps_of_record = 1'000'000'000'000, steps_of_rows = 1000;
@@ -54,23 +52,6 @@ class Rounds {
     log_density_.insert(log_density_.end(), density.begin(), density.end());
     theta_ = beside(theta_, more);
     mixtures_.push_back(std::move(mixture));
-  }
-
-  /// Draws of equal weight that have walked on, for a mixture that reaches further.
-  LaneArray walked(LeftOut const& weights, Ledger& ledger, std::function<bool()> const& stop) const {
-    LaneArray walkers(theta_.rows(), std::max(draws_ / walker_share, 8));
-    std::vector<double> log_density;
-    int d = 0;
-    double passed = elementary::exp(weights.log_weights.front());
-    for (int w = 0; w < walkers.width(); ++w) {
-      while (d + 1 < theta_.width() && (w + 0.5) / walkers.width() > passed)
-        passed += elementary::exp(weights.log_weights[static_cast<std::size_t>(++d)]);
-      for (int i = 0; i < theta_.rows(); ++i) walkers(i, w) = theta_(i, d);
-      log_density.push_back(log_density_[static_cast<std::size_t>(d)]);
-    }
-    auto const before = static_cast<std::uint64_t>(mixtures_.size() * walk_steps);
-    return marginal::walk(objective_, std::move(walkers), std::move(log_density), walk_steps, key_.with_step(key_.step + before),
-                          ledger, stop);
   }
 
   LaneArray const& theta() const { return theta_; }
@@ -110,6 +91,26 @@ class Rounds {
   std::vector<marginal::Mixture> mixtures_;
 };
 
+/// As many draws of equal weight, each as often as its weight says.
+LaneArray of_equal_weight(ConstLanes theta, LeftOut const& weights, int count) {
+  LaneArray out(theta.rows(), count);
+  int d = 0;
+  double passed = elementary::exp(weights.log_weights.front());
+  for (int k = 0; k < count; ++k) {
+    while (d + 1 < theta.width() && (k + 0.5) / count > passed)
+      passed += elementary::exp(weights.log_weights[static_cast<std::size_t>(++d)]);
+    for (int i = 0; i < theta.rows(); ++i) out(i, k) = theta(i, d);
+  }
+  return out;
+}
+
+LaneArray last_of(LaneArray const& states, int count) {
+  LaneArray out(states.rows(), count);
+  ConstLanes const last = states.view().columns(states.width() - count, count);
+  for (int i = 0; i < out.rows(); ++i) std::ranges::copy(last.row(i), out.row(i).begin());
+  return out;
+}
+
 std::vector<Experiment> shortened(std::vector<ExperimentData> const& data, int experiment, int end) {
   std::vector<Experiment> experiments = experiments_of(data);
   std::vector<std::uint8_t>& scored = experiments[static_cast<std::size_t>(experiment)].scored;
@@ -119,7 +120,7 @@ std::vector<Experiment> shortened(std::vector<ExperimentData> const& data, int e
 
 }  // namespace
 
-std::optional<EarlierDraws> earlier_draws(FinishedFit& fit, int experiment, int end, int draws, int most) {
+std::optional<EarlierDraws> earlier_draws(FinishedFit& fit, int experiment, int end, int draws, int most, LaneArray& near) {
   if (fit.target.dimension() > most_parameters || fit.target.is_expensive()) return std::nullopt;
   auto const target =
       fit.likelihood.make_target(shortened(fit.data, experiment, end), fit.preparation.solver, fit.session.interruptible());
@@ -128,19 +129,28 @@ std::optional<EarlierDraws> earlier_draws(FinishedFit& fit, int experiment, int 
   std::erase_if(modes, [](Mode const& each) { return !std::isfinite(each.log_density) || !std::isfinite(each.log_mass); });
   marginal::Mixture mixture = at_modes(modes);
   Objective const objective = make_objective(*target, fit.objective_kind, fit.seed, first_step);
-  auto const record = static_cast<std::uint64_t>(experiment + 1), rows = static_cast<std::uint64_t>(end);
-  Rounds rounds(objective, draws, {fit.seed, Purpose::start, 0, first_step + record * steps_of_record + rows * steps_of_rows});
-  std::optional<LeftOut> weights;
+  StreamKey const key{
+      fit.seed, Purpose::start, 0,
+      first_step + static_cast<std::uint64_t>(experiment + 1) * steps_of_record + static_cast<std::uint64_t>(end) * steps_of_rows};
+  Rounds rounds(objective, draws, key);
+  std::optional<LeftOut> best;  // k itself scatters by 0.1 to 0.2
   for (int round = 0; round < most_rounds && !mixture.empty() && !stop(); ++round) {
     rounds.add(std::move(mixture), fit.extra, stop);
     if (rounds.all_failed()) return std::nullopt;
-    weights = rounds.weights();
-    if (weights->pareto_k <= good_k || (round + 2) * draws > most) break;
-    mixture = marginal::fit_mixture({}, rounds.walked(*weights, fit.extra, stop), fit.seed, stop);
+    LeftOut const weights = rounds.weights();
+    if (!best || weights.pareto_k < best->pareto_k) best = weights;
+    if (weights.pareto_k <= good_k || near.width() == 0 || (round + 2) * draws > most) break;
+    LaneArray const states = marginal::walk(
+        objective, near, walk_steps, key.with_step(key.step + static_cast<std::uint64_t>(round * walk_steps)), fit.extra, stop);
+    near = last_of(states, near.width());
+    mixture = marginal::fit_mixture({}, states, fit.seed, stop);
   }
-  if (!weights) return std::nullopt;
-  EarlierDraws found{LaneArray(target->dimension(), rounds.theta().width()), std::move(*weights)};
-  target->constrain(rounds.theta(), found.declared);
+  if (!best) return std::nullopt;
+  int const count = static_cast<int>(best->log_weights.size());
+  EarlierDraws found{LaneArray(target->dimension(), count), std::move(*best)};
+  ConstLanes const theta = rounds.theta().view().columns(0, count);
+  target->constrain(theta, found.declared);
+  if (near.width() > 0 && found.weights.pareto_k <= good_k) near = of_equal_weight(theta, found.weights, near.width());
   return found;
 }
 

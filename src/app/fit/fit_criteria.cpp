@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/fit/earlier_posterior.hpp"
 #include "app/fit/record_scores.hpp"
 #include "core/numeric/statistics.hpp"
 #include "criteria/scores.hpp"
@@ -17,6 +18,7 @@ namespace sysid {
 namespace {
 
 constexpr int most_draws = 1000, fewest_draws = 100;
+constexpr int most_walkers = 256, fewest_walkers = 64;
 constexpr double share_of_fit = 0.05;  // of its simulations, that the scores of its draws take
 
 ScoreAtMode at_mode(FinishedFit& fit, int samples) {
@@ -125,17 +127,24 @@ std::string why_none(FinishedFit const& fit) {
   return "";
 }
 
+/// As many as may take their steps within so many simulations.
+int walkers_within(double simulations) {
+  int const count = std::min(most_walkers, static_cast<int>(std::min(simulations / walk_steps, 1e6)));
+  return count < fewest_walkers ? 0 : count;
+}
+
 void score_draws(FinishedFit& fit, Criteria& criteria) {
   SomeDraws const draws = spread_evenly(fit.result.draws, number_of_draws(fit));
   criteria.draws = draws.columns.width();
   criteria.in_time = fit.likelihood.model().dynamics != Dynamics::none;
   auto const width = static_cast<std::size_t>(criteria.draws);
   double const shared = share_of_fit * simulations(fit) / static_cast<double>(fit.data.size());
-  int const own_draws = std::min(criteria.draws, std::max(fewest_draws, static_cast<int>(std::min(shared, 1e6))));
+  OwnDraws const own{std::min(criteria.draws, std::max(fewest_draws, static_cast<int>(std::min(shared, 1e6)))),
+                     walkers_within(shared)};
   DrawInfluence loo(width), block(width), future(width);
   double own_variance = 0;
   for (int e = 0; e < static_cast<int>(fit.data.size()); ++e) {
-    ScoredRecord const record = score_record(fit, criteria, e, draws, own_draws, loo, block, future);
+    ScoredRecord const record = score_record(fit, criteria, e, draws, own, loo, block, future);
     if (!record.ended) {
       criteria.reason = record.failed == 0 ? "the run was interrupted"
                                            : fmt::format("{} of {} draws have no solution on {}", record.failed, criteria.draws,

@@ -31,7 +31,7 @@ struct ScoredRows {
 
 class RecordScores {
  public:
-  RecordScores(FinishedFit& fit, Criteria& criteria, int experiment, SomeDraws const& draws, int own_draws)
+  RecordScores(FinishedFit& fit, Criteria& criteria, int experiment, SomeDraws const& draws, OwnDraws own)
       : fit_(fit),
         criteria_(criteria),
         index_(experiment),
@@ -39,7 +39,7 @@ class RecordScores {
         pointwise_(fit.likelihood.pointwise(experiment)),
         scored_(*pointwise_),
         chains_(draws.chains),
-        own_draws_(own_draws),
+        own_(own),
         parameters_(static_cast<int>(fit.likelihood.model().parameters.size()), draws.columns.width()),
         future_(draws.columns.width(), chains_),
         first_series_(criteria.pointwise.size()) {
@@ -51,6 +51,7 @@ class RecordScores {
     left_out_.asked = scored_.blocks();
     futures_.asked = std::max(scored_.blocks() - history, 0);
     going_back_ = futures_.asked > 0;
+    near_ = some_of(draws.columns);
   }
 
   /// False: a draw has no solution, or the user has interrupted.
@@ -84,6 +85,17 @@ class RecordScores {
   int failed() const { return failed_; }
 
  private:
+  /// On the sampler's coordinates.
+  LaneArray some_of(LaneArray const& declared) const {
+    int const count = std::min(own_.walkers, declared.width());
+    LaneArray some(declared.rows(), count), theta(fit_.target.dimension(), count);
+    for (int i = 0; i < some.rows(); ++i)
+      for (int w = 0; w < count; ++w)
+        some(i, w) = declared(i, static_cast<int>(static_cast<long long>(w) * declared.width() / count));
+    fit_.target.unconstrain(some, theta);
+    return theta;
+  }
+
   void add_series(int channel) {
     std::vector<int> const& samples = pointwise_->samples(channel);
     PointwiseScores series;
@@ -168,7 +180,7 @@ class RecordScores {
     int const from = scored_.first_row(b), to = scored_.end_row(b);
     double const samples = static_cast<double>(to - from) * pointwise_->channels();
     auto const most = static_cast<int>(std::min(most_densities / samples, 1e6));
-    auto const draws = earlier_draws(fit_, index_, from, own_draws_, most);
+    auto const draws = earlier_draws(fit_, index_, from, own_.round, most, near_);
     if (!draws || fit_.session.interrupted()) return std::nullopt;
     if (draws->weights.pareto_k > largest_k) return BlockScore{draws->weights.pareto_k, {}};
     LaneArray block = densities_under(draws->declared, b);
@@ -188,8 +200,8 @@ class RecordScores {
     ParameterSpace const& space = fit_.likelihood.space();
     space.select(space.values_of_declared(declared), index_, parameters);
     LaneArray out;
-    for (int first = 0; first < parameters.width(); first += own_draws_) {
-      ConstLanes const part = parameters.view().columns(first, std::min(own_draws_, parameters.width() - first));
+    for (int first = 0; first < parameters.width(); first += own_.round) {
+      ConstLanes const part = parameters.view().columns(first, std::min(own_.round, parameters.width() - first));
       LaneArray densities((to - from) * pointwise_->channels(), part.width());
       pointwise_->records(part, from, to, densities);
       fit_.extra.add_solves(static_cast<std::uint64_t>(part.width()));
@@ -213,10 +225,12 @@ class RecordScores {
   Experiment const& experiment_;
   std::unique_ptr<PointwiseLikelihood> pointwise_;
   ScoredRows scored_;
-  int chains_, own_draws_;
+  int chains_;
+  OwnDraws own_;
   int failed_ = 0;
   LaneArray parameters_;
   FutureOut future_;
+  LaneArray near_;  // draws of the posterior of this block and those after it, as far as it is known
   std::size_t first_series_;
   bool going_back_ = false;
   LeftOutBlocks left_out_, futures_;
@@ -226,9 +240,9 @@ class RecordScores {
 
 }  // namespace
 
-ScoredRecord score_record(FinishedFit& fit, Criteria& criteria, int experiment, SomeDraws const& draws, int own_draws,
+ScoredRecord score_record(FinishedFit& fit, Criteria& criteria, int experiment, SomeDraws const& draws, OwnDraws own,
                           DrawInfluence& loo, DrawInfluence& block, DrawInfluence& future) {
-  RecordScores record(fit, criteria, experiment, draws, own_draws);
+  RecordScores record(fit, criteria, experiment, draws, own);
   bool const ended = record.run(loo, block, future);
   return {ended, record.failed(), record.own_variance()};
 }

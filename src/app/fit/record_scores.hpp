@@ -20,9 +20,15 @@ struct ScoredRecord {
   double own_variance = 0;  // of the Monte Carlo error of what is predicted by draws of its own
 };
 
+/// What the earlier posteriors of a record may cost.
+struct OwnDraws {
+  int round;    // draws of each round
+  int walkers;  // that reach for the ends of a ridge; 0: none
+};
+
 /// Adds a series for each channel of an experiment, and of a record in time its blocks, to `criteria`; the influences [draws] count
-/// on over all records. own_draws: that each round of an earlier posterior may have.
-ScoredRecord score_record(FinishedFit& fit, Criteria& criteria, int experiment, SomeDraws const& draws, int own_draws,
+/// on over all records.
+ScoredRecord score_record(FinishedFit& fit, Criteria& criteria, int experiment, SomeDraws const& draws, OwnDraws own,
                           DrawInfluence& loo, DrawInfluence& block, DrawInfluence& future);
 
 }  // namespace sysid

@@ -79,8 +79,8 @@ void check_rules(TaskPage& page) {
             {FindingCode::input_rule,
              Severity::note,
              {input.name, coverage.name, "zero_order"},
-             fmt::format("{:.0f} % of the power of {} of {} is above 0.4 times the sampling rate: the samples do not determine the "
-                         "input between them",
+             fmt::format("{:.0f} % of the power of {} of {} is above 0.4 times the sampling rate: the samples do not determine how "
+                         "the input varies between two samples",
                          100 * input.top, input.name, coverage.name),
              "write `hold zero_order` if a generator held the input between its samples; else sample it faster"});
     }

@@ -102,11 +102,11 @@ void tell_apart(std::vector<StoredSummary>& results) {
     if (count[each.name] > 1) each.name = each.folder.string();
 }
 
-/// "flume.train, rows 101..500 (400)".
+/// "flume.train, rows 101..500 (400 scored)".
 std::string data_text(StoredSummary const& result) {
   std::string text;
   for (json const& data : result.summary.at("data"))
-    text += fmt::format("{}{}, rows {} ({})", text.empty() ? "" : "; ", data.value("name", ""), data.value("scored_rows", ""),
+    text += fmt::format("{}{}, rows {} ({} scored)", text.empty() ? "" : "; ", data.value("name", ""), data.value("scored_rows", ""),
                         data.value("scored", 0));
   return text;
 }

@@ -224,13 +224,14 @@ class Simulate {
       throw failed(
           fmt::format("the simulation `{}` {}", task_.name,
                       functions_ ? "does not stay finite" : first_failure(session_, what_, *compiled_, experiment_, parameters_)),
-          what_.solver.row().exact    ? fmt::format("use other values, or {} if the motion is too fast for `{}`",
+          what_.solver.row().exact    ? fmt::format("use other values of the parameters, or {} if the motion is too fast for `{}`",
                                                     what_.solver.other_methods(), what_.solver.method)
-          : what_.solver.fixed_step() ? fmt::format("use smaller steps (`{}`), {}, or other values",
+          : what_.solver.fixed_step() ? fmt::format("use smaller steps (`{}`), {}, or other values of the parameters",
                                                     smaller_steps(what_.solver).option(), what_.solver.other_methods())
           : what_.solver.other_methods().empty()
-              ? fmt::format("use other values, or more `steps` (now {})", what_.solver.steps)
-              : fmt::format("use {}, more `steps` (now {}), or other values", what_.solver.other_methods(), what_.solver.steps));
+              ? fmt::format("use other values of the parameters, or more `steps` (now {})", what_.solver.steps)
+              : fmt::format("use {}, more `steps` (now {}), or other values of the parameters", what_.solver.other_methods(),
+                            what_.solver.steps));
     for (auto const& channel : result.noisy)
       for (auto const& values : channel)
         if (what_.noise_fraction < 0 && std::any_of(values.begin(), values.end(), [](double y) { return std::isnan(y); }))

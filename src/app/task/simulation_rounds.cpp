@@ -86,7 +86,7 @@ std::optional<Trajectory::Result> in_rounds(Session& session, Task const& task,
                                task.name),
                    Label{task.span, {}},
                    {},
-                   "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values"});
+                   "the model may be chaotic, so that rounding errors grow: use fewer samples, or other values of the parameters"});
 }
 
 }  // namespace sysid

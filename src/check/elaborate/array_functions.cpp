@@ -123,7 +123,7 @@ constexpr ArrayFunctionRow rows[] = {
     {"zeros", "zeros(n) or zeros(n, m)", "vector or matrix of zeros", &zeros, true},
     {"ones", "ones(n) or ones(n, m)", "vector or matrix of ones", &ones, true},
     {"integers", "integers(n)", "vector 1, 2, ..., n", &integers, true},
-    {"unit_vector", "unit_vector(n, i)", "vector of n with 1 at i, else 0", &unit_vector, true},
+    {"unit_vector", "unit_vector(n, i)", "vector with n elements: 1 at position i, 0 elsewhere", &unit_vector, true},
 };
 
 }  // namespace

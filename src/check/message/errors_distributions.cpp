@@ -224,15 +224,16 @@ Diagnostic no_mass(Span span, std::string const& distribution) {
 }
 
 Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit) {
-  return about({distribution},
-               error("E2117", span, fmt::format("`{}` is a distribution of pure numbers, but this needs [{}]", distribution, unit),
-                     fmt::format("give this prior to a dimensionless factor and multiply it by a quantity in [{}]", unit)));
+  return about(
+      {distribution},
+      error("E2117", span, fmt::format("`{}` is a distribution of pure numbers, but this quantity is in [{}]", distribution, unit),
+            fmt::format("give this prior to a dimensionless factor and multiply it by a quantity in [{}]", unit)));
 }
 
 Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit) {
   return about(
       {distribution},
-      error("E2118", span, fmt::format("`{}` is a distribution of counts, but this needs [{}]", distribution, unit),
+      error("E2118", span, fmt::format("`{}` is a distribution of counts, but this quantity is in [{}]", distribution, unit),
             "a count is a pure number: divide the expression by the size of one item, and remove the unit of the channel"));
 }
 

@@ -39,7 +39,7 @@ Diagnostic solver_that_reads_no_time(Span option, std::string const& solver, std
           fmt::format("`{}` needs equations that do not depend on time, but those of `{}` do", solver, model),
           Label{option, {}},
           {},
-          fmt::format("make what depends on time an input of the model; or {}", other_solvers),
+          fmt::format("replace what depends on time by an input of the model; or {}", other_solvers),
           {solver, model}};
 }
 
@@ -71,10 +71,11 @@ Diagnostic constraint_of_input(ast::Equation const& equation, std::string const&
           fmt::format("this constraint prescribes a motion: the constraint force needs the second derivative of input `{}`", input),
           Label{equation.span, {}},
           {},
-          fmt::format("use the acceleration as the input: write `y'' = acceleration` here; or, if the constraint force is not "
-                      "needed, delete this "
-                      "line and the equation of motion that contains the force, and write `{}` for the state that it prescribes",
-                      input),
+          fmt::format(
+              "use the acceleration as the input: write `y'' = acceleration` here; or, if the constraint force is not "
+              "needed, delete this "
+              "line and the equation of motion that contains the force, and replace the state that this line prescribes by `{}`",
+              input),
           with_bare(input)};
 }
 

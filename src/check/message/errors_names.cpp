@@ -20,7 +20,7 @@ constexpr Synonym unit_synonyms[] = {
 
 // Help in place of a guess.
 constexpr Synonym name_synonyms[] = {
-    {"time", "declare it, `time time [s]`, or write the name of the time that is declared"},
+    {"time", "declare it, `time time [s]`, or, if the model declares the time under another name, use that name"},
     {"t", "declare the time in the model: `time t [s]`"},
     {"π", "write `pi`"},
     {"PI", "write `pi`"},
@@ -72,7 +72,7 @@ Diagnostic name_for_number(ast::Name const& name) {
     if (name.text == each.foreign) help = fmt::format("write `{}`", each.ours);
   if (name.text == "end" || name.text == "last") help = "write the number of the last row";
   return about({name.text},
-               error("E2001", name.span, fmt::format("`{}` is not a number, and no names are known here", name.text), help));
+               error("E2001", name.span, fmt::format("`{}` is not a number, and names cannot be used here", name.text), help));
 }
 
 }  // namespace

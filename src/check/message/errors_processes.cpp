@@ -188,12 +188,13 @@ Diagnostic process_out_of_place(Span span, std::string const& what) {
                "add it to the mean of a channel: `observe y ~ normal(MEAN + d(u), sd = s)`; lags are allowed in its arguments");
 }
 Diagnostic process_no_addend(Span span, std::string const& name, std::string const& channel) {
-  return about({name, channel},
-               error("E3210", span, fmt::format("`{}` must be added to the mean of `{}`", name, channel),
-                     fmt::format("products with an input or a state and nonlinear functions of `{0}` are not supported; a constant "
-                                 "factor belongs into its amplitude; write `+ {0}` for `- {0}`: its prior is the same "
-                                 "for both signs",
-                                 name)));
+  return about(
+      {name, channel},
+      error("E3210", span, fmt::format("`{}` must be added to the mean of `{}`", name, channel),
+            fmt::format("nonlinear functions of `{0}`, and products of `{0}` with an input or a state, are not supported; put "
+                        "a constant factor into the amplitude of `{0}`; write `+ {0}` instead of `- {0}`: the prior of "
+                        "`{0}` is the same for both signs",
+                        name)));
 }
 Diagnostic process_added_twice(Span span, std::string const& name, std::string const& channel) {
   return about({name, channel},

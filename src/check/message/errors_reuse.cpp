@@ -56,10 +56,10 @@ Diagnostic wrong_shape(Span span, Subject const& what, Shape const& given, Shape
   return about(what.names,
                error("E2705", span, fmt::format("{} is {}, but {} is needed", what.words, given.text(), wanted.text()),
                      wanted.rank == 0 ? "use one element, `q[1]`, or a sum, `sum(q)`; or declare the size after the name: `name(3)`"
-                                      : "write a list in parentheses with as many items, or one number for all"));
+                                      : "write a list in parentheses with that many items, or one number for all"));
 }
 Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span other_span) {
-  return with(error("E2706", span, "the items of this list have different shapes", "a matrix is a list of rows of one length",
+  return with(error("E2706", span, "the items of this list have different shapes", "a matrix is a list of rows of equal length",
                     fmt::format("begins with {}", first.text())),
               other_span, other.text());
 }

@@ -8,11 +8,12 @@ namespace sysid::errors {
 Diagnostic state_without_equation(Span declaration, std::string const& state, std::string const& highest) {
   return about(
       {state},
-      error("E3001", declaration, fmt::format("state `{}` has no equation", state),
-            fmt::format(
-                "write the equation that contains {}; a constraint force or another unknown without derivatives is used in the "
-                "equations of motion",
-                highest)));
+      error(
+          "E3001", declaration, fmt::format("state `{}` has no equation", state),
+          fmt::format(
+              "write the equation that contains {}; if it is a constraint force or another unknown without derivatives, use it in "
+              "the equations of motion",
+              highest)));
 }
 
 Diagnostic algebraic_state(Span declaration, std::string const& state) {

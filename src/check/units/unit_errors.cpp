@@ -112,9 +112,9 @@ Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
                  ? fmt::format("to get a difference, subtract a reference temperature: `{} - 20 [{}]`", with_zero.text,
                                with_zero.unit.text)
                  : fmt::format(
-                       "to get a temperature, add a reference temperature: `20 [{}] + {}`; if a difference is meant on "
-                       "both sides, declare it in [{}]",
-                       with_zero.unit.text, without.text, difference(with_zero.unit).text);
+                       "to get a temperature, add a reference temperature: `20 [{}] + {}`; if both sides are differences, "
+                       "{} {} in [{}]",
+                       with_zero.unit.text, without.text, verb(with_zero), subject(with_zero), difference(with_zero.unit).text);
       break;
     case Zeros::agree:
     case Zeros::apart:

@@ -9,7 +9,7 @@ namespace sysid::abc {
 namespace {
 
 constexpr SettingRow rows[] = {
-    {"particles", SettingKind::integer, "1000", 10, 1e7, "", "particles in each population, over all models"},
+    {"particles", SettingKind::integer, "1000", 10, 1e7, "", "particles in each population, of all models together"},
     {"quantile", SettingKind::real, "0.2", 1e-6, 0.999999, "",
      "the next threshold is this unweighted quantile of the distances of all particles"},
     {"schedule", SettingKind::numbers, "", 0, infinity, "", "decreasing thresholds, used in place of the quantile: `(100, 10, 1)`"},

@@ -61,11 +61,12 @@ class Walk {
 
 }  // namespace
 
-LaneArray walk(Objective const& objective, LaneArray walkers, std::vector<double> log_density, int steps, StreamKey key,
-               Ledger& ledger, std::function<bool()> const& stop) {
+LaneArray walk(Objective const& objective, LaneArray walkers, int steps, StreamKey key, Ledger& ledger,
+               std::function<bool()> const& stop) {
   constexpr int quarters = 4;
   int const width = walkers.width();
   LaneArray states(walkers.rows(), (quarters - 1) * width);
+  std::vector<double> log_density = log_density_in_blocks(objective, walkers, ledger, stop);
   Walk moved(objective, std::move(walkers), std::move(log_density), key);
   int number = 0;
   for (int quarter = 0; quarter < quarters; ++quarter) {

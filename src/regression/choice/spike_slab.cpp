@@ -15,9 +15,9 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"prior", SettingKind::word, "beta_prime", 0, 0, "beta_prime unit_information zellner",
-     "prior of the coefficients; beta_prime: as zellner, with an unknown g; unit_information: normal about their estimate; "
-     "zellner: "
-     "normal about zero (their variance: see g)"},
+     "prior of the coefficients; zellner: normal about zero; unit_information: normal about the estimate of the coefficients "
+     "(variance "
+     "of both: see g); beta_prime: as zellner, with an unknown g"},
     {"g", SettingKind::real, "0", 0, 1e300, "",
      "for unit_information and zellner: prior variance divided by that of the estimate; 0: the number of rows"},
     {"sizes", SettingKind::word, "beta_binomial", 0, 0, "beta_binomial uniform",

@@ -32,7 +32,7 @@ std::string with_error(double value, std::optional<double> error, int decimals) 
 ReportTable fits_table(Comparison const& comparison) {
   ReportTable table;
   table.title = fmt::format("fitted to {}; probabilities of the models for equal prior probabilities", comparison.data);
-  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "against it", "probability", "checks"};
+  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "evidence against", "probability", "checks"};
   for (ComparedFit const& fit : comparison.fits) {
     table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
                           fit.log_evidence ? evidence_number(*fit.log_evidence, fit.error) : "-",

@@ -75,7 +75,7 @@ free = predict b_arx on points.test with draws(20), prediction = free_run, seed 
 )");
   Comparison const found = compare({run.folder.path() / "results"});
   REQUIRE(found.fits.size() == 4);
-  CHECK(found.data == "points.train, rows 5..80 (76)");
+  CHECK(found.data == "points.train, rows 5..80 (76 scored)");
   auto const log_evidence = [&](char const* task) { return run.summary(task).at("evidence").at("log_evidence").get<double>(); };
   double const odds = std::exp(log_evidence("a_still") - log_evidence("b_arx"));
   CHECK(*found.fits[0].probability == doctest::Approx(odds / (1 + odds)));
@@ -186,7 +186,7 @@ long = fit longer to points.head with map, seed = 1
     return std::string("not refused");
   };
   CHECK(refusal("head", "long") ==
-        "`head` and `long` are fitted to different samples: points.head, rows 2..80 (79) and points.head, rows 4..80 (77); "
+        "`head` and `long` are fitted to different samples: points.head, rows 2..80 (79 scored) and points.head, rows 4..80 (77 scored); "
         "evidences can be compared only for the same samples: begin the fitted rows after the longest lag of all models");
   CHECK(refusal("train", "long").starts_with("`train` and `long` are fitted to different samples"));
   CHECK_THROWS_AS(compare({run.folder.path()}), UserError);  // holds no results itself
@@ -224,7 +224,7 @@ data d { file "points.csv"; time t [s]; measure y = y; split train = rows 5..124
     CaseRun const run(file, {{"points.csv", text.str()}});
     Comparison const comparison = compare({run.folder.path() / "results"});
     REQUIRE(comparison.fits.size() == 4);
-    CHECK(comparison.data == "d.train, rows 5..124 (120)");
+    CHECK(comparison.data == "d.train, rows 5..124 (120 scored)");
     double best = 0;
     std::string name;
     for (ComparedFit const& fit : comparison.fits)

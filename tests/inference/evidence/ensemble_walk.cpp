@@ -25,8 +25,7 @@ LaneArray walked(Objective const& objective, int width, int steps) {
     walkers(1, w) = 0.1 * stream.normal();
   }
   Ledger ledger;
-  std::vector<double> const density = objective.log_density(walkers, ledger);
-  return marginal::walk(objective, walkers, density, steps, {1, Purpose::test, 0, 1}, ledger, [] { return false; });
+  return marginal::walk(objective, walkers, steps, {1, Purpose::test, 0, 1}, ledger, [] { return false; });
 }
 
 }  // namespace
@@ -54,7 +53,6 @@ TEST_CASE("walkers of one key take the same steps, and a request to stop leaves 
   for (int w = 0; w < once.width(); ++w) CHECK(once(0, w) == again(0, w));
   LaneArray walkers(2, 8);
   Ledger ledger;
-  LaneArray const still =
-      marginal::walk(objective, walkers, std::vector<double>(8, 0.0), 8, {1, Purpose::test, 0, 1}, ledger, [] { return true; });
+  LaneArray const still = marginal::walk(objective, walkers, 8, {1, Purpose::test, 0, 1}, ledger, [] { return true; });
   CHECK(still(0, 5) == 0);
 }
