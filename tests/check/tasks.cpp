@@ -110,7 +110,7 @@ TEST_CASE("numbers outside their range or of the wrong kind are refused with wha
   CHECK(errors_in(shown) == 6);
   CHECK(refused("fit m to d with mh, solver = rk5").find("did you mean `rk4`?") != std::string::npos);
   for (char const* each : {"`samples` must be at least 1, but is 0", "`chains` must be a whole number",
-                           "`k` is not a number, and no names are known here", "help: choose `adaptive`, `walk` or `spherical`",
+                           "`k` is not a number, and names cannot be used here", "help: choose `adaptive`, `walk` or `spherical`",
                            "`substeps` must lie between 1 and 10000", "`seed` must not be negative"})
     CHECK_MESSAGE(shown.find(each) != std::string::npos, each);
 }

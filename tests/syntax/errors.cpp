@@ -155,7 +155,7 @@ TEST_CASE("two signs behind a value need a blank between them") {
   }
   CHECK(model("20 +- 5").find("error[E1117]: `+-` is not an operator") != std::string::npos);
   CHECK(model("20 +- 5").find("`~ normal(20, sd = 5)`") != std::string::npos);
-  CHECK(model("a--b").find("a negative number is subtracted with a space between") != std::string::npos);
+  CHECK(model("a--b").find("to subtract a negative number, write a space between the signs") != std::string::npos);
   CHECK(model("a -- a comment").find("a comment begins with `#` or `//`") != std::string::npos);
   CHECK(count(model("a ++ b"), "error[") == 1);
 }
