@@ -1,7 +1,7 @@
 // compare, report: what can be made of results that are there.
 #include <unistd.h>
 
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/run/report_results.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"

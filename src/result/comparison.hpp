@@ -25,6 +25,7 @@ struct ComparedFit {
   std::string without;   // why it has no evidence
   bool pass = true;      // its checks
   int warnings = 0;      // among their findings
+  std::string counted;   // another fit of the same model, whose evidence stands for both; empty: its own does
 };
 
 /// The errors of a prediction on one channel of a record.
@@ -49,6 +50,7 @@ struct ComparedScore {
   int doubtful = 0;                             // samples with a Pareto k above 0.7, by leave-one-out
   int impossible = 0;                           // samples that it gives no density: elpd is -infinity, weights are 0
   bool one_step = false;                        // each sample from measured ones before it
+  std::string counted = {};                     // another fit of the same model, whose scores are weighed; empty: its own are
 };
 
 /// Of fits that have draws, by the same samples.

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/run/report_results.hpp"
 #include "core/system/digest.hpp"
 #include "exchange/exported.hpp"

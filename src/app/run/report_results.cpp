@@ -7,7 +7,7 @@
 #include <iterator>
 #include <set>
 
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/session/made_from.hpp"
 #include "app/session/results.hpp"
 #include "check/checked/task_kinds.hpp"

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/run/report_results.hpp"
 #include "app/running.hpp"
 #include "calibrating.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/running.hpp"
 
 using namespace sysid;

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/answer.hpp"
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/run/report_results.hpp"
 #include "app/running.hpp"
 #include "report/page/comparison.hpp"

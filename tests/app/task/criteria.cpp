@@ -9,7 +9,7 @@
 #include <functional>
 #include <numbers>
 
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
 #include "core/numeric/statistics.hpp"

@@ -1,5 +1,5 @@
 // Sums of exponentials, and errors to first order.
-#include "app/run/compared_evidence.hpp"
+#include "app/comparison/compared_evidence.hpp"
 
 #include <fmt/format.h>
 
@@ -132,6 +132,7 @@ void weigh_models(std::vector<std::string> const& models, std::vector<ComparedFi
     fit.probability = share;
     if (known) fit.probability_error = share * std::sqrt((1 - share) * (1 - share) * error * error + others);
     fit.log_bayes_factor = *one.log_evidence - *best.log_evidence;
+    if (standing_for.at(models[f]) != f) fit.counted = one.name;
     if (standing_for.at(models[f]) == places.front()) continue;
     if (one.error && best.error) fit.bayes_factor_error = std::hypot(error, *best.error);
     fit.strength = evidence_strength(*fit.log_bayes_factor);

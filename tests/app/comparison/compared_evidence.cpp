@@ -1,5 +1,5 @@
 // Odds of models with errors, and the widths of priors, on numbers worked out by hand.
-#include "app/run/compared_evidence.hpp"
+#include "app/comparison/compared_evidence.hpp"
 
 #include <doctest/doctest.h>
 

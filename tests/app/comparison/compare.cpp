@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/run/report_results.hpp"
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"

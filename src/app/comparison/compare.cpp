@@ -1,5 +1,5 @@
 // Reads stored summaries into tables, and rejects results that cannot be compared.
-#include "app/run/compare.hpp"
+#include "app/comparison/compare.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "app/run/compare_scores.hpp"
-#include "app/run/compared_evidence.hpp"
+#include "app/comparison/compare_scores.hpp"
+#include "app/comparison/compared_evidence.hpp"
 #include "app/session/made_from.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
@@ -45,8 +45,10 @@ struct StoredSummary {
   bool pass() const { return !summary.contains("verdict") || summary["verdict"].value("pass", true); }
 };
 
-UserError refused(std::string message, Help help) { return UserError(result_error("", std::move(message), std::move(help))); }
-UserError refused(std::string message, std::string help) {
+UserError not_comparable(std::string message, Help help) {
+  return UserError(result_error("", std::move(message), std::move(help)));
+}
+UserError not_comparable(std::string message, std::string help) {
   return UserError({Severity::error, "", std::move(message), std::nullopt, {}, std::move(help)});
 }
 
@@ -58,7 +60,10 @@ StoredSummary read_summary(fs::path const& folder) {
                        made_from_earlier(folder)};
   if (result.name.empty()) result.name = folder.lexically_normal().parent_path().filename().string();
   interpreted(folder / "summary.json", [&] { return result.is(""); });
-  result.model = interpreted(folder / "summary.json", [&] { return result.summary.value("model", std::string()); });
+  result.model = interpreted(folder / "summary.json", [&] {
+    std::size_t const averaged = result.summary.value("average", json::object()).value("members", json::array()).size();
+    return averaged > 0 ? fmt::format("average of {}", averaged) : result.summary.value("model", std::string());
+  });
   return result;
 }
 
@@ -85,12 +90,12 @@ std::vector<StoredSummary> results_in(fs::path const& folder) {
                                    each.name));
   std::erase_if(found, [](StoredSummary const& each) { return !each.is("fit") && !each.is("predict"); });
   if (found.empty() && !others.empty())
-    throw refused(
+    throw not_comparable(
         fmt::format("`{}` contains {}, but no result of a fit or a prediction", folder.string(), fmt::join(others, ", ")),
         fmt::format("`sysid report {}` shows these results; `compare` compares only fits and predictions", folder.string()));
   if (found.empty())
-    throw refused(fmt::format("`{}` contains no result of a fit or a prediction", folder.string()),
-                  "give folders of tasks, such as results/posterior, or of whole runs, such as results");
+    throw not_comparable(fmt::format("`{}` contains no result of a fit or a prediction", folder.string()),
+                         "give folders of tasks, such as results/posterior, or of whole runs, such as results");
   return found;
 }
 
@@ -116,8 +121,8 @@ std::string samples_of(StoredSummary const& result) {
   for (json const& data : result.summary.at("data")) {
     std::string const digest = data.value("samples_sha256", "");
     if (digest.empty())
-      throw refused(fmt::format("`{}` does not record which samples it was fitted to", result.folder.string()),
-                    run_again("it was written by an earlier program: "));
+      throw not_comparable(fmt::format("`{}` does not record which samples it was fitted to", result.folder.string()),
+                           run_again("it was written by an earlier program: "));
     all += digest + "\n";
   }
   return all;
@@ -129,14 +134,14 @@ void require_same_samples(StoredSummary const& one, StoredSummary const& other) 
                                           data_text(one), data_text(other));
   if (data_text(one) != data_text(other)) {
     bool const looks_back = one.lags() > 0 || other.lags() > 0;
-    throw refused(
+    throw not_comparable(
         message,
         looks_back
             ? "evidences can be compared only for the same samples: begin the fitted rows after the longest lag of all models"
             : "evidences can be compared only for the same samples: give folders of fits to the same rows");
   }
-  throw refused(message + " of other files, channels or units",
-                "evidences can be compared only for the same samples: give folders of fits to the same samples");
+  throw not_comparable(message + " of other files, channels or units",
+                       "evidences can be compared only for the same samples: give folders of fits to the same samples");
 }
 
 std::string noise_text(json const& summary) {

@@ -1,4 +1,4 @@
-#include "app/run/compare_scores.hpp"
+#include "app/comparison/compare_scores.hpp"
 
 #include <fmt/format.h>
 
@@ -53,6 +53,7 @@ void weigh(PointwiseElpd const& elpd, std::vector<std::string> const& identities
     if (auto const of = standing.find(identities[k]); fits[k].impossible == 0 && of != standing.end()) {
       fits[k].stacking = fits[of->second].stacking;
       fits[k].pseudo_bma = fits[of->second].pseudo_bma;
+      if (of->second != k) fits[k].counted = fits[of->second].name;
     }
 }
 

@@ -1,5 +1,5 @@
 // Fits weighed by scores that are given sample by sample: which samples and fits count.
-#include "app/run/compare_scores.hpp"
+#include "app/comparison/compare_scores.hpp"
 
 #include <doctest/doctest.h>
 
