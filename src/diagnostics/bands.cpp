@@ -11,8 +11,7 @@
 
 namespace sysid {
 
-Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
-                       Experiment const& experiment, Model const& model) {
+Prediction record_along(Experiment const& experiment, Model const& model) {
   Prediction prediction;
   prediction.experiment = experiment.name;
   prediction.time = experiment.time;
@@ -31,6 +30,12 @@ Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajector
       driven.values.push_back(input.from_si(experiment.inputs[k].sample(i)));
     prediction.inputs.push_back(std::move(driven));
   }
+  return prediction;
+}
+
+Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
+                       Experiment const& experiment, Model const& model) {
+  Prediction prediction = record_along(experiment, model);
   for (std::size_t q = 0; q < quantities.size(); ++q) {
     TrajectoryQuantity const& quantity = quantities[q];
     // A state that a channel of its name observes is shown once, as the channel.

@@ -9,6 +9,9 @@
 
 namespace sysid {
 
+/// The rows and inputs of an experiment, without any quantity.
+Prediction record_along(Experiment const& experiment, Model const& model);
+
 /// Bands of every quantity along an experiment, with and without noise, beside the measured samples; declared units.
 Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
                        Experiment const& experiment, Model const& model);

@@ -71,17 +71,7 @@ class Tails {
 }  // namespace
 
 Band band(std::vector<std::vector<double>> const& trajectories) {
-  // Samples that no draw can predict, because what they follow from was not measured, say nothing about a draw.
-  std::vector<char> predictable(trajectories.empty() ? 0 : trajectories.front().size(), 0);
-  for (std::vector<double> const& trajectory : trajectories)
-    for (std::size_t i = 0; i < trajectory.size(); ++i) predictable[i] |= std::isfinite(trajectory[i]) ? 1 : 0;
-  bool const any = std::find(predictable.begin(), predictable.end(), 1) != predictable.end();
-  std::vector<std::vector<double> const*> usable;
-  for (std::vector<double> const& trajectory : trajectories) {
-    int missing = 0;
-    for (std::size_t i = 0; i < trajectory.size(); ++i) missing |= std::isfinite(trajectory[i]) ? 0 : predictable[i];
-    if (any && missing == 0) usable.push_back(&trajectory);
-  }
+  auto const [usable, predictable] = usable_trajectories(trajectories);
   Band out;
   out.draws = static_cast<int>(trajectories.size());
   out.excluded = static_cast<int>(trajectories.size() - usable.size());

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/numeric/usable_trajectories.hpp"
 #include "result/prediction.hpp"
 #include "result/report.hpp"
 

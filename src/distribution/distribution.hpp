@@ -31,6 +31,10 @@ struct ArgumentRow {
 /// Which side of a quantile a probability is counted on: in its own tail it keeps all its digits.
 enum class Tail { lower, upper };
 
+struct NoiseMoments {
+  double mean = 0, variance = 0;
+};
+
 /// A row names what it has; what it leaves out it has not.
 struct DistributionRow {
   std::string_view name;
@@ -72,6 +76,8 @@ struct DistributionRow {
   /// Of a discrete noise, for Pearson's residual (y - centre)/sqrt(variance) and its fourth moment; nullptr for the others.
   double (*variance)(std::span<double const> arguments) = nullptr;
   double (*excess_kurtosis)(std::span<double const> arguments) = nullptr;
+  /// Of the variate, untruncated; the variance may be infinite. nullptr unless noise.
+  NoiseMoments (*moments)(std::span<double const> arguments) = nullptr;
 };
 
 std::span<DistributionRow const> distributions();

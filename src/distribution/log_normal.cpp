@@ -37,6 +37,12 @@ double quantile(double probability, Tail tail, Numbers a) {
   return a[0] * elementary::exp(a[1] * standard_normal_quantile(probability, tail));
 }
 
+/// median exp(sd^2/2), median^2 exp(sd^2) (exp(sd^2) - 1).
+NoiseMoments moments(Numbers a) {
+  double const growth = elementary::exp(a[1] * a[1]);
+  return {a[0] * std::sqrt(growth), a[0] * a[0] * growth * (growth - 1)};
+}
+
 std::string_view refuse(Numbers a) {
   if (!positive(a[0])) return "the median must be positive";
   if (!positive(a[1])) return "sd, variance or precision of the logarithm must be positive";
@@ -60,7 +66,8 @@ DistributionRow log_normal_distribution() {
           .quantile = &quantile,
           .widen = &widen_argument<1>,
           .refuse = &refuse,
-          .summary = "log-normal, by its median or log_mean and the sd (log_sd), variance or precision of the logarithm"};
+          .summary = "log-normal, by its median or log_mean and the sd (log_sd), variance or precision of the logarithm",
+          .moments = &moments};
 }
 
 }  // namespace sysid

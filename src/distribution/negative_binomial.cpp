@@ -49,6 +49,8 @@ double draw(Stream& stream, Numbers a) {
 double variance(Numbers a) { return a[0] + a[0] * a[0] / a[1]; }
 double excess_kurtosis(Numbers a) { return 6 / a[1] + 1 / variance(a); }
 
+NoiseMoments moments(Numbers a) { return {a[0], variance(a)}; }
+
 std::string_view refuse(Numbers a) {
   if (!(a[0] >= 0 && a[0] <= largest_mean)) return "the mean must be zero or positive, and at most 1e15";
   if (!positive(a[1])) return "shape or overdispersion must be positive";
@@ -72,7 +74,8 @@ DistributionRow negative_binomial_distribution() {
           .summary = "negative binomial: overdispersed counts, by mean and shape or overdispersion; noise only",
           .discrete = true,
           .variance = &variance,
-          .excess_kurtosis = &excess_kurtosis};
+          .excess_kurtosis = &excess_kurtosis,
+          .moments = &moments};
 }
 
 }  // namespace sysid

@@ -30,6 +30,8 @@ NodeId saturated(Graph& graph, NodeId, Nodes a) { return constant(Term(graph, a[
 double draw(Stream& stream, Numbers a) { return a[0] + a[1] * stream.normal(); }
 double quantile(double probability, Tail tail, Numbers a) { return a[0] + a[1] * standard_normal_quantile(probability, tail); }
 
+NoiseMoments moments(Numbers a) { return {a[0], a[1] * a[1]}; }
+
 std::string_view refuse(Numbers a) {
   if (!std::isfinite(a[0])) return "the mean must be finite";
   if (!positive(a[1])) return "sd, variance or precision must be positive";
@@ -53,7 +55,8 @@ DistributionRow normal_distribution() {
           .quantile = &quantile,
           .widen = &widen_argument<1>,
           .refuse = &refuse,
-          .summary = "normal, by sd, variance or precision"};
+          .summary = "normal, by sd, variance or precision",
+          .moments = &moments};
 }
 
 }  // namespace sysid

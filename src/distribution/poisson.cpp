@@ -26,6 +26,8 @@ double draw(Stream& stream, Numbers a) { return poisson_variate(a[0], stream); }
 double variance(Numbers a) { return a[0]; }
 double excess_kurtosis(Numbers a) { return 1 / a[0]; }
 
+NoiseMoments moments(Numbers a) { return {a[0], a[0]}; }
+
 std::string_view refuse(Numbers a) {
   if (!(a[0] >= 0 && a[0] <= largest_mean)) return "the mean must be zero or positive, and at most 1e15";
   return {};
@@ -73,7 +75,8 @@ DistributionRow poisson_distribution() {
           .summary = "Poisson: counts, by mean; noise only",
           .discrete = true,
           .variance = &variance,
-          .excess_kurtosis = &excess_kurtosis};
+          .excess_kurtosis = &excess_kurtosis,
+          .moments = &moments};
 }
 
 }  // namespace sysid

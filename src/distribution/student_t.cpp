@@ -80,6 +80,12 @@ double quantile(double probability, Tail tail, Numbers a) {
   return a[0] + a[2] * (tail == Tail::lower ? -t : t);
 }
 
+/// The mean does not exist for n <= 1; the location, which is the median, stands for it. The variance is infinite for n <= 2.
+NoiseMoments moments(Numbers a) {
+  double const n = a[1];
+  return {a[0], n > 2 ? a[2] * a[2] * n / (n - 2) : std::numeric_limits<double>::infinity()};
+}
+
 std::string_view refuse(Numbers a) {
   if (!std::isfinite(a[0])) return "the location must be finite";
   if (!positive(a[1])) return "degrees_of_freedom must be positive";
@@ -103,7 +109,8 @@ DistributionRow student_t_distribution() {
           .quantile = &quantile,
           .widen = &widen_argument<2>,
           .refuse = &refuse,
-          .summary = "Student's t, by scale, sd, variance or precision: heavy tails, for data with outliers"};
+          .summary = "Student's t, by scale, sd, variance or precision: heavy tails, for data with outliers",
+          .moments = &moments};
 }
 
 }  // namespace sysid

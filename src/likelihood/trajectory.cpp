@@ -109,6 +109,33 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   }
 }
 
+void Trajectory::collect_moments(LaneArray const& records, std::vector<Outcome> const& outcome, Result& result) const {
+  int const samples = this->samples(), rows = static_cast<int>(compiled_->records.size());
+  result.noise_mean.resize(compiled_->model.channels.size());
+  result.noise_variance.resize(compiled_->model.channels.size());
+  for (int r = 0; r < rows; ++r) {
+    auto const& record = compiled_->records[static_cast<std::size_t>(r)];
+    if (record.kind != RecordKind::centre) continue;
+    auto const c = static_cast<std::size_t>(record.index);
+    Channel const& channel = compiled_->model.channels[c];
+    double const slope = channel.from_si(1) - channel.from_si(0);
+    std::vector<double> numbers(channel.noise.arguments.size());
+    for (int w = 0; w < records.width(); ++w) {
+      std::vector<double> means(static_cast<std::size_t>(samples), not_a_number), variances = means;
+      for (int i = 0; outcome[static_cast<std::size_t>(w)].ok && i < samples; ++i) {
+        for (std::size_t a = 0; a < numbers.size(); ++a) numbers[a] = records(i * rows + r + 1 + static_cast<int>(a), w);
+        bool const finite = std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+        if (!finite || (channel.noise.row->refuse != nullptr && !channel.noise.row->refuse(numbers).empty())) continue;
+        NoiseMoments const moments = channel.noise.row->moments(numbers);
+        means[static_cast<std::size_t>(i)] = channel.from_si(moments.mean);
+        variances[static_cast<std::size_t>(i)] = slope * slope * moments.variance;
+      }
+      result.noise_mean[c].push_back(std::move(means));
+      result.noise_variance[c].push_back(std::move(variances));
+    }
+  }
+}
+
 /// Draws of the channel whose centre is record `row`, lane by lane; NaN where the noise has none.
 std::vector<std::vector<double>> Trajectory::with_noise(LaneArray const& records, std::vector<Outcome> const& outcome, int row,
                                                         StreamKey key) const {
@@ -170,7 +197,7 @@ LaneArray Trajectory::no_records(int width) const {
   return {static_cast<int>(rows), width};
 }
 
-Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key) const {
+Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key, bool moments) const {
   Result result;
   int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;
   for (int first = 0; first < parameters.width(); first += trajectories_at_once) {
@@ -184,6 +211,7 @@ Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key) c
     simulator_.records(block, 0, samples(), records, outcome);
     record_failures(block, outcome, result.ledger);
     collect(records, outcome, first, noise_key, result);
+    if (moments) collect_moments(records, outcome, result);
   }
   return result;
 }

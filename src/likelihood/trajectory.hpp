@@ -35,11 +35,14 @@ class Trajectory {
     /// Of all vectors; what failed has its place there.
     Ledger ledger;
     int failed() const { return static_cast<int>(ledger.failed()); }
+    /// noise_mean[c][d][i], noise_variance: moments of the noise of channel c, declared units; NaN where it has none. Only when
+    /// asked for.
+    std::vector<std::vector<std::vector<double>>> noise_mean, noise_variance;
     /// drift[k][d]: largest violation of invariant k of the model along vector d, as a part of the largest size of its terms.
     std::vector<std::vector<double>> drift;
   };
-  /// parameters: of the model, SI [parameters x W]; NaN where irrelevant.
-  Result run(ConstLanes parameters, StreamKey noise_key) const;
+  /// parameters: of the model, SI [parameters x W]; NaN where irrelevant. moments: of the noise, too.
+  Result run(ConstLanes parameters, StreamKey noise_key, bool moments = false) const;
   /// Arguments of a channel's noise along the record, SI: [samples][arguments]; NaN where the solve fails. parameters: [parameters
   /// x 1].
   std::vector<std::vector<double>> noise_arguments(ConstLanes parameters, int channel) const;
@@ -52,6 +55,7 @@ class Trajectory {
   LaneArray no_records(int width) const;
   void record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const;
   void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
+  void collect_moments(LaneArray const& records, std::vector<Outcome> const& outcome, Result& result) const;
   std::vector<std::vector<double>> with_noise(LaneArray const& records, std::vector<Outcome> const& outcome, int row,
                                               StreamKey key) const;
 

@@ -74,6 +74,8 @@ constexpr FindingRow rows[] = {
     {FindingCode::not_polished, "not_polished", warning},
     {FindingCode::width_of_threshold, "width_of_threshold", note},
     {FindingCode::averaged_over_models, "averaged_over_models", note},
+    {FindingCode::weights_not_confirmed, "weights_not_confirmed", warning},
+    {FindingCode::counted_once, "counted_once", note},
     {FindingCode::without_noise, "without_noise", note},
     {FindingCode::no_population, "no_population", error},
     {FindingCode::coverage_low, "coverage_low", warning},

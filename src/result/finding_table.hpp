@@ -73,6 +73,8 @@ enum class FindingCode {
   not_polished,
   width_of_threshold,
   averaged_over_models,
+  weights_not_confirmed,
+  counted_once,
   without_noise,
   no_population,
   coverage_low,

@@ -12,12 +12,21 @@ struct Band {
   int draws = 0, excluded = 0;  // of these so many, which it is not of
 };
 
+/// Where the variance of a prediction that averages over models comes from, each [N], in the square of the declared unit; their sum
+/// is the variance with noise. Empty: there is none.
+struct VarianceParts {
+  std::vector<double> parameter;  // the mean over models of the variance over each one's draws
+  std::vector<double> model;      // the variance over models of each one's mean
+  std::vector<double> noise;      // the mean of the variances of the noise; empty where there is none
+};
+
 /// A channel, a state or a derived quantity along a record, declared unit.
 struct PredictedQuantity {
   std::string name, unit;
   Band response;                 // of the model alone
   Band noisy;                    // with measurement noise added to each draw; empty for what is not measured
   std::vector<double> measured;  // [N], NaN where missing; empty for what is not measured
+  VarianceParts variance = {};   // of an average over models
 };
 
 /// What the record drives the model with, declared unit.

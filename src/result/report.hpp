@@ -9,6 +9,7 @@
 
 #include "core/setting/settings.hpp"
 #include "core/system/ledger.hpp"
+#include "result/average.hpp"
 #include "result/calibration.hpp"
 #include "result/criteria.hpp"
 #include "result/discovery.hpp"
@@ -126,6 +127,7 @@ struct Report {
   std::optional<SelectionReport> selection;
   std::optional<DiscoveryReport> discovery;
   std::optional<CalibrationReport> calibration;
+  std::optional<AverageReport> average;  // for summary.json alone: the page has its tables
   Ledger ledger;
   std::uint64_t seed = 0;
   int place = 0;                      // of the task in its file

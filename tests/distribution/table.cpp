@@ -285,3 +285,34 @@ TEST_CASE("a distribution twice as wide is twice as wide, about the same middle 
   CHECK(from_zero == std::vector<double>{0, 20});
   CHECK(shifted == std::vector<double>{-2, 14});
 }
+
+TEST_CASE("the moments of every noise are those of its draws") {
+  int noises = 0;
+  auto const check = [&](Case const& use) {
+    DistributionRow const& row = use.row();
+    REQUIRE((row.moments != nullptr));
+    NoiseMoments const moments = row.moments(use.arguments);
+    CAPTURE(use.name);
+    constexpr int draws = 200'000;
+    Stream stream({5, Purpose::test, static_cast<std::uint64_t>(++noises), 0});
+    double sum = 0, squares = 0, fourth = 0;
+    for (int i = 0; i < draws; ++i) {
+      double const off = row.draw(stream, use.arguments) - moments.mean;
+      sum += off;
+      squares += off * off;
+      fourth += off * off * off * off;
+    }
+    double const variance = squares / draws, error = std::sqrt((fourth / draws - variance * variance) / draws);
+    CHECK(std::fabs(sum / draws) < 4 * std::sqrt(moments.variance / draws));
+    // Heavy tails have variances that draws do not settle.
+    if (fourth / draws < 20 * variance * variance) CHECK(std::fabs(variance - moments.variance) < 4 * error);
+  };
+  for (Case const& use : test::whole_cases())
+    if (use.row().noise) check(use);
+  for (Case const& use : test::count_cases()) check(use);
+  CHECK(noises > 6);
+  for (DistributionRow const& row : distributions()) CHECK((row.moments != nullptr) == row.noise);
+  NoiseMoments const wide = find_distribution("log_normal")->moments(std::vector{0.1, 1.5});
+  CHECK(wide.variance == doctest::Approx(0.01 * std::exp(2 * 2.25) - wide.mean * wide.mean));
+  CHECK(std::isinf(find_distribution("student_t")->moments(std::vector{0.0, 2.0, 1.0}).variance));
+}
