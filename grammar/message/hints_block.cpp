@@ -176,6 +176,12 @@ std::string in_dictionary(Gap const& gap) {
 std::string in_task_head(Gap const& gap, std::size_t verb) {
   Token const& found = *gap.found;
   bool const ends = gap.wanted == wanted::preposition_or_end || gap.wanted == wanted::with_or_end;
+  bool const after_fits = gap.wanted == wanted::preposition_or_end && gap.statement[verb].is("predict") && gap.before() != nullptr;
+  if (after_fits && (found.is("and") || found.is("&") || found.is("+")) && is_word(gap.next()))
+    return fmt::format("an average over several fits names them with commas: `predict {}, {}`", gap.text(verb + 1, gap.at),
+                       gap.next()->text);
+  if (after_fits && gap.before()->is("on") && gap.before(2) != nullptr && gap.before(2)->is(","))
+    return "remove the comma before `on`";
   if (gap.wanted == "the name of a data block" && found.kind == TokenKind::text)
     return "name a data block: `to DATA`; the CSV file is named inside that block";
   if (!ends || gap.before() == nullptr) return {};

@@ -148,6 +148,7 @@ class Completer : private Offer {
     if (place().has("with")) return option(verb);
     bool const has_preposition = std::any_of(tokens.begin(), tokens.end(),
                                              [](Token const& token) { return words::contains(words::prepositions, token.text); });
+    if (!has_preposition && place().follows(",") && words::task_kind(verb) == TaskKind::predict) return own(SymbolKind::task);
     if (words::contains(words::prepositions, tokens.back().text) || (has_preposition && place().follows(",")))
       return own(SymbolKind::data);
     if (!place().brackets.empty()) return arguments_of_model(place().brackets.back().callee, false);

@@ -141,9 +141,11 @@ class Resolver {
   Scopes subject_of(ast::Task const& task, int depth = 0) {
     std::string const& name = task.subject.text;
     if (is_a(task, TaskKind::predict)) {
-      auto const fit = tasks_.find(name);
-      if (fit == tasks_.end() || fit->second.first == &task || depth > 1) return {};
-      return subject_of(*fit->second.first, depth + 1);
+      Scopes scopes = subject_of_fit(name, task, depth);
+      for (ast::Name const& other : task.others)
+        for (NameScope const* each : subject_of_fit(other.text, task, depth))
+          if (std::find(scopes.begin(), scopes.end(), each) == scopes.end()) scopes.push_back(each);
+      return scopes;
     }
     if (is_a(task, TaskKind::discover)) {
       auto const dictionary = dictionaries_.find(name);
@@ -155,10 +157,20 @@ class Resolver {
     return model == nullptr ? Scopes() : Scopes{&names_.models.at(model)};
   }
 
+  Scopes subject_of_fit(std::string const& name, ast::Task const& task, int depth) {
+    auto const fit = tasks_.find(name);
+    if (fit == tasks_.end() || fit->second.first == &task || depth > 1) return {};
+    return subject_of(*fit->second.first, depth + 1);
+  }
+
+  void mention_fit(ast::Name const& name) {
+    if (auto const fit = tasks_.find(name.text); fit != tasks_.end()) table_.mention(name.span, fit->second.second);
+  }
+
   void resolve(ast::Task const& task) {
     if (is_a(task, TaskKind::predict)) {
-      if (auto const fit = tasks_.find(task.subject.text); fit != tasks_.end())
-        table_.mention(task.subject.span, fit->second.second);
+      mention_fit(task.subject);
+      for (ast::Name const& other : task.others) mention_fit(other);
     } else if (is_a(task, TaskKind::discover)) {
       if (auto const dictionary = dictionaries_.find(task.subject.text); dictionary != dictionaries_.end())
         table_.mention(task.subject.span, names_.dictionaries.at(dictionary->second).symbol);

@@ -94,6 +94,7 @@ class Damage {
   }
   bool made_of_damaged(ast::Task const& task) const {
     return names_.contains(task.subject.text) || (task.name && names_.contains(task.name->text)) ||
+           std::any_of(task.others.begin(), task.others.end(), [&](ast::Name const& each) { return names_.contains(each.text); }) ||
            std::any_of(task.data.begin(), task.data.end(),
                        [&](ast::DataReference const& each) { return names_.contains(each.data.text); });
   }
@@ -114,9 +115,7 @@ class Damage {
   bool spread(ast::Data const& data) { return names_.insert(data.name.text).second; }
   bool spread(ast::Candidates const& set) { return names_.insert(set.name.text).second; }
   bool spread(ast::Dictionary const& dictionary) { return names_.insert(dictionary.name.text).second; }
-  bool spread(ast::Task const& task) {
-    return names_.insert(task.name ? task.name->text : task.verb.text + "_" + task.subject.text).second;
-  }
+  bool spread(ast::Task const& task) { return names_.insert(task.called()).second; }
   bool spread(ast::FunctionDefinition const& function) { return names_.insert(function.name.text).second; }
   bool spread(ast::Use const&) { return false; }
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "app/comparison/compare.hpp"
 #include "app/preflight/check_file.hpp"
-#include "app/run/compare.hpp"
 #include "repl/commands.hpp"
 #include "repl/statements.hpp"
 #include "repl/tasks.hpp"
@@ -20,7 +20,8 @@ std::string model_of_work(Workspace const& work, std::string const& task, std::s
   std::size_t place = work.find(ItemKind::task, task);
   if (place == work.items.size()) return model;
   ast::Task tree = std::get<ast::Task>(item_of(work.items[place].text));
-  // Of a prediction, that of its fit.
+  // Of a prediction, that of its fit; of an average, whose models are several, that of its results.
+  if (!tree.others.empty()) return model;
   place = work.find(ItemKind::task, tree.subject.text);
   if (place < work.items.size()) tree = std::get<ast::Task>(item_of(work.items[place].text));
   return model.replace(0, std::min(model.find('('), model.size()), tree.subject.text);

@@ -10,6 +10,7 @@
 #include "app/run/pipeline.hpp"
 #include "app/session/results.hpp"
 #include "app/session/stored_draws.hpp"
+#include "app/session/task_rows.hpp"
 #include "check/checked/task_kinds.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/wrapped.hpp"
@@ -17,13 +18,6 @@
 
 namespace sysid::repl {
 namespace {
-
-/// The task whose draws this one begins from.
-std::optional<int> earlier_of(Task const& task) {
-  if (auto const* fit = std::get_if<FitTask>(&task.what)) return fit->near;
-  if (auto const* prediction = std::get_if<PredictTask>(&task.what)) return prediction->fit;
-  return std::nullopt;
-}
 
 void keep(Context& context, Session& session, Task const& task, int index, std::string summary) {
   context.results.erase(task.name);
@@ -87,9 +81,9 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
     if (auto const known = context.results.selected.find(tasks[i].name); known != context.results.selected.end())
       session.selected[static_cast<int>(i)] = known->second;
   }
-  if (auto const earlier = earlier_of(*place)) {
-    Task const& needed = tasks[static_cast<std::size_t>(*earlier)];
-    bool const there = session.fitted.contains(*earlier) || session.selected.contains(*earlier);
+  for (int const earlier : task_row(*place).needs(*place)) {
+    Task const& needed = tasks[static_cast<std::size_t>(earlier)];
+    bool const there = session.fitted.contains(earlier) || session.selected.contains(earlier);
     if (!there && !sysid::complete(session.result_folder(needed)))
       return context.output.refuse(
           fmt::format("`{}` starts from the draws of `{}`, but there are none yet", name, needed.name),

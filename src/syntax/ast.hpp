@@ -401,9 +401,17 @@ struct Task : Located {
   Name verb;                        // simulate, fit, select, discover, predict
   Name subject;                     // a model (simulate, fit), candidates (select), a dictionary (discover) or a task (predict)
   std::vector<Argument> arguments;  // of the model
+  std::vector<Name> others;         // further fits, over which a prediction averages
   std::optional<Name> preposition;  // to, on, from
   std::vector<DataReference> data;  // one experiment each
   std::vector<Option> options;
+  /// Its name; without one, what it does: "predict_posterior".
+  std::string called() const {
+    if (name) return name->text;
+    std::string all = verb.text + "_" + subject.text;
+    for (Name const& other : others) all += "_" + other.text;
+    return all;
+  }
   friend bool operator==(Task const&, Task const&) = default;
 };
 

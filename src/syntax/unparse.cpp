@@ -155,6 +155,7 @@ struct ItemText {
     std::string out = task.name ? task.name->text + " = " : "";
     out += task.verb.text + " " + task.subject.text;
     if (!task.arguments.empty()) out += fmt::format("({})", comma_list(task.arguments));
+    for (ast::Name const& other : task.others) out += ", " + other.text;
     if (task.preposition && !task.data.empty()) out += fmt::format(" {} {}", task.preposition->text, comma_list(task.data));
     if (!task.options.empty()) out += " with " + comma_list(task.options);
     return out;

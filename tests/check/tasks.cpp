@@ -77,6 +77,25 @@ TEST_CASE("a start is the record's first row, rest or estimated") {
   CHECK(refused("fit m to d with mh, start = rset").find("help: did you mean `rest`") != std::string::npos);
 }
 
+TEST_CASE("a prediction of several fits has one for each, with what the fits were fitted to") {
+  std::string const fits = "f = fit m to d.train with mh\ng = fit m to d.train with nuts\n";
+  auto const average = std::get<PredictTask>(
+      checked(file + fits + "p = predict f, g on d.test with draws(50), weights = stacking, start = estimated\n").tasks.at(2).what);
+  REQUIRE(average.members.size() == 2);
+  CHECK(average.averages());
+  CHECK(average.weights == AverageWeights::stacking);
+  for (int k = 0; k < 2; ++k) {
+    PredictTask const& member = average.members[static_cast<std::size_t>(k)];
+    CHECK(member.fit == k);
+    CHECK(member.draws == 50);
+    CHECK(member.start.rows == 50);
+    CHECK(member.experiments.size() == 1);
+    CHECK(member.fitted == std::vector<int>{0});
+    CHECK_FALSE(member.averages());
+  }
+  CHECK_FALSE(prediction("").averages());
+}
+
 TEST_CASE("predictions take 200 draws, one for each trajectory, unless told otherwise") {
   CHECK(prediction("").draws == 200);
   CHECK_FALSE(prediction("").redraw_each_step);
@@ -156,6 +175,9 @@ TEST_CASE("a misspelt name of each kind is answered with the one that is near") 
            {"p = fit m to d with mh\nf = predict pp on d", "did you mean `p`?"},
            {"p = fit m to d with mh\nf = predict p on d with draw(20)", "did you mean `draws`"},
            {"p = fit m to d with mh\nf = predict p on d with redraw = stpe", "did you mean `step`?"},
+           {"p = fit m to d with mh\nq = fit m to d with mh\nf = predict p, q on d with weights = stack",
+            "did you mean `stacking`?"},
+           {"p = fit m to d with mh\nq = fit m to d with mh\nf = predict p, qq on d", "did you mean `q`?"},
            {"simulate m with vlaues(k = 1)", "did you mean `values`?"},
            {"simulate m with values(kk = 1)", "did you mean `k`?"},
            {"simulate m with input xx = constant(value = 1)", "did you mean `x`?"},

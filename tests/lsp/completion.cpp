@@ -56,6 +56,11 @@ TEST_CASE("at the top: items, verbs, subjects, data, options and their values") 
   CHECK(has(folder.at(file + "use |"), "springs"));
   CHECK(has(folder.at(file + "use hy|"), "hysteresis"));
   CHECK(folder.at(file + "forecast = predict |") == std::vector<std::string>{"posterior"});
+  CHECK(folder.at(file + "second = fit osc to bench with map\nboth = predict posterior, |") ==
+        std::vector<std::string>{"posterior", "second"});
+  CHECK(has(folder.at(file + "both = predict posterior, posterior |"), "on"));
+  CHECK(folder.at(file + "both = predict posterior on bench with weights = |") ==
+        std::vector<std::string>{"evidence", "stacking", "pseudo_bma", "equal"});
   CHECK(folder.at(file + "found = discover |") == std::vector<std::string>{"law"});
   auto const subjects = folder.at(file + "fit |");
   CHECK((has(subjects, "osc") && has(subjects, "spring") && !has(subjects, "bench")));

@@ -42,6 +42,7 @@ data bench {
 posterior = fit oscillator to bench.train with mh(samples = 10000, chains = 2), seed = 1
 refined = fit oscillator to bench.train with map, search = near(posterior), seed = 1
 forecast = predict posterior on bench.test with draws(20)
+both = predict refined, posterior on bench.test with draws(20)
 )";
 
 struct Bench {
@@ -163,6 +164,7 @@ TEST_CASE("renaming changes every place of the meaning and no other, and refuses
   CHECK(contains(renamed("bench.train", "rig"), "data rig {"));
   std::string const result = renamed("posterior on", "result");
   CHECK((contains(result, "predict result on") && contains(result, "near(result)")));
+  CHECK(contains(result, "predict refined, result on"));
 
   for (auto const& [what, name] : std::vector<std::pair<std::string, std::string>>{{"β*y +", "m"},
                                                                                    {"β*y +", "if"},
@@ -273,7 +275,7 @@ TEST_CASE("the outline has blocks with what they declare, ranges around their na
   std::vector<std::string> names;
   for (Json const& each : all) names.push_back(each.at("name"));
   std::sort(names.begin(), names.end());
-  CHECK(names == std::vector<std::string>{"bench", "cubed", "forecast", "oscillator", "posterior", "refined"});
+  CHECK(names == std::vector<std::string>{"bench", "both", "cubed", "forecast", "oscillator", "posterior", "refined"});
   auto const check = [&](auto const& self, Json const& one) -> void {
     Span const whole = span_of(text, one.at("range")), name = span_of(text, one.at("selectionRange"));
     CHECK((whole.begin <= name.begin && name.end <= whole.end));

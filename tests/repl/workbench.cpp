@@ -106,6 +106,8 @@ TEST_CASE("a task that begins from another one says which, where that has not be
   CHECK_FALSE(other.enter("run forecast"));
   CHECK(has(other.messages(), "help: `run second`"));
   CHECK_MESSAGE(other.enter("run first second forecast"), other.messages());
+  REQUIRE_MESSAGE(other.enter("both = predict first, second on bench with draws(1)"), other.messages());
+  CHECK(has(other.answers(), "Average and its members"));
 }
 
 TEST_CASE("a saved session is a file that gives the same numbers, to the last digit") {

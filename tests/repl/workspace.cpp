@@ -45,6 +45,13 @@ TEST_CASE("a statement replaces that of its name; a task goes to the end while n
   w.put(item("p = predict f on b"), {});
   w.put(item("f = fit a to b with map"), {});
   CHECK(w.text() == "model a { state y }\ndata b { }\nf = fit a to b with map\np = predict f on b\n");
+  w.put(item("g = fit a to b with ml"), {});
+  w.put(item("predict f, g on b"), {});
+  CHECK(w.items.back().name == "predict_f_g");
+  w.put(item("g = fit a to b with map"), {});  // it stays before what refers to it
+  CHECK(
+      w.text() ==
+      "model a { state y }\ndata b { }\nf = fit a to b with map\np = predict f on b\ng = fit a to b with map\npredict f, g on b\n");
 }
 
 TEST_CASE("what a task was run on stays with it when it changes, and goes when nothing refers to it any more") {

@@ -165,6 +165,11 @@ TEST_CASE("tasks have an optional name, a place and options") {
   CHECK(predict.verb.text == "predict");
   CHECK(predict.subject.text == "posterior");
   CHECK_FALSE(predict.data.front().part.has_value());
+  ast::Task const average = only_task("predict posterior, other, third on bench, hall.test with draws(20)");
+  REQUIRE(average.others.size() == 2);
+  CHECK(average.others[1].text == "third");
+  CHECK(average.data.size() == 2);
+  CHECK(average.called() == "predict_posterior_other_third");
   CHECK_FALSE(only_task("fit a with input = 3").options.at(0).input);
   CHECK_FALSE(only_task("fit a with input").options.at(0).key.has_value());
 }

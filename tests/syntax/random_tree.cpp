@@ -189,9 +189,10 @@ ast::DictionaryStatement RandomTree::dictionary_statement() {
 }
 
 ast::Task RandomTree::task() {
-  ast::Task out{{}, perhaps([&] { return name(); }), {{}, std::string(random_.pick(words::verbs))}, name(), {}, {}, {}, {}};
+  ast::Task out{{}, perhaps([&] { return name(); }), {{}, std::string(random_.pick(words::verbs))}, name(), {}, {}, {}, {}, {}};
   if (random_.chance(3))
     out.arguments = several(1, [&] { return ast::Argument{{}, perhaps([&] { return name(); }), expression(1)}; });
+  if (out.verb.text == "predict") out.others = several(0, [&] { return name(); });
   if (random_.chance(2)) {
     out.preposition = ast::Name{{}, std::string(random_.pick(words::prepositions))};
     out.data = several(1, [&] { return ast::DataReference{{}, name(), perhaps([&] { return name(); })}; });

@@ -77,6 +77,7 @@ TEST_CASE("a whole file has one canonical text") {
       "function square(a) = a^2\n"
       "posterior = fit duffing to bench.train with mh(samples = 25000), start = rest\n"
       "forecast = predict posterior on bench.test with draws(200)\n"
+      "both = predict posterior, other on bench.test with weights = stacking\n"
       "simulate duffing with input x = gaussian(sd = 10), noise = 1 [percent]\n";
   CHECK(unparse(parsed(text)) == text);
 }

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/setting/average_weights.hpp"
 #include "core/setting/evidence_method.hpp"
 #include "core/setting/settings.hpp"
 #include "data/experiment.hpp"
@@ -151,9 +152,10 @@ struct SelectTask {
   std::optional<std::uint64_t> seed;
 };
 
-/// With the draws of a fit, or of a selection: then those of each candidate count as much as it is probable.
+/// With the draws of a fit, of a selection, whose candidates count as much as they are probable, or of several fits that are
+/// weighed.
 struct PredictTask {
-  int fit = 0;  // index into CheckedFile::tasks
+  int fit = 0;  // index into CheckedFile::tasks; of an average the first
   std::vector<ExperimentUse> experiments;
   std::vector<int> fitted;  // per experiment the one of the fit whose parameters it has; -1: a new one
   std::vector<std::vector<ExperimentUse>>
@@ -163,6 +165,10 @@ struct PredictTask {
   StartRule start;
   PredictionRule prediction = PredictionRule::as_written;
   std::optional<std::uint64_t> seed;
+  std::vector<PredictTask> members;  // of an average, of each fit the prediction with it alone; else none
+  AverageWeights weights = AverageWeights::evidence;
+
+  bool averages() const { return !members.empty(); }
 };
 
 /// A term of one equation of a dictionary, as the numbers beside it know it by its index.

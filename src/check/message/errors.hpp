@@ -131,7 +131,8 @@ Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& colu
 
 // tasks (E60)
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known);
-Diagnostic unknown_fit(ast::Name const& name, Names const& known);
+/// is_data: the name is that of a data block.
+Diagnostic unknown_fit(ast::Name const& name, Names const& known, bool is_data);
 /// A part of something named: "data `bench` has no range `trian`".
 Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::string const& kind, Names const& known);
 Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known);
@@ -146,6 +147,17 @@ Diagnostic unknown_backend(ast::Name const& name, Names const& known);
 Diagnostic data_missing(ast::Task const& task, std::string const& preposition);
 Diagnostic data_unused(ast::Task const& task, Span data);
 Diagnostic not_a_fit(ast::Name const& name, std::string const& verb);
+// --- errors_averages.cpp
+Diagnostic averaged_twice(ast::Name const& second, Span first);
+Diagnostic selection_in_average(ast::Name const& name);
+Diagnostic weights_of_one_fit(Span option, std::string const& subject);
+/// reason: "`ml` has no evidence".
+Diagnostic fit_without_weight(ast::Name const& fit, std::string const& backend, std::string const& reason, std::string const& help);
+Diagnostic average_without_channel(ast::Name const& fit, std::string const& channel, std::string const& other,
+                                   std::string const& data);
+Diagnostic average_of_two_units(ast::Name const& fit, Unit const& unit, std::string const& channel, std::string const& other,
+                                Unit const& other_unit);
+Diagnostic average_redrawn(Span option);
 Diagnostic fixed_parameter(ast::Name const& name, Span declaration);
 Diagnostic value_missing(Span span, Names const& parameters);
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate);

@@ -154,9 +154,12 @@ Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names co
                kind);
 }
 
-Diagnostic unknown_fit(ast::Name const& name, Names const& known) {
+Diagnostic unknown_fit(ast::Name const& name, Names const& known, bool is_data) {
   Diagnostic result = unknown_item(name, "fit", known);
-  if (known.empty()) result.help = "a fit is a task with a name: `posterior = fit MODEL to DATA with mh(samples = 1000)`";
+  if (is_data)
+    result.help = fmt::format("`{0}` is a data block: a fit predicts `on` data, `predict FIT on {0}`", name.text);
+  else if (known.empty())
+    result.help = "a fit is a task with a name: `posterior = fit MODEL to DATA with mh(samples = 1000)`";
   return result;
 }
 

@@ -79,6 +79,15 @@ class TaskChecker {
 
   // --- task_predict.cpp
   PredictTask predict();
+  void predict_option(ast::Option const& option, std::string const& key, std::span<int const> models, PredictTask& task);
+  void draws(ast::Option const& option, int& count);
+  // The fits whose draws are used: of a selection one per candidate; none when an error was added.
+  std::vector<FitTask const*> predicted_fits(PredictTask& task);
+  // The predictions of the members of an average. uses: the experiments, per fit.
+  void average(std::vector<FitTask const*> const& fits, std::vector<std::vector<ExperimentUse>> const& uses, PredictTask& task);
+  // Whether all fits of the average can have weights, and observe what the data measure.
+  void suit_average(std::vector<FitTask const*> const& fits, PredictTask const& task);
+  void suit_channels(std::vector<FitTask const*> const& fits, DataBlock const& block);
   // Index of the task above whose draws are used; nothing when it is none.
   std::optional<int> fitted_task(ast::Name const& name, bool or_selection);
 

@@ -32,6 +32,8 @@ constexpr TaskOptionRow rows[] = {
     {"file", "file = \"made.csv\"", "name of the CSV file in the result folder", {}},
     {"draws", "draws(200)", "number of posterior draws that are simulated", {}},
     {"redraw", "redraw = step", "parameters redrawn for each trajectory or at each step", "trajectory step"},
+    {"weights", "weights = stacking", "what the fits of an averaged prediction are weighed by",
+     "evidence stacking pseudo_bma equal"},
     {"top", "top = 5", "number of structures that are shown and refitted", {}},
     {"candidates", "candidates = yes", "whether found.sysid contains a model for each structure, as a set of candidates", "yes no"},
     {"refit", "refit = yes", "whether the best structures are refitted by simulation", "yes no"},
@@ -46,7 +48,7 @@ std::map<TaskKind, Names> const& by_kind() {
       {TaskKind::fit, {"start", "solver", "substeps", "prediction", "search", "evidence", "seed"}},
       {TaskKind::select, {"start", "solver", "substeps", "prediction", "seed"}},
       {TaskKind::discover, {"noise", "top", "candidates", "refit", "seed"}},
-      {TaskKind::predict, {"draws", "redraw", "start", "prediction", "seed"}}};
+      {TaskKind::predict, {"draws", "weights", "redraw", "start", "prediction", "seed"}}};
   return all;
 }
 

@@ -2,10 +2,13 @@
 #include "check/task/task_checker.hpp"
 #include "check/task/task_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "check/checked/task_kinds.hpp"
 #include "check/message/errors.hpp"
+#include "core/setting/table.hpp"
 
 namespace sysid {
 
@@ -25,7 +28,7 @@ std::optional<int> TaskChecker::fitted_task(ast::Name const& subject, bool or_se
   auto const written = std::find_if(all_tasks_.begin(), all_tasks_.end(),
                                     [&](ast::Task const* each) { return each != &tree_ && task_name(*each) == name; });
   if (written == all_tasks_.end())
-    diagnostics_.add(errors::unknown_fit(subject, known));
+    diagnostics_.add(errors::unknown_fit(subject, known, names_.data.contains(name)));
   else if (written > self)
     diagnostics_.add(errors::task_too_late(subject));
   else
@@ -33,64 +36,72 @@ std::optional<int> TaskChecker::fitted_task(ast::Name const& subject, bool or_se
   return std::nullopt;
 }
 
-PredictTask TaskChecker::predict() {
-  PredictTask task;
-  std::vector<FitTask const*> fits;  // of a selection one per candidate
-  if (auto const fit = fitted_task(tree_.subject, true)) {
-    task.fit = *fit;
-    Task const& subject = file_.tasks[static_cast<std::size_t>(*fit)];
-    if (auto const* selection = std::get_if<SelectTask>(&subject.what))
+std::vector<FitTask const*> TaskChecker::predicted_fits(PredictTask& task) {
+  std::vector<FitTask const*> fits;
+  std::vector<ast::Name> names = {tree_.subject};
+  names.insert(names.end(), tree_.others.begin(), tree_.others.end());
+  bool complete = true;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    auto const same = std::find_if(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k),
+                                   [&](ast::Name const& each) { return each.text == names[k].text; });
+    if (same != names.begin() + static_cast<std::ptrdiff_t>(k)) {
+      diagnostics_.add(errors::averaged_twice(names[k], same->span));
+      complete = false;
+      continue;
+    }
+    auto const found = fitted_task(names[k], true);
+    complete = complete && found;
+    if (!found) continue;
+    Task const& subject = file_.tasks[static_cast<std::size_t>(*found)];
+    auto const* selection = std::get_if<SelectTask>(&subject.what);
+    if (selection != nullptr && names.size() > 1) {
+      diagnostics_.add(errors::selection_in_average(names[k]));
+      complete = false;
+      continue;
+    }
+    if (k == 0) task.fit = *found;
+    if (names.size() > 1) task.members.emplace_back().fit = *found;
+    if (selection != nullptr)
       for (FitTask const& each : selection->fits) fits.push_back(&each);
     else
       fits.push_back(&std::get<FitTask>(subject.what));
   }
+  return complete ? fits : std::vector<FitTask const*>();
+}
+
+namespace {
+
+// Of each use the experiment of the fit whose parameters it has; -1: a new one.
+std::vector<int> fitted_parts(std::vector<ExperimentUse> const& uses, std::vector<ExperimentUse> const& fitted) {
+  std::vector<int> parts;
+  for (ExperimentUse const& use : uses) {
+    parts.push_back(-1);
+    bool const split = std::count_if(fitted.begin(), fitted.end(), [&](auto const& each) { return each.data == use.data; }) > 1;
+    for (std::size_t e = 0; e < fitted.size(); ++e)
+      if (fitted[e].data == use.data && (!split || fitted[e].part == use.part)) parts.back() = static_cast<int>(e);
+  }
+  return parts;
+}
+
+}  // namespace
+
+PredictTask TaskChecker::predict() {
+  PredictTask task;
+  std::vector<FitTask const*> const fits = predicted_fits(task);
   std::vector<int> models;
   for (FitTask const* each : fits) models.push_back(each->model);
   if (fits.empty()) experiments(nullptr, "on");
-  for (std::size_t c = 0; c < fits.size() && !diagnostics_.has_errors(before_); ++c) {
-    auto uses = experiments(&file_.models[static_cast<std::size_t>(models[c])], "on");
-    if (c == 0) task.experiments = uses;
-    if (kind_of(file_.tasks[static_cast<std::size_t>(task.fit)]) == TaskKind::select)
-      task.candidate_experiments.push_back(std::move(uses));
-  }
-  for (ExperimentUse const& use : task.experiments) {
-    task.fitted.push_back(-1);
-    std::vector<ExperimentUse> const& fitted = fits.front()->experiments;
-    bool const split = std::count_if(fitted.begin(), fitted.end(), [&](auto const& each) { return each.data == use.data; }) > 1;
-    for (std::size_t e = 0; e < fitted.size(); ++e)
-      if (fitted[e].data == use.data && (!split || fitted[e].part == use.part)) task.fitted.back() = static_cast<int>(e);
-  }
+  std::vector<std::vector<ExperimentUse>> uses;
+  for (std::size_t c = 0; c < fits.size() && !diagnostics_.has_errors(before_); ++c)
+    uses.push_back(experiments(&file_.models[static_cast<std::size_t>(models[c])], "on"));
+  if (!uses.empty()) task.experiments = uses.front();
+  if (!fits.empty()) task.fitted = fitted_parts(task.experiments, fits.front()->experiments);
   for (ast::Option const& option : tree_.options) {
     std::string const key = key_of(option);
-    if (option.input || !options_.fresh(option, key)) {
-      if (option.input) options_.unknown(option, task_option_names("predict"));
-      continue;
-    }
-    if (key == "draws") {
-      ast::Call const* call = as_call(option.value);
-      ast::Expression const* count = option.key ? &option.value
-                                     : call != nullptr && call->arguments.size() == 1 && !call->arguments[0].name
-                                         ? &call->arguments[0].value
-                                         : nullptr;
-      if (count == nullptr)
-        diagnostics_.add(errors::option_kind(option.span, "draws", {"a number of posterior draws"}, "draws(200)"));
-      else if (auto const value = options_.number(*count, "draws", Unit{}, 1, 1e7, true))
-        task.draws = static_cast<int>(*value);
-    } else if (option.key && key == "redraw") {
-      auto const word = as_word(option.value);
-      if (word == "trajectory" || word == "step")
-        task.redraw_each_step = word == "step";
-      else
-        diagnostics_.add(errors::option_choice(option.value.span, key, word.value_or(""), {"trajectory", "step"}));
-    } else if (option.key && key == "start") {
-      options_.start(option, task.start);
-    } else if (option.key && key == "prediction") {
-      prediction(option, models, task.prediction);
-    } else if (option.key && key == "seed") {
-      options_.seed(option, task.seed);
-    } else {
+    if (!option.input && options_.fresh(option, key))
+      predict_option(option, key, models, task);
+    else if (option.input)
       options_.unknown(option, task_option_names("predict"));
-    }
   }
   for (int const m : models) {
     Model const& model = file_.models[static_cast<std::size_t>(m)];
@@ -100,8 +111,110 @@ PredictTask TaskChecker::predict() {
       diagnostics_.add(errors::process_beside_estimated_start(tree_.subject.span, model.name));
     if (task.redraw_each_step)
       diagnostics_.add(errors::process_task(tree_.subject.span, "predicted with parameters redrawn at each step", model.name));
+    if (task.averages()) diagnostics_.add(errors::process_task(tree_.subject.span, "averaged with other fits", model.name));
   }
+  if (task.averages())
+    average(fits, uses, task);
+  else if (!fits.empty() && kind_of(file_.tasks[static_cast<std::size_t>(task.fit)]) == TaskKind::select)
+    task.candidate_experiments = std::move(uses);
   return task;
+}
+
+void TaskChecker::draws(ast::Option const& option, int& count) {
+  ast::Call const* call = as_call(option.value);
+  ast::Expression const* given = option.key ? &option.value
+                                 : call != nullptr && call->arguments.size() == 1 && !call->arguments[0].name
+                                     ? &call->arguments[0].value
+                                     : nullptr;
+  if (given == nullptr)
+    diagnostics_.add(errors::option_kind(option.span, "draws", {"a number of posterior draws"}, "draws(200)"));
+  else if (auto const value = options_.number(*given, "draws", Unit{}, 1, 1e7, true))
+    count = static_cast<int>(*value);
+}
+
+void TaskChecker::predict_option(ast::Option const& option, std::string const& key, std::span<int const> models,
+                                 PredictTask& task) {
+  std::string const word = as_word(option.value).value_or("");
+  if (key == "draws") {
+    draws(option, task.draws);
+  } else if (option.key && key == "weights") {
+    if (tree_.others.empty())
+      diagnostics_.add(errors::weights_of_one_fit(option.span, tree_.subject.text));
+    else if (auto const weights = average_weights(word))
+      task.weights = *weights;
+    else
+      diagnostics_.add(errors::option_choice(option.value.span, key, word, average_weights_words()));
+  } else if (option.key && key == "redraw") {
+    if (word != "trajectory" && word != "step")
+      diagnostics_.add(errors::option_choice(option.value.span, key, word, {"trajectory", "step"}));
+    else if (word == "step" && !tree_.others.empty())
+      diagnostics_.add(errors::average_redrawn(option.span));
+    else
+      task.redraw_each_step = word == "step";
+  } else if (option.key && key == "start") {
+    options_.start(option, task.start);
+  } else if (option.key && key == "prediction") {
+    prediction(option, models, task.prediction);
+  } else if (option.key && key == "seed") {
+    options_.seed(option, task.seed);
+  } else {
+    options_.unknown(option, task_option_names("predict"));
+  }
+}
+
+void TaskChecker::average(std::vector<FitTask const*> const& fits, std::vector<std::vector<ExperimentUse>> const& uses,
+                          PredictTask& task) {
+  if (diagnostics_.has_errors(before_) || unresolved_) return;
+  suit_average(fits, task);
+  for (std::size_t k = 0; k < task.members.size(); ++k) {
+    PredictTask member = task;
+    member.members.clear();
+    member.fit = task.members[k].fit;
+    member.experiments = uses[k];
+    member.fitted = fitted_parts(uses[k], fits[k]->experiments);
+    task.members[k] = std::move(member);
+  }
+}
+
+void TaskChecker::suit_average(std::vector<FitTask const*> const& fits, PredictTask const& task) {
+  auto const name = [&](std::size_t k) -> ast::Name const& { return k == 0 ? tree_.subject : tree_.others[k - 1]; };
+  std::string const others = "`weights = equal` needs nothing of the fits";
+  for (std::size_t k = 0; k < fits.size() && task.weights != AverageWeights::equal; ++k) {
+    BackendSettings const* const backend = row_named(backends_.fitting, fits[k]->backend);
+    bool const by_evidence = task.weights == AverageWeights::evidence, optimum = backend != nullptr && backend->optimum;
+    if (by_evidence && optimum && !backend->prior)
+      diagnostics_.add(errors::fit_without_weight(name(k), fits[k]->backend, fmt::format("`{}` has no evidence", backend->name),
+                                                  "fit it with a back end that uses the prior; " + others));
+    else if (by_evidence && fits[k]->evidence == EvidenceMethod::none)
+      diagnostics_.add(errors::fit_without_weight(name(k), fits[k]->backend, "its fit has `evidence = none`",
+                                                  "remove that option from the fit, or write `weights = stacking`; " + others));
+    else if (!by_evidence && optimum)
+      diagnostics_.add(errors::fit_without_weight(
+          name(k), fits[k]->backend, fmt::format("`{}` has no posterior draws, and so no predictive scores", backend->name),
+          "fit it with `mh` or `nuts`; " + others));
+  }
+  for (ExperimentUse const& use : task.experiments) suit_channels(fits, file_.data[static_cast<std::size_t>(use.data)]);
+}
+
+void TaskChecker::suit_channels(std::vector<FitTask const*> const& fits, DataBlock const& block) {
+  auto const name = [&](std::size_t k) -> ast::Name const& { return k == 0 ? tree_.subject : tree_.others[k - 1]; };
+  for (DataMeasureUse const& measured : block.measured) {
+    auto const channel = [&](std::size_t k) -> Channel const* {
+      auto const& channels = file_.models[static_cast<std::size_t>(fits[k]->model)].channels;
+      auto const found =
+          std::find_if(channels.begin(), channels.end(), [&](Channel const& each) { return each.name == measured.channel; });
+      return found == channels.end() ? nullptr : &*found;
+    };
+    std::size_t first = 0;
+    while (first < fits.size() && channel(first) == nullptr) ++first;
+    for (std::size_t k = 0; k < fits.size() && first < fits.size(); ++k) {
+      Channel const *own = channel(k), *other = channel(first);
+      if (own == nullptr)
+        diagnostics_.add(errors::average_without_channel(name(k), measured.channel, name(first).text, block.name));
+      else if (own->unit && other->unit && own->unit->dimension != other->unit->dimension)
+        diagnostics_.add(errors::average_of_two_units(name(k), *own->unit, measured.channel, name(first).text, *other->unit));
+    }
+  }
 }
 
 }  // namespace sysid

@@ -197,7 +197,7 @@ std::vector<std::string> names_of(std::span<BackendSettings const> backends) {
   return names;
 }
 
-std::string task_name(ast::Task const& tree) { return tree.name ? tree.name->text : tree.verb.text + "_" + tree.subject.text; }
+std::string task_name(ast::Task const& tree) { return tree.called(); }
 
 std::optional<Task> check_task(ast::Task const& tree, TaskNames const& names, CheckedFile& file, Backends const& backends,
                                std::span<ast::Task const* const> all_tasks, Diagnostics& diagnostics) {

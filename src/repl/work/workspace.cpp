@@ -72,7 +72,7 @@ std::string name_of(ast::Item const& item) {
         if constexpr (std::is_same_v<Each, ast::Use>)
           return each.module.text;
         else if constexpr (std::is_same_v<Each, ast::Task>)
-          return each.name ? each.name->text : each.verb.text + "_" + each.subject.text;
+          return each.called();
         else
           return each.name.text;
       },
@@ -96,6 +96,7 @@ std::vector<ItemReference> references_of(ast::Item const& item) {
     auto const kind = words::task_kind(task->verb.text);
     if (kind == TaskKind::predict) {
       add(ItemKind::task, task->subject);
+      for (ast::Name const& other : task->others) add(ItemKind::task, other);
     } else if (kind == TaskKind::discover) {
       add(ItemKind::dictionary, task->subject);
     } else {
