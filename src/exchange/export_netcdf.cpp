@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/session/made_from.hpp"
 #include "app/session/results.hpp"
 #include "core/system/files.hpp"
@@ -47,7 +49,14 @@ std::vector<StoredPrediction> predictions_of(Session const& session, int source,
   std::vector<StoredPrediction> found;
   for (Task const& task : session.file.tasks) {
     auto const* what = std::get_if<PredictTask>(&task.what);
-    if (what == nullptr || what->fit != source || !complete(session.result_folder(task))) continue;
+    if (what == nullptr || !complete(session.result_folder(task))) continue;
+    if (what->averages()) {
+      bool const among =
+          std::any_of(what->members.begin(), what->members.end(), [&](PredictTask const& member) { return member.fit == source; });
+      if (among) omitted.push_back(fmt::format("{}: it averages over several fits and belongs to none of them", task.name));
+      continue;
+    }
+    if (what->fit != source) continue;
     if (auto const earlier = made_from_earlier(session.result_folder(task))) {
       omitted.push_back(fmt::format("{}: {}", task.name, earlier->message));
       continue;
@@ -103,6 +112,9 @@ std::string groups_text(InferenceData const& data) {
 void require_exportable(ResultsFolder const& results, bool force) {
   bool any = false;
   for (StoredResult const& stored : results.results) {
+    if (results.one_task && stored.is("predict") && stored.summary.contains("average"))
+      throw refused(fmt::format("`{}` is an average over several fits, which is not exported", stored.folder.string()),
+                    "export the folders of its fits");
     if (results.one_task && stored.is("predict"))
       throw refused(fmt::format("`{}` is a prediction and is exported with its fit", stored.folder.string()),
                     "export the folder of the fit, or of the whole run");

@@ -147,8 +147,7 @@ void preflight_discover(Session& session, Task const& task, TaskDataList const& 
 
 void preflight_predict(Session& session, Task const& task, TaskDataList const& data, TaskPage& page) {
   PredictTask const& what = std::get<PredictTask>(task.what);
-  page.what = fmt::format("predict {} on {}", session.file.tasks[static_cast<std::size_t>(what.fit)].name,
-                          data_names(session.file, what.experiments));
+  page.what = fmt::format("predict {} on {}", predicted_names(session.file, what), data_names(session.file, what.experiments));
   cover(session, data.front(), page);
 }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "app/average/predict_average.hpp"
 #include "app/selection/select.hpp"
 #include "app/session/results.hpp"
 #include "app/task/tasks.hpp"
@@ -24,6 +25,7 @@ ExitCode discover(Session& session, int, Task const& task) {
 }
 ExitCode predict(Session& session, int, Task const& task) {
   PredictTask const& what = std::get<PredictTask>(task.what);
+  if (what.averages()) return run_predict_average(session, task, what);
   bool const selection = kind_of(session.file.tasks[static_cast<std::size_t>(what.fit)]) == TaskKind::select;
   return (selection ? run_predict_selection : run_predict)(session, task, what);
 }

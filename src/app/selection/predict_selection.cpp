@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/selection/selection_trajectories.hpp"
 #include "app/session/made_from.hpp"
 #include "app/session/provenance.hpp"
@@ -10,6 +13,7 @@
 #include "app/session/resolved.hpp"
 #include "app/session/solver_record.hpp"
 #include "core/text/diagnostic.hpp"
+#include "criteria/mixture.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/coverage.hpp"
@@ -69,6 +73,8 @@ class PredictSelection {
       report.findings.push_back(std::move(finding));
     add_ranges(lead, leading, report);
     int const leading_failed = leading.result.failed();
+    Owners owners(leading.result.values.size());
+    own(lead, leading.result, owners);
     std::vector<int> const& counts = trajectories_.counts();
     Trajectory::Result all = std::move(leading.result);
     for (std::size_t k = 0; k < counts.size(); ++k) {
@@ -77,10 +83,12 @@ class PredictSelection {
       all.ledger.merge(other.result.ledger);
       add_ranges(k, other, report);
       append(leading, other, all);
+      own(k, all, owners);
     }
     say_of_models(e, report);
     Experiment const& experiment = leading.data->experiment;
     report.predictions.push_back(bands_along(leading.trajectory->quantities(), all, experiment, leading.model()));
+    add_variances(leading, all, owners, report.predictions.back());
     Findings const noise_findings = leave_out_noise(leading.model(), report.predictions.back());
     if (e == 0) report.findings.insert(report.findings.end(), noise_findings.begin(), noise_findings.end());
     report.ledger.merge(all.ledger);
@@ -139,6 +147,35 @@ class PredictSelection {
             for (double& value : values) value = to.from_si(from.to_si(value));
           all.values[q].push_back(std::move(values));
         }
+      }
+    }
+  }
+
+  /// Of each quantity the candidate that each of its trajectories is of.
+  using Owners = std::vector<std::vector<std::size_t>>;
+  static void own(std::size_t candidate, Trajectory::Result const& all, Owners& owners) {
+    for (std::size_t q = 0; q < owners.size(); ++q) owners[q].resize(all.values[q].size(), candidate);
+  }
+
+  /// Of channels, which several models may have: what parameters and models add to the variance of the band. The noise is unknown.
+  static void add_variances(SelectionTrajectories::Along const& leading, Trajectory::Result const& all, Owners const& owners,
+                            Prediction& prediction) {
+    auto const& quantities = leading.trajectory->quantities();
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+      if (quantities[q].channel < 0) continue;
+      auto const band = std::ranges::find_if(prediction.quantities,
+                                             [&](PredictedQuantity const& each) { return each.name == quantities[q].name; });
+      auto const draws = usable_trajectories(all.values[q]);
+      if (band == prediction.quantities.end() || draws.usable.size() < 2) continue;
+      std::vector<std::vector<double>> groups(1 + *std::ranges::max_element(owners[q]));
+      for (std::size_t i = 0; i < draws.predictable.size(); ++i) {
+        for (auto& group : groups) group.clear();
+        for (std::vector<double> const* each : draws.usable)
+          groups[owners[q][static_cast<std::size_t>(each - all.values[q].data())]].push_back((*each)[i]);
+        bool const known = draws.predictable[i] != 0;
+        VarianceSplit const split = known ? split_pooled(groups) : VarianceSplit();
+        band->variance.parameter.push_back(known ? split.parameter : std::nan(""));
+        band->variance.model.push_back(known ? split.model : std::nan(""));
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/session/task_rows.hpp"
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "report/file/stored_files.hpp"
@@ -15,6 +16,9 @@ namespace {
 
 constexpr char const* task_key = "made_from";
 constexpr char const* digest_key = "made_from_sha256";
+
+/// "made_from", "made_from_2": an average is made from several.
+std::string numbered(char const* key, std::size_t place) { return place == 0 ? key : fmt::format("{}_{}", key, place + 1); }
 
 std::optional<std::string> digest_of(std::filesystem::path const& folder) {
   auto const summary = folder / "summary.json";
@@ -27,24 +31,32 @@ std::optional<std::string> digest_of(std::filesystem::path const& folder) {
 Facts made_from(Session const& session, Task const& task) {
   auto const* prediction = std::get_if<PredictTask>(&task.what);
   if (prediction == nullptr) return {};
-  Task const& source = session.file.tasks[static_cast<std::size_t>(prediction->fit)];
-  auto const digest = digest_of(session.result_folder(source));
-  if (!digest) return {};
-  return {{task_key, source.name}, {digest_key, *digest}};
+  Facts facts;
+  std::vector<int> const needs = task_row(task).needs(task);
+  for (std::size_t k = 0; k < needs.size(); ++k) {
+    Task const& source = session.file.tasks[static_cast<std::size_t>(needs[k])];
+    auto const digest = digest_of(session.result_folder(source));
+    if (!digest) continue;
+    facts.emplace_back(numbered(task_key, k), source.name);
+    facts.emplace_back(numbered(digest_key, k), *digest);
+  }
+  return facts;
 }
 
 std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
   auto const path = folder / "summary.json";
   if (!std::filesystem::exists(path)) return std::nullopt;
   auto const summary = nlohmann::json::parse(read_summary(folder));
-  auto const text = [&](char const* key) {
+  auto const text = [&](std::string const& key) {
     auto const& versions = summary.at("versions");
     return versions.contains(key) && versions[key].is_string() ? versions[key].get<std::string>() : std::string();
   };
-  std::string const source = text(task_key), digest = text(digest_key);
+  std::string source;
+  for (std::size_t k = 0; !(source = text(numbered(task_key, k))).empty(); ++k) {
+    auto const now = digest_of(std::filesystem::absolute(folder).lexically_normal() / ".." / source);
+    if (now && *now != text(numbered(digest_key, k))) break;
+  }
   if (source.empty()) return std::nullopt;
-  auto const now = digest_of(std::filesystem::absolute(folder).lexically_normal() / ".." / source);
-  if (!now || *now == digest) return std::nullopt;
   return Finding{FindingCode::made_from_earlier,
                  Severity::warning,
                  {source},

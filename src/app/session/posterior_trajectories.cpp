@@ -71,10 +71,14 @@ Trajectory PosteriorTrajectories::trajectory(int e) const {
           [this](NodeId node, Graph const& graph) { return session_.describe(fit_.model, graph, node); }};
 }
 
-Trajectory::Result PosteriorTrajectories::run(int e, Trajectory const& trajectory, ConstLanes parameters) const {
+Trajectory::Result PosteriorTrajectories::run(int e, Trajectory const& trajectory, ConstLanes parameters, bool moments) const {
   StreamKey const noise = prediction_noise(seed_, e);
   return what_.redraw_each_step ? trajectory.run_redrawn(parameters, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
-                                : trajectory.run(parameters, noise);
+                                : trajectory.run(parameters, noise, moments);
+}
+
+PointwiseLikelihood PosteriorTrajectories::pointwise(int e) const {
+  return {compiled_, data_[static_cast<std::size_t>(e)].experiment, fitted_.solver, start_rows(), session_.abandonable()};
 }
 
 }  // namespace sysid

@@ -7,6 +7,7 @@
 #include "app/session/session.hpp"
 #include "diagnostics/function_ranges.hpp"
 #include "experiment/experiments.hpp"
+#include "likelihood/pointwise.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {
@@ -30,8 +31,10 @@ class PosteriorTrajectories {
   /// Parameters of the model in experiment e for each draw that is used, SI [parameters x draws].
   LaneArray parameters(int e) const;
   Trajectory trajectory(int e) const;
-  /// parameters: those of experiment e.
-  Trajectory::Result run(int e, Trajectory const& trajectory, ConstLanes parameters) const;
+  /// parameters: those of experiment e. moments: of the noise, too.
+  Trajectory::Result run(int e, Trajectory const& trajectory, ConstLanes parameters, bool moments = false) const;
+  /// Log densities of the scored samples of experiment e.
+  PointwiseLikelihood pointwise(int e) const;
 
  private:
   Session& session_;

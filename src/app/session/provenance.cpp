@@ -34,25 +34,6 @@ std::string scored_rows(Experiment const& experiment) {
   return text;
 }
 
-// SHA-256 of the measured samples that a likelihood reads: channels by name, each sample with its row, in the channel's declared
-// unit. Equal digests mean densities of the same numbers, which alone can be compared.
-std::string samples_digest(Experiment const& experiment, Model const& model) {
-  std::vector<std::pair<std::string, std::string>> channels;  // by name: models may declare them in any order
-  for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
-    std::string text;
-    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
-      if (!experiment.is_scored(c, i)) continue;
-      text += fmt::format("{} {}\n", experiment.first_row + static_cast<int>(i),
-                          shortest(model.channels[c].from_si(experiment.measured[c][i])));
-    }
-    if (!text.empty()) channels.emplace_back(model.channels[c].name, std::move(text));
-  }
-  std::sort(channels.begin(), channels.end());
-  std::string all;
-  for (auto const& [name, text] : channels) all += name + "\n" + text;
-  return sha256(all);
-}
-
 // SHA-256 of what the model is given beside the measured samples: of each input its column, unit and rule, and the constants of the
 // experiment. Equal digests and equal files mean the same inputs.
 std::string inputs_digest(DataBlock const& block, ExperimentUse const& use, Model const& model) {
@@ -118,6 +99,23 @@ Findings data_findings(CheckedFile const& file, ExperimentData const& data, Mode
 }
 
 }  // namespace
+
+std::string samples_digest(Experiment const& experiment, Model const& model) {
+  std::vector<std::pair<std::string, std::string>> channels;  // by name: models may declare them in any order
+  for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
+    std::string text;
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
+      if (!experiment.is_scored(c, i)) continue;
+      text += fmt::format("{} {}\n", experiment.first_row + static_cast<int>(i),
+                          shortest(model.channels[c].from_si(experiment.measured[c][i])));
+    }
+    if (!text.empty()) channels.emplace_back(model.channels[c].name, std::move(text));
+  }
+  std::sort(channels.begin(), channels.end());
+  std::string all;
+  for (auto const& [name, text] : channels) all += name + "\n" + text;
+  return sha256(all);
+}
 
 bool tells_of_data(FindingCode code) {
   return code == FindingCode::looks_missing || code == FindingCode::column_constant || code == FindingCode::time_gap;

@@ -6,6 +6,10 @@
 
 namespace sysid {
 
+/// SHA-256 of the measured samples that a likelihood reads: channels by name, each sample with its row, in the channel's declared
+/// unit. Equal digests mean densities of the same numbers, which alone can be compared.
+std::string samples_digest(Experiment const& experiment, Model const& model);
+
 /// Whether a finding is one of the numbers of a record, whichever task reads it.
 bool tells_of_data(FindingCode code);
 

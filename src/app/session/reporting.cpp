@@ -234,7 +234,8 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
                                            std::string const& verb) {
   auto const folder = session.result_folder(task);
   auto const summary = nlohmann::json::parse(read_whole_summary(folder));
-  return interpreted(folder / "summary.json", [&] { return otherwise(session, task, seed, verb.empty() ? verb_of(task) : verb, summary); });
+  return interpreted(folder / "summary.json",
+                     [&] { return otherwise(session, task, seed, verb.empty() ? verb_of(task) : verb, summary); });
 }
 
 }  // namespace sysid

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/session/preconditions.hpp"
+#include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
 #include "core/system/digest.hpp"
 #include "syntax/unparse.hpp"
@@ -99,7 +100,8 @@ std::optional<Diagnostic> refused(Session&, Task const& task) { return refusal(t
 namespace predict {
 
 PredictTask const& of(Task const& task) { return std::get<PredictTask>(task.what); }
-Task const& subject(CheckedFile const& file, Task const& task) { return file.tasks[static_cast<std::size_t>(of(task).fit)]; }
+Task const& task_at(CheckedFile const& file, int index) { return file.tasks[static_cast<std::size_t>(index)]; }
+Task const& subject(CheckedFile const& file, Task const& task) { return task_at(file, of(task).fit); }
 Experiments experiments(Task const& task) { return of(task).experiments; }
 std::vector<TaskData> data(CheckedFile const& file, Task const& task) {
   PredictTask const& what = of(task);
@@ -108,7 +110,9 @@ std::vector<TaskData> data(CheckedFile const& file, Task const& task) {
     all.push_back({&model_of(file, fitted.model), &experiments, what.start, what.prediction, fitted.solver});
   };
   Task const& from = subject(file, task);
-  if (kind_of(from) == TaskKind::select)
+  if (what.averages())
+    for (PredictTask const& member : what.members) add(fit::of(task_at(file, member.fit)), member.experiments);
+  else if (kind_of(from) == TaskKind::select)
     for (std::size_t c = 0; c < select::of(from).fits.size(); ++c) add(select::of(from).fits[c], what.candidate_experiments[c]);
   else
     add(fit::of(from), what.experiments);
@@ -119,14 +123,63 @@ std::string name(Session const& session, Task const& task) {
   return task_row(from).name(session, from);
 }
 std::string digest(Session const& session, Task const& task) {
+  std::string all;
+  for (PredictTask const& member : of(task).members) all += fit::digest(session, task_at(session.file, member.fit));
+  if (!all.empty()) return sha256(all);
   Task const& from = subject(session.file, task);
   return task_row(from).digest(session, from);
 }
-std::vector<int> needs(Task const& task) { return {of(task).fit}; }
+std::vector<int> needs(Task const& task) {
+  std::vector<int> all;
+  for (PredictTask const& member : of(task).members) all.push_back(member.fit);
+  return all.empty() ? std::vector{of(task).fit} : all;
+}
+
+/// What a fit was, or will be, fitted to; nothing where its data are not there, as of a fit whose results are kept.
+std::optional<std::vector<std::string>> samples_of(Session& session, FitTask const& what) {
+  std::vector<std::string> digests;
+  try {
+    for (ExperimentData const& each : data_of_fit(session, what))
+      digests.push_back(samples_digest(each.experiment, model_of(session.file, what.model)));
+  } catch (IoError const&) {  // the fit says so itself
+    return std::nullopt;
+  } catch (UserError const&) {
+    return std::nullopt;
+  }
+  return digests;
+}
+std::optional<Diagnostic> refused(Session& session, Task const& task) {
+  PredictTask const& what = of(task);
+  if (!what.averages() || what.weights == AverageWeights::equal) return std::nullopt;
+  Task const& first = subject(session.file, task);
+  auto const samples = samples_of(session, fit::of(first));
+  for (PredictTask const& member : what.members) {
+    Task const& other = task_at(session.file, member.fit);
+    auto const own = samples_of(session, fit::of(other));
+    if (!samples || !own || own == samples) continue;
+    return Diagnostic{Severity::error,
+                      "E6705",
+                      fmt::format("`{}` and `{}` are fitted to different samples: {} cannot weigh them", first.name, other.name,
+                                  title(what.weights)),
+                      Label{task.span, {}},
+                      {},
+                      fmt::format("fit both to the same rows, channels and units, such as `to {}`; the rows begin after the "
+                                  "longest lag of all models; or "
+                                  "write `weights = equal`",
+                                  data_names(session.file, fit::of(first).experiments))};
+  }
+  return std::nullopt;
+}
 
 }  // namespace predict
 
 }  // namespace
+
+std::string predicted_names(CheckedFile const& file, PredictTask const& what) {
+  std::string names = predict::task_at(file, what.fit).name;
+  for (std::size_t k = 1; k < what.members.size(); ++k) names += ", " + predict::task_at(file, what.members[k].fit).name;
+  return names;
+}
 
 std::span<TaskRow const> task_rows() {
   static constexpr TaskRow rows[] = {
@@ -163,7 +216,7 @@ std::span<TaskRow const> task_rows() {
        .data = &predict::data,
        .name = &predict::name,
        .digest = &predict::digest,
-       .refusal = &never_refused,
+       .refusal = &predict::refused,
        .needs = &predict::needs},
   };
   return rows;

@@ -38,6 +38,9 @@ struct TaskRow {
   std::vector<int> (*needs)(Task const&);
 };
 
+/// The tasks that a prediction is made from: "linear_fit, cubic_fit".
+std::string predicted_names(CheckedFile const& file, PredictTask const& what);
+
 std::span<TaskRow const> task_rows();
 /// The row for a task's kind.
 TaskRow const& task_row(Task const& task);

@@ -116,6 +116,7 @@ std::string predict_csv(Report const& report, Prediction const& prediction) {
     unit_texts.push_back(quantity.unit);
     add_band(quantity.name, quantity.response);
     if (!quantity.noisy.mean.empty()) add_band(quantity.name + "_noisy", quantity.noisy);
+    for (auto const& [part, column] : variance_columns(quantity.variance)) add_column(quantity.name + part, *column);
     if (!quantity.measured.empty()) add_column(quantity.name + "_measured", quantity.measured);
   }
   out += units(names, unit_texts) + header + ",scored\n";

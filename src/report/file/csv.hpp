@@ -1,6 +1,8 @@
 // Draws and predictions as CSV: comment lines (#) in the head alone, one header, shortest round-trip decimals.
 #pragma once
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "result/report.hpp"
 
@@ -19,7 +21,18 @@ std::string csv_head(Report const& report, std::string_view model = {});
 /// A chain in the form of Stan's CSV: lp__, accept_stat__, log_prior__, log_likelihood__, then the user's names. `chain` from 0.
 std::string draws_csv(Report const& report, int chain);
 
-/// t, then per quantity NAME_mean, _sd, _q2.5, _q97.5, with noise NAME_noisy_mean, ..., NAME_measured; last `scored` (0 or 1).
+/// The columns of variances that are there, by the end of their names: "_parameter_variance", "_model_variance", "_noise_variance".
+template <class Parts>
+auto variance_columns(Parts& parts) {
+  std::vector<std::pair<char const*, decltype(&parts.model)>> columns;
+  for (auto const& [name, column] : {std::pair("_parameter_variance", &parts.parameter), std::pair("_model_variance", &parts.model),
+                                     std::pair("_noise_variance", &parts.noise)})
+    if (!column->empty()) columns.emplace_back(name, column);
+  return columns;
+}
+
+/// t, then per quantity NAME_mean, _sd, _q2.5, _q97.5, with noise NAME_noisy_mean, ..., of an average over models the columns of
+/// variances, NAME_measured; last `scored` (0 or 1).
 std::string predict_csv(Report const& report, Prediction const& prediction);
 
 /// The scored samples, one a line: which series (channel of an experiment, named in the head), row of the file, and what the sample

@@ -180,8 +180,18 @@ void quantity_members(Way way, Quantity& quantity) {
   way("name", quantity.name)("unit", quantity.unit)("response", quantity.response)("noisy", quantity.noisy);
   way.length("measured", quantity.measured);
 }
-void to_json(json& out, PredictedQuantity const& quantity) { quantity_members(Writer(out), quantity); }
-void from_json(json const& stored, PredictedQuantity& quantity) { quantity_members(Reader(stored), quantity); }
+void to_json(json& out, PredictedQuantity const& quantity) {
+  quantity_members(Writer(out), quantity);
+  if (VarianceParts const& parts = quantity.variance; !parts.parameter.empty())
+    out["variance"] = {parts.parameter.size(), parts.model.size(), parts.noise.size()};
+}
+void from_json(json const& stored, PredictedQuantity& quantity) {
+  quantity_members(Reader(stored), quantity);
+  if (!stored.contains("variance")) return;
+  quantity.variance.parameter = column_of(stored.at("variance").at(0));
+  quantity.variance.model = column_of(stored.at("variance").at(1));
+  quantity.variance.noise = column_of(stored.at("variance").at(2));
+}
 
 template <class Way, class Along>
 void prediction_members(Way way, Along& prediction) {

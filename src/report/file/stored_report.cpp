@@ -80,6 +80,7 @@ void read_prediction(fs::path const& path, Prediction& prediction) {
     };
     band(quantity.name, quantity.response);
     if (!quantity.noisy.mean.empty()) band(quantity.name + "_noisy", quantity.noisy);
+    for (auto const& [part, column] : variance_columns(quantity.variance)) *column = columns.take(quantity.name + part, rows);
     if (!quantity.measured.empty()) quantity.measured = columns.take(quantity.name + "_measured", rows);
   }
   std::vector<double> const scored = columns.take("scored", rows);

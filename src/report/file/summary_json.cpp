@@ -184,6 +184,30 @@ Json fit(Report const& report) {
   return out;
 }
 
+Json scores(AverageScores const& scores) {
+  return {{"log_score", scores.log_score}, {"nmse", scores.nmse}, {"rmse", scores.rmse}, {"coverage_95", scores.coverage_95}};
+}
+
+/// Members by their weights, and on each channel of each record the scores of the average beside theirs.
+Json average(AverageReport const& average) {
+  Json out = {
+      {"weights", word(average.weights)}, {"members", Json::array()}, {"scores", Json::object()}, {"variance", Json::object()}};
+  for (AveragedMember const& member : average.members) {
+    out["members"].push_back({{"fit", member.fit}, {"model", member.model}, {"weight", member.weight}, {"draws", member.draws}});
+    if (member.error) out["members"].back()["weight_error"] = *member.error;
+    if (!member.counted.empty()) out["members"].back()["counted_with"] = member.counted;
+  }
+  for (AveragedChannel const& channel : average.channels) {
+    Json& entry = out["scores"][channel.experiment][channel.channel];
+    entry = {{"samples", channel.samples}, {"average", scores(channel.average)}, {"members", Json::object()}};
+    for (std::size_t k = 0; k < channel.members.size(); ++k) entry["members"][average.members[k].fit] = scores(channel.members[k]);
+  }
+  for (VarianceShares const& each : average.shares)
+    out["variance"][each.experiment][each.quantity] = {
+        {"unit", each.unit}, {"sd", each.sd}, {"parameter", each.parameter}, {"model", each.model}, {"noise", each.noise}};
+  return out;
+}
+
 /// Those that do not apply say why.
 Json checks(std::vector<CheckRecord> const& records) {
   Json out = Json::array();
@@ -215,6 +239,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
     out["populations"] = populations_json(*report.selection);
   }
   if (report.discovery) out["discovery"] = discovery_json(*report.discovery);
+  if (report.average) out["average"] = average(*report.average);
   if (report.calibration) out["calibration"] = calibration_json(*report.calibration);
   if (has_verdict(report)) out["verdict"] = {{"pass", grade(report) != Severity::error}, {"text", verdict_headline(report)}};
   out["findings"] = Json::array();

@@ -18,6 +18,7 @@ std::string score_title(std::string const& name) {
   if (name == "nmse") return "NMSE [%]";
   if (name == "nmse_left_out") return "NMSE, leave-one-out [%]";
   if (name == "rmse") return "RMSE";
+  if (name == "log_score") return "log score";
   if (name == "chi_squared_per_sample") return "χ² per sample";
   if (name == "coverage_95") return "share inside the 95 % band";
   if (name == "coverage_3sd") return "share within 3 sd";

@@ -147,6 +147,8 @@ std::string score_words(Report const& report, std::vector<FitLine> const& lines,
     if (score == name)
       return say([at = expected](double value) { return std::fabs(value - at); },
                  [at = expected](Worst const& each) { return coverage_words(each, at); });
+  if (score == "log_score")
+    return "mean log predictive density of a sample: higher is better, to be compared on these samples alone";
   if (score == "chi_squared_per_sample")
     return say([](double value) { return std::fabs(std::log(std::max(value, 1e-300))); },
                [&](Worst const& each) {
