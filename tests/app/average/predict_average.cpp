@@ -1,0 +1,249 @@
+// Averages over fits of whole files: weights as `compare` has them, bands, the parts of their variance, scores, and what stands
+// between.
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "app/comparison/compare.hpp"
+#include "app/running.hpp"
+#include "app/tables.hpp"
+#include "core/numeric/random.hpp"
+#include "core/text/diagnostic.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+/// y = 0.5 + x + bend x^2 + noise of 0.3, 24 rows of training and 60 more.
+std::string rows(double bend) {
+  Stream stream({11, Purpose::test, 0, 0});
+  std::string text = "x,y\n";
+  for (int i = 0; i < 84; ++i) {
+    double const x = 4 * stream.uniform() - 2;
+    text += fmt::format("{},{}\n", x, 0.5 + x + bend * x * x + 0.3 * stream.normal());
+  }
+  return text;
+}
+
+std::string const models = R"(
+model line {
+  input x
+  parameter a ~ normal(0, sd = 2)
+  parameter b ~ normal(0, sd = 2)
+  parameter sigma ~ log_uniform(0.05, 5)
+  observe y ~ normal(a + b*x, sd = sigma)
+  derive slope = b
+}
+model parabola {
+  input x
+  parameter a ~ normal(0, sd = 2)
+  parameter b ~ normal(0, sd = 2)
+  parameter c ~ normal(0, sd = 2)
+  parameter sigma ~ log_uniform(0.05, 5)
+  observe y ~ normal(a + b*x + c*x^2, sd = sigma)
+}
+data table { file "table.csv"; input x = x; measure y = y; split train = rows 1..24, test = rows 25..84 }
+straight = fit line to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 1
+curved = fit parabola to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 2
+)";
+
+std::vector<std::pair<std::string, std::string>> const files = {{"table.csv", rows(0.12)}};
+
+json const& member(json const& summary, std::string const& fit) {
+  for (json const& each : summary.at("average").at("members"))
+    if (each.at("fit") == fit) return each;
+  throw std::out_of_range(fit);
+}
+
+json finding(json const& summary, std::string const& code) {
+  for (json const& each : summary.at("findings"))
+    if (each.at("code") == code) return each;
+  return nullptr;
+}
+
+std::string refusal(std::string const& text) {
+  try {
+    CaseRun const run(text, files);
+  } catch (UserError const& error) {
+    return error.diagnostic().code;
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("an average has the weights of compare, the law of total variance at each row, and scores beside its members'") {
+  CaseRun const run(models + R"(
+alone = predict curved on table.test with draws(300), seed = 5
+both = predict curved, straight on table.test with draws(300), seed = 5
+stacked = predict curved, straight on table.test with draws(300), weights = stacking, seed = 5
+)",
+                    files);
+  json const summary = run.summary("both"), alone = run.summary("alone");
+  auto const results = run.folder.path() / "results";
+  Comparison const comparison = compare({results / "curved", results / "straight"});
+  CHECK(member(summary, "curved").at("weight").get<double>() == doctest::Approx(*comparison.fits[0].probability));
+  CHECK(member(summary, "straight").at("weight").get<double>() == doctest::Approx(*comparison.fits[1].probability));
+  CHECK(member(run.summary("stacked"), "straight").at("weight").get<double>() ==
+        doctest::Approx(comparison.scores.fits[1].stacking).epsilon(1e-9));
+  double const w = member(summary, "straight").at("weight").get<double>();
+  CHECK(w > 0.01);  // else the average shows nothing
+  CHECK(w < 0.99);
+  std::string const csv = run.file("both/predict.csv");
+  auto const parameter = column(csv, "y_parameter_variance"), model = column(csv, "y_model_variance"),
+             noise = column(csv, "y_noise_variance"), sd = column(csv, "y_noisy_sd"), response = column(csv, "y_sd"),
+             mean = column(csv, "y_mean"), lower = column(csv, "y_noisy_q2.5"), upper = column(csv, "y_noisy_q97.5");
+  REQUIRE(parameter.size() == 84);
+  for (std::size_t i = 0; i < 84; ++i) {
+    CHECK(sd[i] * sd[i] == doctest::Approx(parameter[i] + model[i] + noise[i]).epsilon(1e-9));
+    CHECK(response[i] * response[i] == doctest::Approx(parameter[i] + model[i]).epsilon(1e-9));
+    CHECK(parameter[i] > 0);
+    CHECK(noise[i] > 0.04);  // sigma is about 0.3
+    CHECK(lower[i] < mean[i]);
+    CHECK(upper[i] > mean[i]);
+  }
+  // Quantities that only one model has are not averaged.
+  CHECK(csv.find("slope") == std::string::npos);
+  json const& scores = summary.at("average").at("scores").at("table.test").at("y");
+  CHECK(scores.at("samples") == 60);
+  // The first member's draws are those of its prediction alone.
+  CHECK(scores.at("members").at("curved").at("rmse").get<double>() ==
+        doctest::Approx(alone.at("fit").at("rmse").get<double>()).epsilon(1e-9));
+  CHECK(scores.at("average").at("rmse").get<double>() == doctest::Approx(summary.at("fit").at("rmse").get<double>()));
+  for (char const* name : {"curved", "straight"})
+    CHECK(scores.at("average").at("log_score").get<double>() >= scores.at("members").at(name).at("log_score").get<double>() +
+                                                                    std::log(member(summary, name).at("weight").get<double>()) -
+                                                                    1e-12);
+  json const& shares = summary.at("average").at("variance").at("table.test").at("y");
+  CHECK(shares.at("parameter").get<double>() + shares.at("model").get<double>() + shares.at("noise").get<double>() ==
+        doctest::Approx(1));
+  CHECK(finding(summary, "averaged_over_models").at("message").get<std::string>().starts_with("weights by evidence: "));
+  CHECK(run.result.out.find("Average and its members: y on table.test, 60 samples") != std::string::npos);
+}
+
+TEST_CASE("the log score of a member is the mean over rows of the log of its mean density") {
+  CaseRun const run(models + "both = predict curved, straight on table.test with draws(1), weights = equal, seed = 5\n", files);
+  // One draw per member, equally weighed: the densities are normal ones, known from the draw.
+  json const scores = run.summary("both").at("average").at("scores").at("table.test").at("y");
+  std::string const csv = run.file("both/predict.csv");
+  auto const noise = column(csv, "y_noise_variance"), mean = column(csv, "y_mean"), measured = column(csv, "y_measured"),
+             model = column(csv, "y_model_variance"), parameter = column(csv, "y_parameter_variance");
+  double const one = scores.at("members").at("curved").at("log_score"), other = scores.at("members").at("straight").at("log_score"),
+               both = scores.at("average").at("log_score");
+  CHECK(both >= std::min(one, other));
+  CHECK(both <= std::max(one, other) + std::log(2.0));
+  for (std::size_t i = 0; i < mean.size(); ++i) CHECK(parameter[i] == 0);
+  CHECK(*std::ranges::max_element(model) > 0);
+  CHECK(run.summary("both").at("average").at("members").at(0).at("draws") == 1);
+}
+
+TEST_CASE("a fit of the same model counts once, and an average of one model is its prediction") {
+  CaseRun const run(models + R"(
+again = fit line to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 3
+one = predict straight on table.test with draws(200), seed = 4
+two = predict straight, again on table.test with draws(200), weights = stacking, seed = 4
+)",
+                    files);
+  json const summary = run.summary("two");
+  CHECK(member(summary, "straight").at("weight") == 1);
+  CHECK(member(summary, "again").at("weight") == 0);
+  CHECK(member(summary, "again").at("counted_with") == "straight");
+  CHECK_FALSE(finding(summary, "counted_once").is_null());
+  for (char const* name : {"y_mean", "y_q2.5", "y_q97.5", "y_noisy_q2.5", "y_noisy_q97.5"}) {
+    auto const alone = column(run.file("one/predict.csv"), name), averaged = column(run.file("two/predict.csv"), name);
+    REQUIRE(alone.size() == averaged.size());
+    for (std::size_t i = 0; i < alone.size(); ++i) CHECK(averaged[i] == doctest::Approx(alone[i]).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("units of the members differ and the average is in one") {
+  std::string text = R"(
+model metres { input x; parameter a [m] ~ normal(0, sd = 3); observe y [m] ~ normal(a + x*1[m], sd = 0.3 [m]) }
+model centimetres { input x; parameter a [cm] ~ normal(0, sd = 300); observe y [cm] ~ normal(a + x*100 [cm], sd = 30 [cm]) }
+data table { file "table.csv"; input x = x; measure y = y [m]; split train = rows 1..24, test = rows 25..84 }
+one = fit metres to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 1
+other = fit centimetres to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 2
+both = predict one, other on table.test with draws(300), weights = equal, seed = 5
+)";
+  CaseRun const run(text, files);
+  json const scores = run.summary("both").at("average").at("scores").at("table.test").at("y");
+  double const one = scores.at("members").at("one").at("log_score"), other = scores.at("members").at("other").at("log_score");
+  CHECK(other == doctest::Approx(one).epsilon(0.02));  // one model in two units
+  CHECK(scores.at("members").at("other").at("rmse").get<double>() ==
+        doctest::Approx(scores.at("members").at("one").at("rmse").get<double>()).epsilon(0.02));
+}
+
+TEST_CASE("models that look back by different numbers of rows are averaged on the rows that both predict") {
+  std::string text = R"(
+model one_back { time discrete 1 [s]; parameter p ~ normal(0, sd = 1); parameter s ~ log_uniform(0.05, 5)
+  observe y ~ normal(p*lag(measured(y), 1), sd = s) }
+model two_back { time discrete 1 [s]; parameter p ~ normal(0, sd = 1); parameter q ~ normal(0, sd = 1); parameter s ~ log_uniform(0.05, 5)
+  observe y ~ normal(p*lag(measured(y), 1) + q*lag(measured(y), 2), sd = s) }
+data series { file "table.csv"; step 1 [s]; measure y = y; split train = rows 3..40, test = rows 41..84 }
+one = fit one_back to series.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 1
+two = fit two_back to series.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 2
+rest = predict one, two on series.test with draws(200), seed = 5
+whole = predict two, one on series with draws(200), seed = 5
+)";
+  CaseRun const run(text, files);
+  CHECK(run.summary("rest").at("average").at("scores").at("series.test").at("y").at("samples") == 44);
+  CHECK(run.summary("whole").at("average").at("scores").at("series").at("y").at("samples") == 82);
+}
+
+TEST_CASE("an average needs results of all its fits, and a result of other samples is refused") {
+  std::string const task = "both = predict curved, straight on table.test with draws(50), seed = 5\n";
+  TemporaryFolder const folder;
+  write_file(folder.path() / "table.csv", files.front().second);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  auto const run = [&](std::string const& text, std::vector<std::string> const& verbs) {
+    try {
+      return std::to_string(run_text(folder.path() / "case.sysid", text, options, verbs).exit);
+    } catch (UserError const& error) {
+      return error.diagnostic().code;
+    }
+  };
+  CHECK(run(models + task, {"predict"}) == "E6202");
+  CHECK(run(models + task, {"fit"}) == "0");
+  CHECK(run(models + task, {"predict"}) == "0");
+  json const before = json::parse(read_file(options.output / "both/summary.json"));
+  // Only the second fit is run again: the average is one of an earlier result.
+  CHECK(before.at("versions").at("made_from") == "curved");
+  CHECK(before.at("versions").at("made_from_2") == "straight");
+  CHECK(refusal(with(models, "straight = fit line to table.train", "straight = fit line to table") + task) == "E6705");
+  CHECK(refusal(with(models, "straight = fit line to table.train", "straight = fit line to table") +
+                with(task, "draws(50)", "draws(50), weights = equal")) == "");
+}
+
+TEST_CASE("what is wrong with one fit is said with its name") {
+  CaseRun const run(
+      with(models, "curved = fit parabola to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4)",
+           "curved = fit parabola to table.train with mh(samples = 30, burn_in = 10, thin = 1, chains = 2)") +
+          "both = predict curved, straight on table with draws(50), seed = 5\n",
+      files);
+  json const summary = run.summary("both");
+  json const doubtful = finding(summary, "from_doubtful_fit");
+  REQUIRE_FALSE(doubtful.is_null());
+  CHECK(doubtful.at("severity") == "error");
+  CHECK(doubtful.at("names").at(0) == "curved");
+  CHECK(summary.at("verdict").at("pass") == false);
+  CHECK(finding(summary, "fitted_rows_predicted").at("message").get<std::string>().find("`") != std::string::npos);
+}
+
+TEST_CASE("the bands of a selection have the parts of parameters and models, which sum to their variance") {
+  CaseRun const run(models + R"(
+candidates both { line; parabola }
+selection = select both to table.train with abc_smc(particles = 200, populations = 3), seed = 1
+forecast = predict selection on table.test with draws(200), seed = 1
+)",
+                    files);
+  std::string const csv = run.file("forecast/predict.csv");
+  auto const sd = column(csv, "y_sd"), parameter = column(csv, "y_parameter_variance"), model = column(csv, "y_model_variance");
+  REQUIRE(sd.size() == 84);
+  for (std::size_t i = 0; i < sd.size(); ++i) CHECK(parameter[i] + model[i] == doctest::Approx(sd[i] * sd[i]).epsilon(1e-9));
+  CHECK(*std::ranges::max_element(model) > 0);
+  CHECK(csv.find("y_noise_variance") == std::string::npos);
+}
