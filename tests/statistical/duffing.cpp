@@ -1,20 +1,15 @@
 // The Duffing case over many records: truth inside the posterior as often as it should be, widths as known, bands that cover.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/numeric/statistics.hpp"
 #include "fits.hpp"
 
 using namespace sysid;
 
 namespace {
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 std::map<std::string, double> const duffing_truth = {{"m", 1}, {"c", 20}, {"k", 1e4}, {"k3", 5e9}};
 
