@@ -38,6 +38,7 @@ double quantile(double probability, Tail tail, Numbers a) {
   return a[0] + (tail == Tail::lower ? a[1] : -a[1]) * z;
 }
 double draw(Stream& stream, Numbers a) { return quantile(stream.uniform(), Tail::lower, a); }
+NoiseMoments moments(Numbers a) { return {a[0], a[1] * a[1] * std::numbers::pi * std::numbers::pi / 3}; }
 
 std::string_view refuse(Numbers a) { return positive(a[1]) ? std::string_view() : "scale or sd must be positive"; }
 
@@ -56,7 +57,8 @@ DistributionRow logistic_distribution() {
           .draw = &draw,
           .quantile = &quantile,
           .refuse = &refuse,
-          .summary = "bell-shaped, tails heavier than normal, by scale or sd"};
+          .summary = "bell-shaped, tails heavier than normal, by scale or sd",
+          .moments = &moments};
 }
 
 }  // namespace sysid
@@ -95,4 +97,6 @@ TEST_CASE("the example distribution has the integral 1, its tails, and draws fro
   // E |x - location| = 2 log(2) scale, and E (x - location)^2 = (pi scale)^2/3.
   double const mean = 2 * std::numbers::ln2 * 0.8, variance = std::pow(std::numbers::pi * 0.8, 2) / 3 - mean * mean;
   CHECK(std::fabs(distance - mean) < 4 * std::sqrt(variance / count));
+  CHECK(row.moments(arguments).mean == 0.3);
+  CHECK(row.moments(arguments).variance == doctest::Approx(std::pow(std::numbers::pi * 0.8, 2) / 3));
 }
