@@ -16,5 +16,6 @@
   F(inverse_gamma)             \
   F(beta)                      \
   F(flat)                      \
+  F(log_flat)                  \
   F(poisson)                   \
   F(negative_binomial)

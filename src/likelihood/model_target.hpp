@@ -39,6 +39,7 @@ class ModelTarget : public Target {
   void log_prior(ConstLanes theta, std::span<double> out, bool jacobian = true) const override {
     space_->log_prior(theta, out, jacobian);
   }
+  void log_reference(ConstLanes theta, std::span<double> out) const override { space_->log_reference(theta, out); }
   void log_prior_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, bool jacobian = true) const override;
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override;
   void expect_values(double count) const override;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/numeric/not_finite.hpp"
 #include "core/text/diagnostic.hpp"
@@ -110,7 +111,7 @@ void ParameterSpace::compile() {
       return nodes[static_cast<std::size_t>(this->row(e, node.index))];
     };
   };
-  NodeId with_jacobian = graph.constant(0), without = graph.constant(0);
+  NodeId with_jacobian = graph.constant(0), without = graph.constant(0), improper = graph.constant(0);
   std::vector<Constrained> constrained;
   std::vector<NodeId> scales;
   infos_.resize(sampled_.size());
@@ -132,7 +133,9 @@ void ParameterSpace::compile() {
         member != nullptr ? log_density_of_member(graph, use, *member, coordinates[k]) : log_density(graph, use, moved.value),
         scale);
     without = graph.add(without, density);
-    with_jacobian = graph.add(with_jacobian, graph.add(density, graph.subtract(moved.log_jacobian, scale)));
+    NodeId const on_line = graph.add(density, graph.subtract(moved.log_jacobian, scale));
+    with_jacobian = graph.add(with_jacobian, on_line);
+    if (!use.row->proper) improper = graph.add(improper, on_line);
 
     std::vector<NodeId> known = leaves;
     for (std::size_t i = 0; i < rows_.size(); ++i)
@@ -153,8 +156,14 @@ void ParameterSpace::compile() {
       return constant ? row.from_si(*constant) : fallback;
     };
     constrained.push_back({r, static_cast<int>(k), bounds, moved.log_jacobian, member, population});
-    infos_[k] = {row.name, row.unit_text(), number(bounds.lower, -infinity), number(bounds.upper, infinity),
-                 model_.parameters[static_cast<std::size_t>(row.parameter)].coefficient};
+    infos_[k] = {row.name,
+                 row.unit_text(),
+                 number(bounds.lower, -infinity),
+                 number(bounds.upper, infinity),
+                 model_.parameters[static_cast<std::size_t>(row.parameter)].coefficient,
+                 use.row->proper                ? Improper::no
+                 : bounds.lower || bounds.upper ? Improper::half_line
+                                                : Improper::line};
   };
   for (int const p : model_.sampling_order) {
     if (!model_.parameters[static_cast<std::size_t>(p)].per_experiment)
@@ -167,6 +176,7 @@ void ParameterSpace::compile() {
   scales_ = compile_kernel(graph, coordinates, scales);
   NodeId const densities[] = {with_jacobian, without};
   prior_ = compile_kernel(graph, coordinates, densities);
+  improper_ = compile_kernel(graph, coordinates, {&improper, 1});
   densities_ = graph;
   density_ = with_jacobian;
   compile_slopes(graph, constrained, coordinates, value);
@@ -208,7 +218,8 @@ void ParameterSpace::compile_slopes(Graph& graph, std::span<Constrained const> c
 }
 
 template <class Place>
-void ParameterSpace::draw(std::span<int const> order, Place const& place, Lanes values, int lane, Stream& stream) const {
+void ParameterSpace::draw(std::span<int const> order, Place const& place, bool by_reference, Lanes values, int lane,
+                          Stream& stream) const {
   auto const number = [&](NodeId node) {
     if (auto const constant = model_.graph.constant_value(node)) return *constant;
     return model_.graph.evaluate(node, [&](NodeId leaf) { return values(place(model_.graph[leaf].index), lane); });
@@ -217,8 +228,61 @@ void ParameterSpace::draw(std::span<int const> order, Place const& place, Lanes 
     Distribution const& prior = *model_.parameters[static_cast<std::size_t>(p)].prior;
     std::vector<double> arguments;
     for (NodeId const argument : prior.arguments) arguments.push_back(number(argument));
-    values(place(p), lane) = sysid::draw(*prior.row, arguments, prior.lower ? number(*prior.lower) : -infinity,
-                                         prior.upper ? number(*prior.upper) : infinity, stream);
+    double const lower = prior.lower ? number(*prior.lower) : -infinity, upper = prior.upper ? number(*prior.upper) : infinity;
+    if (ImproperReference const* const reference = by_reference && !prior.row->proper ? reference_of(place(p)) : nullptr) {
+      double const natural = prior.row->lower == nullptr ? -infinity : 0;
+      values(place(p), lane) = draw_reference(*reference, place(p), std::max(lower, natural), upper, stream);
+      continue;
+    }
+    values(place(p), lane) = sysid::draw(*prior.row, arguments, lower, upper, stream);
+  }
+}
+
+ParameterSpace ParameterSpace::with_references(std::vector<ImproperReference> references) const {
+  ParameterSpace space(model_, experiments_, standardised_);
+  space.references_ = std::move(references);
+  return space;
+}
+
+ImproperReference const* ParameterSpace::reference_of(int row) const {
+  auto const found = std::find_if(references_.begin(), references_.end(), [&](ImproperReference const& each) {
+    return sampled_[static_cast<std::size_t>(each.coordinate)] == row;
+  });
+  return found == references_.end() ? nullptr : &*found;
+}
+
+double ParameterSpace::draw_reference(ImproperReference const& reference, int row, double lower, double upper,
+                                      Stream& stream) const {
+  bool const above = std::isfinite(lower), below = std::isfinite(upper);
+  FittedParameter const& of = rows_[static_cast<std::size_t>(row)];
+  if (reference.kind == ImproperReference::Kind::normal) {
+    double const u = reference.centre + reference.width * stream.normal();
+    if (above && below) return lower + (upper - lower) / (1 + elementary::exp(-u));
+    return above ? lower + elementary::exp(u) : below ? upper - elementary::exp(u) : u;
+  }
+  if (above && below) return lower + (upper - lower) * stream.uniform();
+  double const exponent = reference.centre + reference.width * (2 * stream.uniform() - 1);
+  double const distance = elementary::exp(std::numbers::ln10 * exponent);
+  if (above || below) {
+    double const si = of.to_si(distance);
+    return above ? lower + si : upper - si;
+  }
+  return of.to_si(stream.uniform() < 0.5 ? distance : -distance);
+}
+
+/// Nothing is normalised for `decades`, which no density is asked of.
+void ParameterSpace::log_reference(ConstLanes theta, std::span<double> out) const {
+  log_prior(theta, out, true);
+  LaneArray improper(1, theta.width());
+  run(improper_, theta, improper);
+  for (int w = 0; w < theta.width(); ++w) {
+    double& sum = out[static_cast<std::size_t>(w)];
+    sum -= improper(0, w);
+    for (ImproperReference const& each : references_) {
+      double const z = (theta(each.coordinate, w) - each.centre) / each.width;
+      sum -= 0.5 * z * z + elementary::log(each.width) + 0.5 * elementary::log(2 * std::numbers::pi);
+    }
+    if (std::isnan(sum)) sum = -infinity;
   }
 }
 
@@ -237,7 +301,7 @@ void ParameterSpace::sample_prior(StreamKey key, Lanes theta) const {
           for (int e = 0; e < (own ? static_cast<int>(experiments_.size()) : 1); ++e)
             if (!rows_[static_cast<std::size_t>(row(e, p))].value)
               draw(
-                  std::span(&p, 1), [&](int index) { return row(e, index); }, values, w, stream);
+                  std::span(&p, 1), [&](int index) { return row(e, index); }, true, values, w, stream);
         }
         break;
       } catch (UserError const&) {
@@ -340,7 +404,7 @@ LaneArray ParameterSpace::of_new_experiment(ConstLanes declared, std::span<std::
   for (int w = 0; w < declared.width() && !open.empty(); ++w) {
     Stream stream(key.with_index(key.index + static_cast<std::uint64_t>(w)));
     draw(
-        open, [](int index) { return index; }, parameters, w, stream);
+        open, [](int index) { return index; }, false, parameters, w, stream);
   }
   return parameters;
 }

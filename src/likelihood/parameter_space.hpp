@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/numeric/random.hpp"
+#include "likelihood/improper_reference.hpp"
 #include "likelihood/member_coordinate.hpp"
 #include "likelihood/target.hpp"
 #include "model/model.hpp"
@@ -97,12 +98,21 @@ class ParameterSpace {
   /// UserError where the prior is impossible.
   LaneArray of_new_experiment(ConstLanes declared, std::span<std::optional<double> const> constants, StreamKey key) const;
 
+  /// The same with something in place of draws for each coordinate whose prior is improper. Without it `sample_prior` throws
+  /// UserError (E2114) where one is.
+  ParameterSpace with_references(std::vector<ImproperReference> references) const;
+  std::vector<ImproperReference> const& references() const { return references_; }
+  /// log density [W] on R^D of what `sample_prior` draws, which is the prior where all of it is proper.
+  void log_reference(ConstLanes theta, std::span<double> out) const;
+
   /// What `--dump program` prints.
   std::string dump() const;
 
  private:
   void lay_out();
   void compile();
+  ImproperReference const* reference_of(int row) const;
+  double draw_reference(ImproperReference const& reference, int row, double lower, double upper, Stream& stream) const;
   MemberCoordinate const* standardised(int coordinate) const;
   /// A value between its bounds, expressions of the rows that they read.
   struct Constrained {
@@ -115,9 +125,10 @@ class ParameterSpace {
   /// constrained: in the order in which they read one another. value: of the rows, from the coordinates.
   void compile_slopes(Graph& graph, std::span<Constrained const> constrained, std::span<NodeId const> coordinates,
                       std::span<NodeId const> value);
-  /// Draws the model parameters `order` of one lane, reading and writing parameter p at values(place(p), lane).
+  /// Draws the model parameters `order` of one lane, reading and writing parameter p at values(place(p), lane). by_reference:
+  /// places are rows, and references stand for improper priors.
   template <class Place>
-  void draw(std::span<int const> order, Place const& place, Lanes values, int lane, Stream& stream) const;
+  void draw(std::span<int const> order, Place const& place, bool by_reference, Lanes values, int lane, Stream& stream) const;
 
   Model model_;
   std::vector<ExperimentMember> experiments_;
@@ -129,11 +140,13 @@ class ParameterSpace {
   std::vector<Slope> slopes_;
   std::vector<Member> members_;
   std::vector<MemberCoordinate> standardised_;
+  std::vector<ImproperReference> references_;
   Kernel constrain_;    // u [D] -> values
   Kernel slope_;        // u [D] -> slopes
   Kernel unconstrain_;  // values -> u [D]
   Kernel scales_;       // u [D] -> scales of the members' priors
   Kernel prior_;        // u [D] -> log prior on R^D, log prior of the declared parameters
+  Kernel improper_;     // u [D] -> what coordinates with an improper prior have in the first of these
   Graph densities_;     // the first of these as an expression of the coordinates
   NodeId density_ = 0;
   Lazily<std::optional<Kernel>> prior_gradient_;  // u [D] -> log prior on R^D, its gradient

@@ -35,6 +35,8 @@ class Target {
   /// log likelihood of theta [P x W]. out: [W], -infinity where a solve failed, never NaN, never an exception; the class and place
   /// of each failure is added to `ledger`. Lane w depends on column w alone, whatever the width, threads or instruction set.
   virtual void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const = 0;
+  /// log density of theta [P x W] of what `sample_prior` draws: the prior, with its Jacobian, where it is proper. out: [W].
+  virtual void log_reference(ConstLanes theta, std::span<double> out) const { log_prior(theta, out); }
   /// Says that about so many values of the log likelihood will be wanted: what makes many of them cheaper may be done early.
   virtual void expect_values(double) const {}
   /// Number R of residual rows.

@@ -90,6 +90,8 @@ constexpr FindingRow rows[] = {
     {FindingCode::prior_contradicted, "prior_contradicted", warning},
     {FindingCode::optimum_alone, "optimum_alone", note},
     {FindingCode::searched_near, "searched_near", note},
+    {FindingCode::improper_posterior, "improper_posterior", error},
+    {FindingCode::propriety_not_checked, "propriety_not_checked", warning},
     {FindingCode::outside_range, "outside_range", warning},
     {FindingCode::basis_inaccurate, "basis_inaccurate", warning},
     {FindingCode::far_outside, "far_outside", warning},

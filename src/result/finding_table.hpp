@@ -89,6 +89,8 @@ enum class FindingCode {
   prior_contradicted,
   optimum_alone,
   searched_near,
+  improper_posterior,
+  propriety_not_checked,
   outside_range,
   basis_inaccurate,
   far_outside,

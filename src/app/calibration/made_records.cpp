@@ -97,6 +97,13 @@ std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task cons
         fmt::format("`{}` cannot be calibrated: records of Gaussian processes that are integrated out cannot be made yet",
                     task.name),
         "calibrate a fit of the same model without `gp(...)`, or with a function that is estimated as a finite sum");
+  if (Parameter const* improper = session.file.models[static_cast<std::size_t>(what.model)].improper())
+    return refused(
+        task,
+        fmt::format("`{}` cannot be calibrated: records are made from draws of the prior, which needs proper priors, but "
+                    "the prior of `{}` is {}",
+                    task.name, improper->name, improper->prior->row->name),
+        fmt::format("give `{}` a wide but proper prior", improper->name));
   // A made sample would still be read as it was measured.
   for (ExperimentData const& each : data) {
     DataBlock const& block = session.file.data[static_cast<std::size_t>(each.use.data)];

@@ -49,6 +49,11 @@ std::vector<PriorInfo> priors_of_choice(Report const& report) {
   return chosen;
 }
 
+std::string without_evidence(Parameter const& improper) {
+  return fmt::format("the prior of `{}` is improper ({}): an evidence would have an arbitrary factor", improper.name,
+                     improper.prior->row->name);
+}
+
 class Fit {
  public:
   Fit(Session& session, int index, Task const& task, FitTask const& what)
@@ -82,7 +87,10 @@ class Fit {
     if (stored) session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);
     if (stored && stored->contains("preparation")) {
       preparation_ = checkpoint_.preparation(*stored);
-      checkpoint_.reading([&] { likelihood_->standardise(preparation_.standardised); });
+      checkpoint_.reading([&] {
+        likelihood_->refer(preparation_.references);
+        likelihood_->standardise(preparation_.standardised);
+      });
       if (stored->contains("state")) context.resume = std::make_shared<json const>(stored->at("state"));
       if (stored->contains("again") && !go_on_choosing(stored->at("again")))
         return stop_late(session_, task_, checkpoint_, preparation_);
@@ -300,6 +308,8 @@ class Fit {
   }
 
   Evidence evidence_of(FitResult const& result, Target const& target, Ledger& extra) const {
+    if (Parameter const* improper = model_.improper(); improper != nullptr && backend_->objective_kind != ObjectiveKind::likelihood)
+      return {{}, without_evidence(*improper)};
     EvidenceTask const asked{
         what_.evidence, backend_->objective_kind, preparation_.modes, result.draws, preparation_.ledger.solves() + ledger_.solves(),
         seed_};

@@ -36,6 +36,9 @@ class FitLikelihood {
   /// The coordinates of these members in all targets that are made from here on. Throws checkpoint::Mismatch where there are no
   /// such members.
   virtual void standardise(std::vector<MemberCoordinate> const& members) = 0;
+  /// What stands in the place of draws where priors are improper, in all spaces and targets from here on. Throws
+  /// checkpoint::Mismatch where no prior of that coordinate is.
+  virtual void refer(std::vector<ImproperReference> const& references) = 0;
   /// solver: of the task's method, or of any other to try.
   virtual std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution) const = 0;

@@ -6,6 +6,7 @@
 #include "app/fit/advice.hpp"
 #include "app/fit/hierarchies.hpp"
 #include "app/preflight/check_file.hpp"
+#include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
@@ -15,6 +16,8 @@
 #include "data/start_rule.hpp"
 #include "likelihood/first_rows.hpp"
 #include "search/hierarchy/standardised.hpp"
+#include "search/improper/propriety.hpp"
+#include "search/improper/references.hpp"
 
 namespace sysid {
 namespace {
@@ -48,6 +51,7 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   print_findings(session_, task_, ahead);
 
   preparation.solver = what_.solver;
+  if (!find_references(context, preparation)) return false;
   std::optional<SearchSolver> solver;
   if (what_.refine_solver && model.integrated()) {
     solver = choose_search_solver(context, preparation);
@@ -66,6 +70,7 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   }
   SolverSettings const from = coarsest(found, preparation);
   if (!follow_members(found, context, preparation)) return false;
+  if (!require_proper(found, preparation, context)) return false;
   preparation.modes = std::move(found.modes);
   preparation.findings = std::move(found.findings);
   preparation.findings.insert(preparation.findings.end(), ahead.begin(), ahead.end());
@@ -75,6 +80,39 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   MakeTarget const make = [this](SolverSettings const& tried) { return target(tried); };
   if (what_.refine_solver && !refine_solver(session_, task_, make, objective_kind_, from, preparation, context)) return false;
   for (Finding& each : preparation.findings) advise(situation, each);
+  return true;
+}
+
+// Where the search looks for parameters whose prior is improper. False: interrupted.
+bool FitPreparation::find_references(RunContext const& context, Preparation& preparation) {
+  std::vector<int> const coordinates = improper_coordinates(likelihood_.space().infos());
+  if (coordinates.empty()) return true;
+  preparation.references = unbounded::find_references(
+      [&](std::vector<ImproperReference> const& references) {
+        likelihood_.refer(references);
+        return target(what_.solver);
+      },
+      coordinates, context.seed, context.interrupted);
+  if (context.stop_requested()) return false;
+  if (preparation.references.empty()) {
+    checkpoint_.drop();
+    throw UserError(no_result(task_, unbounded::no_finite_start_of_improper()));
+  }
+  likelihood_.refer(preparation.references);
+  return true;
+}
+
+// An improper posterior has no draws. False: interrupted.
+bool FitPreparation::require_proper(SearchResult& found, Preparation const& preparation, RunContext const& context) {
+  if (preparation.references.empty() || objective_kind_ == ObjectiveKind::likelihood) return true;
+  unbounded::Propriety propriety =
+      unbounded::check_propriety(*target(preparation.solver), found.modes.front(), context.seed, context.interrupted);
+  if (context.stop_requested()) return false;
+  if (propriety.failure) {
+    checkpoint_.drop();
+    throw UserError(no_result(task_, *propriety.failure));
+  }
+  found.findings.insert(found.findings.end(), propriety.findings.begin(), propriety.findings.end());
   return true;
 }
 

@@ -40,7 +40,18 @@ class IndependentLikelihood : public FitLikelihood {
           !(each.precision >= 0 && std::isfinite(each.precision) && std::isfinite(each.pull)))
         throw checkpoint::Mismatch("its hierarchies differ");
     space_ =
-        members.empty() ? declared_ : std::make_shared<ParameterSpace const>(declared_->model(), declared_->experiments(), members);
+        members.empty()
+            ? declared_
+            : std::make_shared<ParameterSpace const>(
+                  ParameterSpace(declared_->model(), declared_->experiments(), members).with_references(declared_->references()));
+  }
+  void refer(std::vector<ImproperReference> const& references) override {
+    std::vector<int> wanted = improper_coordinates(declared_->infos()), given;
+    for (ImproperReference const& each : references) given.push_back(each.coordinate);
+    if (given != wanted) throw checkpoint::Mismatch("its improper priors differ");
+    if (references.empty()) return;
+    declared_ = std::make_shared<ParameterSpace const>(declared_->with_references(references));
+    space_ = declared_;
   }
 
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,

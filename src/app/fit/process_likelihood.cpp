@@ -45,6 +45,10 @@ class ProcessLikelihood : public FitLikelihood {
   void standardise(std::vector<MemberCoordinate> const& members) override {
     if (!members.empty()) throw checkpoint::Mismatch("its hierarchies differ");
   }
+  // No fit with one begins.
+  void refer(std::vector<ImproperReference> const& references) override {
+    if (!references.empty()) throw checkpoint::Mismatch("its improper priors differ");
+  }
 
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {

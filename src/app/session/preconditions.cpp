@@ -39,6 +39,35 @@ std::optional<Diagnostic> improper_prior(Task const& task, std::string_view back
                  {improper->name, model.name});
 }
 
+/// Where all members of a population are equal the likelihood is positive, so that 1/x has no integral down to a spread of zero,
+/// whatever the data: unless the same parameter is the size of something that is measured.              Gelman 2006, section 2.2
+std::optional<Diagnostic> improper_spread(Task const& task, ParameterSpace const& space) {
+  Model const& model = space.model();
+  std::vector<NodeId> measured;
+  for (State const& state : model.states) measured.insert(measured.end(), {state.derivative, state.initial});
+  for (Channel const& channel : model.channels)
+    measured.insert(measured.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
+  std::set<int> read;
+  for (NodeId const id : model.graph.reachable(measured))
+    if (Node const& node = model.graph[id]; node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter)
+      read.insert(node.index);
+  for (ParameterSpace::Member const& member : space.members())
+    for (int const coordinate : member.population) {
+      int const p = space.rows()[static_cast<std::size_t>(space.sampled()[static_cast<std::size_t>(coordinate)])].parameter;
+      Parameter const& spread = model.parameters[static_cast<std::size_t>(p)];
+      if (spread.prior->row->name != "log_flat" || read.contains(p)) continue;
+      return refused(task, "E6204",
+                     fmt::format("`{}` is the spread of a population, and with a `log_flat` prior its posterior is improper: as it "
+                                 "goes to zero, the density does not",
+                                 spread.name),
+                     fmt::format("give `{}` the prior `flat(lower = 0)`, if there are three members or more, or a proper one such "
+                                 "as half_normal",
+                                 spread.name),
+                     {spread.name, model.name});
+    }
+  return std::nullopt;
+}
+
 std::optional<Diagnostic> nothing_measured(Task const& task, std::vector<ExperimentData> const& data) {
   for (ExperimentData const& each : data) {
     Experiment const& experiment = each.experiment;
@@ -59,9 +88,15 @@ std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model c
   BackendRow const& backend = *find_backend(what.backend);
   if (backend.refuse != nullptr)
     if (std::string const why = backend.refuse(what.settings); !why.empty()) return refused_settings(task, backend.name, why);
-  if (backend.needs.proper_prior)
+  // Whether a posterior is proper is looked at far from its mode, where a process costs too much.
+  if (backend.needs.proper_prior || !model.processes.empty())
     if (auto const found = improper_prior(task, backend.name, model, {})) return found;
-  if (parameter_space(model, what.experiments)->dimension() == 0)
+  bool const evidence = what.evidence != EvidenceMethod::automatic && what.evidence != EvidenceMethod::none;
+  if (evidence && backend.objective_kind != ObjectiveKind::likelihood)
+    if (auto const found = improper_prior(task, fmt::format("evidence = {}", word(what.evidence)), model, {})) return found;
+  std::shared_ptr<ParameterSpace const> const space = parameter_space(model, what.experiments);
+  if (auto const found = improper_spread(task, *space)) return found;
+  if (space->dimension() == 0)
     return refused(task, "E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model.name),
                    "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`", {model.name});
   return nothing_measured(task, data);

@@ -1,6 +1,7 @@
 // Stores preparations as JSON that is restored bit for bit.
 #include "app/session/preparation.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/session/solver_record.hpp"
@@ -14,12 +15,17 @@ nlohmann::json store(Preparation const& preparation) {
   std::vector<double> standardised;
   for (MemberCoordinate const& each : preparation.standardised)
     standardised.insert(standardised.end(), {static_cast<double>(each.coordinate), each.precision, each.pull});
-  return {{"solver", write_solver(preparation.solver)},
-          {"modes", modes},
-          {"findings", checkpoint::encode(preparation.findings)},
-          {"ledger", checkpoint::encode(preparation.ledger)},
-          {"standardised", checkpoint::encode(std::span<double const>(standardised))},
-          {"moves", preparation.moves}};
+  std::vector<double> references;
+  for (ImproperReference const& each : preparation.references)
+    references.insert(references.end(), {static_cast<double>(each.coordinate), each.centre, each.width});
+  nlohmann::json stored = {{"solver", write_solver(preparation.solver)},
+                           {"modes", modes},
+                           {"findings", checkpoint::encode(preparation.findings)},
+                           {"ledger", checkpoint::encode(preparation.ledger)},
+                           {"standardised", checkpoint::encode(std::span<double const>(standardised))},
+                           {"moves", preparation.moves}};
+  if (!references.empty()) stored["references"] = checkpoint::encode(std::span<double const>(references));
+  return stored;
 }
 
 Preparation restore_preparation(nlohmann::json const& stored) {
@@ -34,6 +40,15 @@ Preparation restore_preparation(nlohmann::json const& stored) {
       throw checkpoint::Mismatch("its hierarchies differ");
   for (std::size_t i = 0; i + 2 < standardised.size(); i += 3)
     preparation.standardised.push_back({static_cast<int>(standardised[i]), standardised[i + 1], standardised[i + 2]});
+  std::vector<double> const references =
+      stored.contains("references") ? checkpoint::decode(stored.at("references")) : std::vector<double>();
+  if (references.size() % 3 != 0) throw checkpoint::Mismatch("its improper priors differ");
+  for (std::size_t i = 0; i < references.size(); i += 3) {
+    if (!(references[i] >= 0 && references[i] <= 1e9) || !std::isfinite(references[i + 1]) || !(references[i + 2] > 0))
+      throw checkpoint::Mismatch("its improper priors differ");
+    preparation.references.push_back(
+        {ImproperReference::Kind::normal, static_cast<int>(references[i]), references[i + 1], references[i + 2]});
+  }
   preparation.moves = stored.at("moves").get<std::vector<double>>();
   return preparation;
 }

@@ -5,6 +5,7 @@
 
 #include "core/system/ledger.hpp"
 #include "inference/backend/backend.hpp"
+#include "likelihood/improper_reference.hpp"
 #include "likelihood/member_coordinate.hpp"
 #include "solver/solver.hpp"
 
@@ -16,6 +17,7 @@ struct Preparation {
   Findings findings;
   Ledger ledger;
   std::vector<MemberCoordinate> standardised;  // members of hierarchies, in whose coordinates the modes are
+  std::vector<ImproperReference> references;   // in the place of draws of improper priors
   std::vector<double> moves;                   // of each solver tried: largest move to the next finer one [sd]
 };
 

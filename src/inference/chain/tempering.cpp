@@ -13,6 +13,7 @@
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/chain_run.hpp"
 #include "inference/chain/difference_moves.hpp"
+#include "inference/chain/from_reference.hpp"
 #include "inference/chain/ladder.hpp"
 #include "inference/chain/metropolis.hpp"
 #include "inference/chain/watch.hpp"
@@ -129,13 +130,13 @@ bool begin(Target const& target, Plan const& plan, RunContext& context, State& s
   for (int k = 0; k + 1 < plan.rungs; ++k)
     state.moves.emplace_back(first_archive(target, state.modes, objective.scale, state.ladder.power(k),
                                            {context.seed, Purpose::start, 0, scale_step + 1 + static_cast<std::uint64_t>(k)}));
-  state.replicas = metropolis::init(target, std::move(starts->theta), context.ledger);
+  state.replicas = metropolis::init(FromReference(target), std::move(starts->theta), context.ledger);
   state.record = ChainRecord(target.dimension(), plan.chains);
   return true;
 }
 
 /// One move of every replica.
-metropolis::Info move(Target const& target, Plan const& plan, std::uint64_t seed, State& state, Ledger& ledger) {
+metropolis::Info move(FromReference const& target, Plan const& plan, std::uint64_t seed, State& state, Ledger& ledger) {
   auto const columns = static_cast<std::size_t>(plan.columns());
   LaneArray proposed(target.dimension(), plan.columns()), drawn(target.dimension(), plan.chains);
   std::vector<char> whole(columns, 0);
@@ -192,8 +193,28 @@ void learn(Plan const& plan, metropolis::Info const& info, State& state) {
   state.round_end *= 2;
 }
 
+/// The states of the coldest replicas into the record, with the prior and the likelihood of the posterior.
+void keep(FromReference const& target, Plan const& plan, metropolis::Info const& info, State& state) {
+  metropolis::State const& replicas = state.replicas;
+  if (!target.changed()) {
+    for (int c = 0; c < plan.chains; ++c) state.record.add(c, replicas, info[static_cast<std::size_t>(c)], true);
+    return;
+  }
+  LaneArray cold(target.dimension(), plan.chains);
+  for (int c = 0; c < plan.chains; ++c)
+    for (int p = 0; p < cold.rows(); ++p) cold(p, c) = replicas.theta(p, c);
+  std::vector<double> const surplus = target.surplus(cold);
+  for (int c = 0; c < plan.chains; ++c) {
+    auto const w = static_cast<std::size_t>(c);
+    std::vector<double> theta;
+    for (int p = 0; p < cold.rows(); ++p) theta.push_back(cold(p, c));
+    state.record.add(c, theta, replicas.log_prior[w] + surplus[w], replicas.log_likelihood[w] - surplus[w], info[w]);
+  }
+}
+
 /// Iterates to the end, or until asked to stop or a move is given up, of which nothing is kept; returns whether it was.
-bool sample(Target const& target, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
+bool sample(Target const& posterior, Plan const& plan, RunContext& context, nlohmann::json const& identity, State& state) {
+  FromReference const target(posterior);
   Watch watch(context, [&] { return store(state, context.ledger, identity); });
   context.progress.begin("sampling", plan.samples);
   target.expect_values(static_cast<double>(plan.samples - std::min(state.next, plan.samples)) * plan.columns());
@@ -208,8 +229,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     }
     exchange(plan, context.seed, state, info);
     if (state.next < plan.burn_in) learn(plan, info, state);
-    for (int c = 0; state.next >= plan.burn_in && c < plan.chains; ++c)
-      state.record.add(c, state.replicas, info[static_cast<std::size_t>(c)], true);
+    if (state.next >= plan.burn_in) keep(target, plan, info, state);
     ++state.next;
     watch.look(state.next, state.record.mean_acceptance());
   }

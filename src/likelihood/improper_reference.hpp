@@ -1,0 +1,21 @@
+// What stands in the place of draws where a prior is improper: where a search looks, and how wide its steps are. It is no part of
+// the posterior.
+#pragma once
+
+namespace sysid {
+
+/// Of one coordinate of a parameter space.
+struct ImproperReference {
+  enum class Kind {
+    decades,  // the distance from zero, or from the bound, is log-uniform over 10^(centre - width) to 10^(centre + width) declared
+              // units, on either side of zero
+    normal,   // in the sampler's coordinate, with this mean and sd
+  };
+  Kind kind = Kind::decades;
+  int coordinate = 0;
+  double centre = 0, width = 3;
+
+  friend bool operator==(ImproperReference const&, ImproperReference const&) = default;
+};
+
+}  // namespace sysid

@@ -1,0 +1,110 @@
+// Starts over ever more decades, and local searches from the likeliest.
+#include "search/improper/references.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/numeric/not_finite.hpp"
+#include "linear_algebra/decompositions.hpp"
+#include "search/improper/free_climb.hpp"
+#include "search/starts.hpp"
+
+namespace sysid::unbounded {
+namespace {
+
+constexpr double half_decades[] = {1.5, 3, 6, 10};
+constexpr int draws_per_bracket = 512, rounds_per_bracket = 15;
+constexpr std::size_t likeliest = 24, others = 8, kept = 4;
+constexpr double better = 0.1;                      // nats
+constexpr std::uint64_t bracket_step = 11'000'000;  // of Purpose::start
+
+/// Widths of what the brackets draw say nothing: on a line a unit is as good as any.
+Objective objective_of(Target const& target, LaneArray const& draws) {
+  // The density of the declared parameters: a Jacobian would drive what the data leave alone to infinity.
+  Objective objective = make_objective(target, ObjectiveKind::declared_posterior, draws);
+  objective.low.setConstant(-infinity), objective.high.setConstant(infinity);
+  return objective;
+}
+
+std::vector<FreeClimber> starts_of(Objective const& objective, LaneArray const& draws, Ledger& ledger,
+                                   std::function<bool()> const& stop) {
+  Breadth breadth{};
+  breadth.likeliest = likeliest, breadth.others = others;
+  std::vector<FreeClimber> starts;
+  for (Climber& each : choose_starts(objective, draws, breadth, ledger, stop, nullptr))
+    starts.push_back({std::move(each.theta), each.log_density});
+  return starts;
+}
+
+void sort_best_first(std::vector<FreeClimber>& climbers) {
+  std::stable_sort(climbers.begin(), climbers.end(),
+                   [](FreeClimber const& a, FreeClimber const& b) { return a.log_density > b.log_density; });
+}
+
+/// sds of the coordinates, where curvature leaves one; longer than 10^4 conditional ones none is taken for.
+Eigen::VectorXd sds_of(Eigen::MatrixXd const& curvature) {
+  Eigen::Index const n = curvature.rows();
+  Eigen::VectorXd const root = curvature.diagonal().cwiseMax(0.0).cwiseSqrt();
+  Eigen::VectorXd const inverse_root = root.unaryExpr([](double r) { return r > 0 ? 1 / r : 0.0; });
+  auto const [values, vectors] = symmetric_eigen(inverse_root.asDiagonal() * curvature * inverse_root.asDiagonal());
+  Eigen::MatrixXd const inverse = vectors * values.cwiseMax(1e-8).cwiseInverse().asDiagonal() * vectors.transpose();
+  Eigen::VectorXd sd(n);
+  for (Eigen::Index p = 0; p < n; ++p) sd(p) = root(p) > 0 ? std::sqrt(inverse(p, p)) / root(p) : infinity;
+  return sd;
+}
+
+ImproperReference around(Target const& target, int coordinate, double place, double sd) {
+  ImproperReference reference{ImproperReference::Kind::normal, coordinate, place, 1};
+  if (target.parameters()[static_cast<std::size_t>(coordinate)].improper == Improper::half_line) {
+    constexpr double decade = std::numbers::ln10;
+    reference.width = std::isfinite(sd) ? std::clamp(10 * sd, decade, 10 * decade) : decade;
+  } else {
+    reference.width = std::isfinite(sd) ? std::max(std::fabs(place), 30 * sd) : std::fabs(place);
+    if (!(reference.width > 0)) reference.width = 1;
+  }
+  return reference;
+}
+
+}  // namespace
+
+std::vector<ImproperReference> find_references(MakeReferred const& make, std::vector<int> const& coordinates, std::uint64_t seed,
+                                               std::function<bool()> const& stop) {
+  Ledger untold;
+  std::unique_ptr<Target> target;
+  std::vector<FreeClimber> best;
+  std::uint64_t bracket = 0;
+  for (double const width : half_decades) {
+    std::vector<ImproperReference> references;
+    for (int const each : coordinates) references.push_back({ImproperReference::Kind::decades, each, 0, width});
+    target = make(references);
+    LaneArray draws = draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket++}, draws_per_bracket);
+    begin_without_functions(*target, draws);
+    Objective const objective = objective_of(*target, draws);
+    std::vector<FreeClimber> climbers = starts_of(objective, draws, untold, stop);
+    double const before = best.empty() ? -infinity : best.front().log_density;
+    for (FreeClimber& each : best) climbers.push_back({each.theta, each.log_density});
+    climb_freely(objective, climbers, rounds_per_bracket, untold, stop);
+    if (stop && stop()) return {};
+    sort_best_first(climbers);
+    climbers.resize(std::min(climbers.size(), kept));
+    best = std::move(climbers);
+    if (!best.empty() && std::isfinite(before) && best.front().log_density < before + better) break;
+  }
+  if (best.empty()) return {};
+  Objective const objective = objective_of(*target, draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket}, 64));
+  Eigen::VectorXd const sd = sds_of(free_slopes(objective, {best.front().theta}, untold).front().curvature);
+  std::vector<ImproperReference> found;
+  for (int const each : coordinates) found.push_back(around(*target, each, best.front().theta(each), sd(each)));
+  return found;
+}
+
+Finding no_finite_start_of_improper() {
+  return {FindingCode::no_finite_start,
+          Severity::error,
+          {},
+          "the likelihood is not finite at any start over 20 decades of the parameters with improper priors",
+          "give them proper priors near values for which the model can be solved"};
+}
+
+}  // namespace sysid::unbounded
