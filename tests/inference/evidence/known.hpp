@@ -130,6 +130,49 @@ inline Known regression(int rows, std::uint64_t record) {
   return {target_of(3, 5, 60.0 + 3 * rows, log_density), log_evidence, draw};
 }
 
+/// y = a + b x + c z + e with priors much wider than the posterior, and e ~ N(0, s^2) with s log-uniform over four decades: on the way
+/// from the prior to the posterior the coefficients are as wide as s, a funnel. The evidence by quadrature over log s.
+inline Known wide_regression(int rows, std::uint64_t record) {
+  Stream stream({record, Purpose::test, 0, 11});
+  Eigen::MatrixXd x(rows, 3);
+  Eigen::VectorXd y(rows);
+  for (int i = 0; i < rows; ++i) {
+    x(i, 0) = 1, x(i, 1) = 8 * stream.normal(), x(i, 2) = stream.uniform();
+    y(i) = 12 - 0.6 * x(i, 1) + 3 * x(i, 2) + 0.8 * stream.normal();
+  }
+  Eigen::Vector3d const widths(100, 10, 50);
+  double const low = 0.01, high = 100, log_2pi = std::log(2 * std::numbers::pi);
+  Eigen::MatrixXd const squares = x.transpose() * x;
+  Eigen::VectorXd const products = x.transpose() * y;
+  double const size = y.squaredNorm();
+  // log N(y | 0, s^2 I + x V x')
+  auto const given = [=](double s) {
+    Eigen::MatrixXd precision = squares / (s * s);
+    precision.diagonal() += widths.cwiseAbs2().cwiseInverse();
+    Eigen::VectorXd const mean = solve_symmetric(precision, Eigen::VectorXd(products / (s * s)));
+    return -0.5 * rows * (log_2pi + 2 * std::log(s)) - widths.array().log().sum() - 0.5 * log_absolute_determinant(precision) -
+           0.5 * (size / (s * s) - mean.dot(precision * mean));
+  };
+  constexpr int steps = 4000;
+  double highest = -infinity, sum = 0;
+  std::vector<double> values;
+  for (int i = 0; i < steps; ++i) {
+    values.push_back(given(low * std::exp((i + 0.5) / steps * std::log(high / low))));
+    highest = std::max(highest, values.back());
+  }
+  for (double const each : values) sum += std::exp(each - highest) / steps;
+  double const ceiling = rows * 5.0;
+  TestTarget target({"a", "b", "c", "s"},
+                    {{Prior::normal, 0, widths(0)}, {Prior::normal, 0, widths(1)}, {Prior::normal, 0, widths(2)},
+                     {Prior::log_uniform, low, high}},
+                    1, ceiling, [=](std::vector<double> const& w, std::vector<double>& out) {
+                      Eigen::Vector3d const b(w[0], w[1], w[2]);
+                      double const rest = size - 2 * b.dot(products) + b.dot(squares * b);
+                      out[0] = as_residual(-0.5 * rows * (log_2pi + 2 * std::log(w[3])) - 0.5 * rest / (w[3] * w[3]), ceiling);
+                    });
+  return {std::move(target), highest + std::log(sum), {}};
+}
+
 /// Up to five normal distributions of any shapes, with an evidence of its own.
 inline Known mixture_of_normals(int dimension, std::uint64_t record) {
   Stream stream({record, Purpose::test, static_cast<std::uint64_t>(dimension), 4});
