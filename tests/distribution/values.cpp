@@ -71,6 +71,8 @@ TEST_CASE("log densities are those of R") {
   CHECK(log_density_at({"log_uniform", {1, 100}}, 10) == about(-std::log(10) - std::log(2 * std::numbers::ln10)));
   CHECK(log_density_at({"flat", {}}, 1e9) == 0);
   CHECK(log_density_at({"flat", {}, 0, 2}, 1) == 0);
+  CHECK(log_density_at({"log_flat", {}}, 4) == about(-std::log(4)));
+  CHECK(log_density_at({"log_flat", {}, 1, 8}, 4) == about(-std::log(4)));
 }
 
 TEST_CASE("distribution functions are those of R") {
@@ -120,6 +122,7 @@ TEST_CASE("an interval without mass has density zero and no draws") {
   CHECK(code(*find_distribution("normal"), unit, 60, 61) == "E2115");
   CHECK(code(*find_distribution("normal"), unit, 1, -1) == "E2115");
   CHECK(code(*find_distribution("flat"), {}, 0, 1) == "E2114");
+  CHECK(code(*find_distribution("log_flat"), {}, 0, 1) == "E2114");
   CHECK(code(*find_distribution("normal"), {0, -1}, 0, 1) == "E2112");
   CHECK(code(*find_distribution("normal"), unit, 0, 1) == "");
 }

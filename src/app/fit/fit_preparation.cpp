@@ -63,6 +63,8 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   SearchResult found = what_.near ? search_near(session_, *what_.near, *searched, objective_kind_, context)
                                   : search(*searched, objective_kind_, context, shorter_records(preparation.solver));
   if (found.interrupted) return false;
+  if (found.failure && !preparation.references.empty())
+    if (auto singular = unbounded::unbounded_density(*searched, before_search_, context.seed)) found.failure = std::move(singular);
   if (found.failure) {
     advise(situation, *found.failure);
     checkpoint_.drop();
@@ -87,13 +89,15 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
 bool FitPreparation::find_references(RunContext const& context, Preparation& preparation) {
   std::vector<int> const coordinates = improper_coordinates(likelihood_.space().infos());
   if (coordinates.empty()) return true;
-  preparation.references = unbounded::find_references(
+  unbounded::References found = unbounded::find_references(
       [&](std::vector<ImproperReference> const& references) {
         likelihood_.refer(references);
         return target(what_.solver);
       },
       coordinates, context.seed, context.interrupted);
   if (context.stop_requested()) return false;
+  preparation.references = std::move(found.of_coordinates);
+  before_search_ = std::move(found.place);
   if (preparation.references.empty()) {
     checkpoint_.drop();
     throw UserError(no_result(task_, unbounded::no_finite_start_of_improper()));

@@ -1,5 +1,6 @@
 // What a fit does before its first sample: the search, the coordinates of members of hierarchies, the solver.
 #pragma once
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -42,6 +43,7 @@ class FitPreparation {
   FitLikelihood& likelihood_;
   ObjectiveKind objective_kind_;
   TaskCheckpoint& checkpoint_;
+  Eigen::VectorXd before_search_;  // the best place found before the search, where priors are improper
 };
 
 }  // namespace sysid

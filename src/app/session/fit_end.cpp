@@ -18,7 +18,9 @@
 namespace sysid {
 
 Diagnostic no_result(Task const& task, Finding const& failure) {
-  std::string const code = failure.code == FindingCode::no_finite_start ? "E5002" : "E6206";
+  std::string const code = failure.code == FindingCode::no_finite_start      ? "E5002"
+                           : failure.code == FindingCode::improper_posterior ? "E6211"
+                                                                             : "E6206";
   return {Severity::error, code, failure.message, Label{task.span, {}}, {}, failure.help};
 }
 

@@ -157,10 +157,11 @@ std::string doubt_of_tempering(Evidence const& evidence) {
 bool temper(Target const& target, EvidenceTask const& task, std::uint64_t most, Evidence& evidence, Ledger& ledger,
             std::function<bool()> const& stop) {
   std::uint64_t const other_seed = Stream({task.seed, Purpose::evidence, 0, scale_step}).bits() >> 11;
-  SmcEstimate const first = smc(target, particles, most / 2, task.seed, ledger, stop);
+  std::vector<Mode> const modes = task.objective_kind == ObjectiveKind::posterior ? task.modes : std::vector<Mode>();
+  SmcEstimate const first = smc(target, particles, modes, most / 2, task.seed, ledger, stop);
   evidence.simulations += first.simulations;
   if (!first.finished) return false;
-  SmcEstimate const second = smc(target, particles, most / 2, other_seed, ledger, stop);
+  SmcEstimate const second = smc(target, particles, modes, most / 2, other_seed, ledger, stop);
   evidence.simulations += second.simulations;
   if (!second.finished) return false;
   double const difference = second.log_evidence - first.log_evidence;

@@ -8,14 +8,38 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "inference/evidence/mixture.hpp"
+#include "linear_algebra/decompositions.hpp"
+#include "search/laplace.hpp"
+#include "search/local_searches.hpp"
 
 namespace sysid::marginal {
 namespace {
 
 constexpr std::uint64_t smc_step = 2'000'000;  // of Purpose::evidence; moves count on from it
 constexpr std::uint64_t resampling_step = 1'500'000;
-constexpr int least_moves = 4, most_moves = 24;  // per power
+constexpr int least_moves = 4, most_moves = 60;  // per power
 constexpr double worth = 0.5;                    // of the particles, after a weighting
+constexpr double forgotten = 0.15;               // correlation of ranks with those before the moves
+constexpr int climbed = 16;                      // of the first particles, where no modes are known
+constexpr double mode_share = 0.2;               // of the proposals
+
+/// Of values, 0 to n - 1; centred.
+std::vector<double> ranks(std::vector<double> const& values) {
+  std::vector<std::size_t> order(values.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return values[a] < values[b] || (values[a] == values[b] && a < b); });
+  std::vector<double> rank(values.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    rank[order[i]] = static_cast<double>(i) - 0.5 * static_cast<double>(order.size() - 1);
+  return rank;
+}
+
+double correlation(std::vector<double> const& a, std::vector<double> const& b) {
+  double ab = 0, aa = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) ab += a[i] * b[i], aa += a[i] * a[i];
+  return aa > 0 ? ab / aa : 0;
+}
 
 struct Particles {
   LaneArray theta;
@@ -27,11 +51,19 @@ struct Particles {
 
 class Tempering {
  public:
-  Tempering(Target const& target, int particles, std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop)
-      : target_(target), seed_(seed), ledger_(ledger), stop_(stop), all_{LaneArray(target.dimension(), particles), {}, {}, {}} {
+  Tempering(Target const& target, int particles, std::vector<Mode> modes, std::uint64_t seed, Ledger& ledger,
+            std::function<bool()> const& stop)
+      : target_(target),
+        seed_(seed),
+        ledger_(ledger),
+        stop_(stop),
+        modes_(std::move(modes)),
+        all_{LaneArray(target.dimension(), particles), {}, {}, {}} {
     target.sample_prior({seed, Purpose::evidence, 0, smc_step - 1}, all_.theta);
     evaluate(all_.theta, all_.log_prior, all_.log_likelihood);
     for (std::size_t w = 0; w < all_.size(); ++w) all_.ancestor.push_back(w);
+    widths_ = make_objective(target, ObjectiveKind::posterior, all_.theta).scale;
+    if (modes_.empty()) find_modes();
   }
 
   SmcEstimate run(std::uint64_t most) {
@@ -52,6 +84,20 @@ class Tempering {
   }
 
  private:
+  /// Those that the likeliest of the first particles climb to.
+  void find_modes() {
+    std::vector<std::size_t> order(all_.size());
+    for (std::size_t w = 0; w < order.size(); ++w) order[w] = w;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return all_.log_likelihood[a] > all_.log_likelihood[b]; });
+    LaneArray starts(all_.theta.rows(), climbed);
+    for (int k = 0; k < climbed; ++k)
+      for (int p = 0; p < starts.rows(); ++p) starts(p, k) = all_.theta(p, static_cast<int>(order[static_cast<std::size_t>(k)]));
+    std::uint64_t const before = ledger_.solves();
+    modes_ = modes_from(target_, ObjectiveKind::posterior, starts, -infinity, seed_, ledger_, stop_).modes;
+    simulations_ += ledger_.solves() - before;
+  }
+
   void evaluate(LaneArray const& theta, std::vector<double>& log_prior, std::vector<double>& log_likelihood) {
     constexpr int block = 512;
     log_prior.assign(static_cast<std::size_t>(theta.width()), 0.0);
@@ -123,20 +169,25 @@ class Tempering {
     ++step_;
   }
 
-  /// Until a particle has moved with probability 0.98, as far as the acceptance rates so far say.
+  /// Until the particles have forgotten where they were: each coordinate, and the likelihood.
   void move(double power, std::uint64_t most) {
-    Mixture const mixture = fit_mixture({}, all_.theta, seed_, stop_);
+    Mixture const mixture = with_modes(fit_mixture({}, all_.theta, seed_, stop_), power);
+    if (mixture.empty()) return;
+    std::vector<std::vector<double>> const before = ranked();
     double kept = 1;
-    int moves = 0;
-    while (!(stop_ && stop_()) && simulations_ + all_.size() <= most &&
-           (moves < least_moves || (kept > 0.02 && moves < most_moves))) {
-      double const rate = moves % 2 == 0 && !mixture.empty() ? jump(mixture, power) : walk(mixture, power);
-      kept *= 1 - rate;
-      ++moves;
+    for (int moves = 0; moves < least_moves || (kept > forgotten && moves < most_moves); ++moves) {
+      if ((stop_ && stop_()) || simulations_ + all_.size() > most) return;
+      if (moves % 2 == 0)
+        jump(mixture, power);
+      else
+        walk(mixture, power);
+      kept = 0;
+      std::vector<std::vector<double>> const now = ranked();
+      for (std::size_t k = 0; k < now.size(); ++k) kept = std::max(kept, correlation(before[k], now[k]));
     }
   }
 
-  double jump(Mixture const& mixture, double power) {
+  void jump(Mixture const& mixture, double power) {
     ++move_;
     LaneArray proposed(all_.theta.rows(), all_.theta.width());
     for (int w = 0; w < proposed.width(); ++w)
@@ -145,25 +196,82 @@ class Tempering {
                               to = mixture.log_density(mixture.log_terms(proposed));
     std::vector<double> log_ratio(from.size());
     for (std::size_t w = 0; w < from.size(); ++w) log_ratio[w] = from[w] - to[w];
-    return decide(proposed, log_ratio, power);
+    decide(proposed, log_ratio, power);
   }
 
-  /// Steps of the shape of any component.
-  double walk(Mixture const& mixture, double power) {
-    if (mixture.empty()) return 0;
+  /// Modes as wide as the power leaves them beside what is fitted.
+  Mixture with_modes(Mixture const& fitted, double power) const {
+    if (modes_.empty()) return fitted;
+    std::vector<Mixture::Part> parts = fitted.parts();
+    double const share = fitted.empty() ? 1 : mode_share;
+    for (Mixture::Part& part : parts) part.normal *= 1 - share, part.student *= 1 - share;
+    for (Mode const& mode : modes_) {
+      Eigen::MatrixXd precision = power * inverse(covariance_of(mode));
+      precision.diagonal() += (1 - power) * widths_.cwiseAbs2().cwiseInverse();
+      double const each = 0.5 * share / static_cast<double>(modes_.size());
+      parts.push_back({Component(theta_of(mode), inverse(precision)), each, each, true});
+    }
+    return Mixture(std::move(parts));
+  }
+
+  std::vector<std::vector<double>> ranked() const {
+    std::vector<std::vector<double>> all;
+    for (int p = 0; p < all_.theta.rows(); ++p) {
+      auto const row = all_.theta.row(p);
+      all.push_back(ranks({row.begin(), row.end()}));
+    }
+    all.push_back(ranks(all_.log_likelihood));
+    return all;
+  }
+
+  /// The shares that the parts have at each particle [parts][W].
+  std::vector<std::vector<double>> shares(Mixture const& mixture, LaneArray const& theta) const {
+    LaneArray const terms = mixture.log_terms(theta);
+    std::vector<double> const log_shares = mixture.log_shares(), total = mixture.log_density(terms);
+    std::vector<std::vector<double>> out(mixture.parts().size(), std::vector<double>(total.size()));
+    for (std::size_t k = 0; k < out.size(); ++k)
+      for (std::size_t w = 0; w < total.size(); ++w) {
+        double sum = 0;
+        for (std::size_t i : {2 * k, 2 * k + 1})
+          if (std::isfinite(log_shares[i]))
+            sum += elementary::exp(log_shares[i] + terms(static_cast<int>(i), static_cast<int>(w)) - total[w]);
+        out[k][w] = sum;
+      }
+    return out;
+  }
+
+  /// Steps of the shape of the component that a particle belongs to: where the posterior is a funnel, of its width there.
+  void walk(Mixture const& mixture, double power) {
     LaneArray proposed(all_.theta.rows(), all_.theta.width());
     std::size_t const parts = mixture.parts().size();
     double const length = scale_ * 2.38 / std::sqrt(static_cast<double>(proposed.rows()));
     ++move_;
+    std::vector<std::vector<double>> const from = shares(mixture, all_.theta);
+    std::vector<Eigen::VectorXd> steps;
     for (int w = 0; w < proposed.width(); ++w) {
       Stream stream({seed_, Purpose::evidence, static_cast<std::uint64_t>(w), smc_step + move_});
-      Component const& shape = mixture.parts()[stream.below(parts)].shape;
-      Eigen::VectorXd const step = length * shape.move(stream, false);
-      for (int p = 0; p < proposed.rows(); ++p) proposed(p, w) = all_.theta(p, w) + step(p);
+      double place = stream.uniform();
+      std::size_t k = 0;
+      while (k + 1 < parts && (place -= from[k][static_cast<std::size_t>(w)]) > 0) ++k;
+      steps.push_back(mixture.parts()[k].shape.move(stream, false));
+      for (int p = 0; p < proposed.rows(); ++p) proposed(p, w) = all_.theta(p, w) + length * steps.back()(p);
     }
-    double const rate = decide(proposed, std::vector<double>(all_.size(), 0.0), power);
+    std::vector<std::vector<double>> const to = shares(mixture, proposed);
+    std::vector<double> log_ratio;
+    for (std::size_t w = 0; w < all_.size(); ++w) {
+      double ahead = 0, back = 0;  // densities of the step, over that of the widest
+      std::vector<double> log_density;
+      for (Mixture::Part const& part : mixture.parts())
+        log_density.push_back(part.shape.log_density(part.shape.centre + steps[w]).normal);
+      double const highest = *std::max_element(log_density.begin(), log_density.end());
+      for (std::size_t k = 0; k < parts; ++k) {
+        double const density = elementary::exp(log_density[k] - highest);
+        ahead += from[k][w] * density, back += to[k][w] * density;
+      }
+      log_ratio.push_back(ahead > 0 && back > 0 ? elementary::log(back / ahead) : -infinity);
+    }
+    double const rate = decide(proposed, log_ratio, power);
     scale_ *= elementary::exp(std::clamp(2 * (rate - 0.234), -0.5, 0.5));
-    return rate;
   }
 
   /// Share of the moves that were accepted.
@@ -200,17 +308,19 @@ class Tempering {
   std::uint64_t seed_;
   Ledger& ledger_;
   std::function<bool()> const& stop_;
+  std::vector<Mode> modes_;
   Particles all_;
+  Eigen::VectorXd widths_;  // of the prior
   std::uint64_t simulations_ = 0, step_ = 0, move_ = 0;
   double scale_ = 1;
 };
 
 }  // namespace
 
-SmcEstimate smc(Target const& target, int particles, std::uint64_t most_simulations, std::uint64_t seed, Ledger& ledger,
-                std::function<bool()> const& stop) {
+SmcEstimate smc(Target const& target, int particles, std::vector<Mode> const& modes, std::uint64_t most_simulations,
+                std::uint64_t seed, Ledger& ledger, std::function<bool()> const& stop) {
   if (most_simulations < static_cast<std::uint64_t>(2 * particles)) return {};
-  return Tempering(target, particles, seed, ledger, stop).run(most_simulations);
+  return Tempering(target, particles, modes, seed, ledger, stop).run(most_simulations);
 }
 
 }  // namespace sysid::marginal

@@ -234,18 +234,16 @@ std::string direction_of(Target const& target, Ray const& ray) {
 std::string const help_for_improper =
     "give it a proper prior, bound it by `lower` and `upper` where the physics does, fix one of the parameters, or measure more";
 
-/// What the ray drags along: other coordinates that moved over its last two decades as far as a decade.
+/// The coordinate, and what the ray drags along: others that change by a third at least on the way.
 std::vector<std::string> names_of(Target const& target, Ray const& ray) {
   std::vector<std::string> names{target.parameters()[static_cast<std::size_t>(ray.coordinate)].name};
-  std::size_t const n = ray.places.size();
-  if (n < 2 * steps_per_decade + 1) return names;
-  LaneArray const theta = to_lanes({ray.places[n - 1], ray.places[n - 1 - 2 * steps_per_decade]});
+  LaneArray const theta = to_lanes({ray.places.back(), ray.places.front()});
   LaneArray declared(theta.rows(), 2);
   target.constrain(theta, declared);
   for (int p = 0; p < declared.rows(); ++p) {
     if (p == ray.coordinate) continue;
     double const now = std::fabs(declared(p, 0)), before = std::fabs(declared(p, 1));
-    if (now > 3 * before || before > 3 * now) names.push_back(target.parameters()[static_cast<std::size_t>(p)].name);
+    if (now > 4.0 / 3 * before || before > 4.0 / 3 * now) names.push_back(target.parameters()[static_cast<std::size_t>(p)].name);
   }
   return names;
 }
@@ -286,18 +284,22 @@ bool is_singular(Objective const& objective, Eigen::VectorXd const& mode, std::u
 
 }  // namespace
 
+std::optional<Finding> unbounded_density(Target const& target, Eigen::VectorXd const& place, std::uint64_t seed) {
+  Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
+  if (!is_singular(objective, place, seed)) return std::nullopt;
+  return Finding{
+      FindingCode::improper_posterior,
+      Severity::error,
+      {},
+      "the posterior is improper: the parameters can make the residuals zero, and its density grows without bound as the "
+      "noise goes to zero",
+      "measure more samples than there are parameters, or give the size of the noise a proper prior"};
+}
+
 Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t seed, std::function<bool()> const& stop) {
   Propriety result;
-  Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
-  if (is_singular(objective, theta_of(mode), seed)) {
-    result.failure = Finding{FindingCode::improper_posterior,
-                             Severity::error,
-                             {},
-                             "the posterior is improper: the parameters can make the residuals zero, and its density grows without "
-                             "bound as the noise goes to zero",
-                             "measure more samples than there are parameters, or give the size of the noise a proper prior"};
-    return result;
-  }
+  result.failure = unbounded_density(target, theta_of(mode), seed);
+  if (result.failure) return result;
   std::vector<Ray> const rays = Walk(target, mode, seed, stop).run();
   if (stop && stop()) return result;
   Ray const* worst = nullptr;  // others may only follow from it

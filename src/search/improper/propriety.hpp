@@ -1,5 +1,6 @@
 // Whether a posterior under improper priors is proper: has a finite integral.
 #pragma once
+#include <Eigen/Core>
 #include <functional>
 #include <optional>
 
@@ -25,8 +26,11 @@ struct Propriety {
 /// chain climbs back: what lies further off is as if cut off. Otherwise, over the last two decades, a fall of more than half a nat
 /// a decade is proper, of less than a tenth improper, and what is between is said to be undecided.
 ///
-/// Improper too is a density that changes by more than a nat when the mode is moved in its eleventh digit: there the residuals
-/// can be zero, and the density grows without bound as the noise goes to zero.
+/// Improper too is what `unbounded_density` finds at the mode.
 Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t seed, std::function<bool()> const& stop);
+
+/// Improper: a density that changes by more than a nat when the place is moved in its eleventh digit: there the residuals
+/// can be zero, and the density grows without bound as the noise goes to zero.
+std::optional<Finding> unbounded_density(Target const& target, Eigen::VectorXd const& place, std::uint64_t seed);
 
 }  // namespace sysid::unbounded

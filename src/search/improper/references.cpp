@@ -68,8 +68,8 @@ ImproperReference around(Target const& target, int coordinate, double place, dou
 
 }  // namespace
 
-std::vector<ImproperReference> find_references(MakeReferred const& make, std::vector<int> const& coordinates, std::uint64_t seed,
-                                               std::function<bool()> const& stop) {
+References find_references(MakeReferred const& make, std::vector<int> const& coordinates, std::uint64_t seed,
+                           std::function<bool()> const& stop) {
   Ledger untold;
   std::unique_ptr<Target> target;
   std::vector<FreeClimber> best;
@@ -94,8 +94,8 @@ std::vector<ImproperReference> find_references(MakeReferred const& make, std::ve
   if (best.empty()) return {};
   Objective const objective = objective_of(*target, draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket}, 64));
   Eigen::VectorXd const sd = sds_of(free_slopes(objective, {best.front().theta}, untold).front().curvature);
-  std::vector<ImproperReference> found;
-  for (int const each : coordinates) found.push_back(around(*target, each, best.front().theta(each), sd(each)));
+  References found{{}, best.front().theta};
+  for (int const each : coordinates) found.of_coordinates.push_back(around(*target, each, best.front().theta(each), sd(each)));
   return found;
 }
 

@@ -1,5 +1,6 @@
 // Where a search looks for parameters whose prior is improper: the prior has no draws that would say it.
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,13 +15,18 @@ namespace sysid::unbounded {
 /// The target of a fit, with these references in its parameter space.
 using MakeReferred = std::function<std::unique_ptr<Target>(std::vector<ImproperReference> const&)>;
 
+struct References {
+  std::vector<ImproperReference> of_coordinates;
+  Eigen::VectorXd place;  // the best that was found
+};
+
 /// A normal reference for each of these coordinates. Starts are log-uniform over 3 decades around the declared unit, of both signs
 /// on a line, then over 6, 12 and 20, until twice as many decades show nothing better; from the likeliest of each a few
 /// Levenberg-Marquardt rounds find the likelihood times the proper priors. Around the best place found the references are as wide
 /// as its value or 30 sds on a line, whichever is wider, and a decade or 10 sds on a logarithm. Empty where nothing was finite, or
 /// `stop` said so.
-std::vector<ImproperReference> find_references(MakeReferred const& make, std::vector<int> const& coordinates, std::uint64_t seed,
-                                               std::function<bool()> const& stop);
+References find_references(MakeReferred const& make, std::vector<int> const& coordinates, std::uint64_t seed,
+                           std::function<bool()> const& stop);
 
 /// The failure of a run where no start of any bracket was.
 Finding no_finite_start_of_improper();

@@ -130,8 +130,8 @@ inline Known regression(int rows, std::uint64_t record) {
   return {target_of(3, 5, 60.0 + 3 * rows, log_density), log_evidence, draw};
 }
 
-/// y = a + b x + c z + e with priors much wider than the posterior, and e ~ N(0, s^2) with s log-uniform over four decades: on the way
-/// from the prior to the posterior the coefficients are as wide as s, a funnel. The evidence by quadrature over log s.
+/// y = a + b x + c z + e with priors much wider than the posterior, and e ~ N(0, s^2) with s log-uniform over four decades: on the
+/// way from the prior to the posterior the coefficients are as wide as s, a funnel. The evidence by quadrature over log s.
 inline Known wide_regression(int rows, std::uint64_t record) {
   Stream stream({record, Purpose::test, 0, 11});
   Eigen::MatrixXd x(rows, 3);
@@ -163,7 +163,9 @@ inline Known wide_regression(int rows, std::uint64_t record) {
   for (double const each : values) sum += std::exp(each - highest) / steps;
   double const ceiling = rows * 5.0;
   TestTarget target({"a", "b", "c", "s"},
-                    {{Prior::normal, 0, widths(0)}, {Prior::normal, 0, widths(1)}, {Prior::normal, 0, widths(2)},
+                    {{Prior::normal, 0, widths(0)},
+                     {Prior::normal, 0, widths(1)},
+                     {Prior::normal, 0, widths(2)},
                      {Prior::log_uniform, low, high}},
                     1, ceiling, [=](std::vector<double> const& w, std::vector<double>& out) {
                       Eigen::Vector3d const b(w[0], w[1], w[2]);

@@ -21,7 +21,7 @@ void check_populations(std::string const& name, std::function<Known(std::uint64_
     auto const record = static_cast<std::uint64_t>(r);
     Known const known = kind(record);
     Ledger ledger;
-    marginal::SmcEstimate const found = marginal::smc(known.target, 1000, 1'000'000, record, ledger, {});
+    marginal::SmcEstimate const found = marginal::smc(known.target, 1000, {}, 1'000'000, record, ledger, {});
     CHECK(found.finished);
     double const z = (found.log_evidence - known.log_evidence) / found.error;
     square += z * z, sum += z, worst = std::max(worst, std::fabs(z)), off += found.log_evidence - known.log_evidence;
@@ -39,14 +39,17 @@ void check_populations(std::string const& name, std::function<Known(std::uint64_
 }  // namespace
 
 TEST_CASE("a population reaches a narrow posterior from wide priors where the noise is estimated") {
-  check_populations("wide regression, 240 rows", [](std::uint64_t r) { return wide_regression(240, r); }, 2);
+  check_populations(
+      "wide regression, 240 rows", [](std::uint64_t r) { return wide_regression(240, r); }, 2);
 }
 
 TEST_CASE("populations in few and in twenty dimensions") {
-  check_populations("wide regression, 20 rows", [](std::uint64_t r) { return wide_regression(20, r); }, 2);
+  check_populations(
+      "wide regression, 20 rows", [](std::uint64_t r) { return wide_regression(20, r); }, 2);
   check_populations("two modes", &two_modes, 2);
   check_populations("ridge", &ridge, 2);
   check_populations("funnel", &funnel, 2);
   check_populations("oscillator", &linear_oscillator, 2);
-  check_populations("normals, 5", [](std::uint64_t r) { return mixture_of_normals(5, r); }, 2);
+  check_populations(
+      "normals, 5", [](std::uint64_t r) { return mixture_of_normals(5, r); }, 2);
 }
