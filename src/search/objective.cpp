@@ -51,8 +51,10 @@ Objective make_objective(Target const& target, ObjectiveKind objective_kind, Con
     bool const below = std::isfinite(info.lower), above = std::isfinite(info.upper);
     // A bounded side lies at infinity of the coordinate; the end with one bound is always the lower one of log(x - a) and log(b -
     // x).
-    if (below || above) objective.low(p) = finite.front() - 3 * objective.scale(p);
-    if (below && above) objective.high(p) = finite.back() + 3 * objective.scale(p);
+    // A density that rises for ever, as a Jacobian can where the prior does not fall, has no optimum to climb to.
+    bool const rising = info.improper != Improper::no;
+    if (below || above || rising) objective.low(p) = finite.front() - 3 * objective.scale(p);
+    if ((below && above) || rising) objective.high(p) = finite.back() + 3 * objective.scale(p);
   }
   return objective;
 }

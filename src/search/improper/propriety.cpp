@@ -21,7 +21,7 @@
 namespace sysid::unbounded {
 namespace {
 
-constexpr int most_half_decades = 16, steps_per_decade = 2;
+constexpr int least_half_decades = 16, most_half_decades = 40, steps_per_decade = 2;
 constexpr double step_of_logarithm = std::numbers::ln10 / steps_per_decade;
 constexpr double out_of_reach = 30;             // nats
 constexpr double proper = 0.5, improper = 0.1;  // nats a decade
@@ -35,6 +35,7 @@ struct Ray {
   double sign;
   bool on_line;
   double first;                              // distance of the first place
+  int last;                                  // step
   std::vector<Eigen::VectorXd> places = {};  // the mode, then one for each step
   std::vector<double> marginal = {};         // g of the steps
   double highest = -infinity;
@@ -108,7 +109,8 @@ class Walk {
       double const sd = std::min(std::sqrt(std::max(covariance(p, p), 0.0)), objective_.scale(p));
       bool const on_line = kind == Improper::line;
       double const first = on_line ? (sd > 0 ? sd : objective_.scale(p)) : std::min(sd, step_of_logarithm);
-      for (double const sign : {1.0, -1.0}) rays_.push_back({p, sign, on_line, first, {mode_}});
+      for (double const sign : {1.0, -1.0})
+        rays_.push_back({p, sign, on_line, first, last_step(on_line, first, mode_(p)), {mode_}});
     }
   }
 
@@ -118,7 +120,7 @@ class Walk {
     for (int step = 0; step <= most_half_decades && !(stop_ && stop_()); ++step) {
       std::vector<std::size_t> open;
       for (std::size_t r = 0; r < rays_.size(); ++r)
-        if (!rays_[r].ended && !rays_[r].failed) open.push_back(r);
+        if (!rays_[r].ended && !rays_[r].failed && step <= rays_[r].last) open.push_back(r);
       if (open.empty()) break;
       go(open, step);
     }
@@ -126,6 +128,13 @@ class Walk {
   }
 
  private:
+  /// On a line at least as far as a thousand times the value.
+  static int last_step(bool on_line, double first, double value) {
+    if (!on_line || !(std::fabs(value) > 0)) return least_half_decades;
+    double const decades = elementary::log(std::fabs(value) / first) / std::numbers::ln10 + 3;
+    return std::clamp(static_cast<int>(std::ceil(steps_per_decade * decades)), least_half_decades, most_half_decades);
+  }
+
   void go(std::vector<std::size_t> const& open, int step) {
     std::vector<Eigen::VectorXd> trials;
     std::vector<std::size_t> first;

@@ -16,9 +16,9 @@ struct Propriety {
 };
 
 /// The posterior has mass at infinity only if some coordinate with an improper prior has. From `mode` each of them is followed to
-/// either side, in steps of half a decade, over 8 decades: on a line of the distance from the mode, on a logarithm of the
-/// parameter. At each step the others are moved to their best, and integrated over by Laplace's approximation, which gives the
-/// marginal density of the logarithm of the distance,
+/// either side, in steps of half a decade, over 8 decades: on a line of the distance from the mode, at least to a
+/// thousand times the value, on a logarithm of the parameter. At each step the others are moved to their best, and integrated over
+/// by Laplace's approximation, which gives the marginal density of the logarithm of the distance,
 ///
 ///   g = log density + 1/2 sum log(1 / curvatures of the others)  [+ log distance, on a line]
 ///
