@@ -94,7 +94,7 @@ bool FitPreparation::find_references(RunContext const& context, Preparation& pre
         likelihood_.refer(references);
         return target(what_.solver);
       },
-      coordinates, context.seed, context.interrupted);
+      coordinates, !likelihood_.space().members().empty(), context.seed, context.interrupted);
   if (context.stop_requested()) return false;
   preparation.references = std::move(found.of_coordinates);
   before_search_ = std::move(found.place);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/improper/free_climb.hpp"
@@ -20,9 +21,8 @@ constexpr double better = 0.1;                      // nats
 constexpr std::uint64_t bracket_step = 11'000'000;  // of Purpose::start
 
 /// Widths of what the brackets draw say nothing: on a line a unit is as good as any.
-Objective objective_of(Target const& target, LaneArray const& draws) {
-  // The density of the declared parameters: a Jacobian would drive what the data leave alone to infinity.
-  Objective objective = make_objective(target, ObjectiveKind::declared_posterior, draws);
+Objective objective_of(Target const& target, ObjectiveKind kind, LaneArray const& draws) {
+  Objective objective = make_objective(target, kind, draws);
   objective.low.setConstant(-infinity), objective.high.setConstant(infinity);
   return objective;
 }
@@ -54,6 +54,30 @@ Eigen::VectorXd sds_of(Eigen::MatrixXd const& curvature) {
   return sd;
 }
 
+/// Moves coordinates that the likelihood does not depend on to where the prior is highest, the others as they are: of a hierarchy
+/// the mean and the spread of its members.
+void follow_prior(Target const& target, std::vector<int> const& coordinates, Eigen::MatrixXd const& likelihood_curvature,
+                  Eigen::VectorXd& place) {
+  constexpr int sweeps = 60;
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (int const p : coordinates) {
+      if (likelihood_curvature(p, p) > 0) continue;
+      bool const on_line = target.parameters()[static_cast<std::size_t>(p)].improper == Improper::line;
+      std::vector<Eigen::VectorXd> trials{place};
+      for (double exponent = on_line ? -10 : -3; exponent <= (on_line ? 10 : 1); exponent += 0.25)
+        for (double const sign : {1.0, -1.0}) {
+          trials.push_back(place);
+          trials.back()(p) += sign * elementary::exp(std::numbers::ln10 * exponent);
+        }
+      std::vector<double> density(trials.size());
+      target.log_prior(to_lanes(trials), density, false);
+      std::size_t best = 0;
+      for (std::size_t i = 1; i < density.size(); ++i)
+        if (density[i] > density[best]) best = i;
+      place = trials[best];
+    }
+}
+
 ImproperReference around(Target const& target, int coordinate, double place, double sd) {
   ImproperReference reference{ImproperReference::Kind::normal, coordinate, place, 1};
   if (target.parameters()[static_cast<std::size_t>(coordinate)].improper == Improper::half_line) {
@@ -68,7 +92,7 @@ ImproperReference around(Target const& target, int coordinate, double place, dou
 
 }  // namespace
 
-References find_references(MakeReferred const& make, std::vector<int> const& coordinates, std::uint64_t seed,
+References find_references(MakeReferred const& make, std::vector<int> const& coordinates, bool hierarchy, std::uint64_t seed,
                            std::function<bool()> const& stop) {
   Ledger untold;
   std::unique_ptr<Target> target;
@@ -80,7 +104,10 @@ References find_references(MakeReferred const& make, std::vector<int> const& coo
     target = make(references);
     LaneArray draws = draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket++}, draws_per_bracket);
     begin_without_functions(*target, draws);
-    Objective const objective = objective_of(*target, draws);
+    // The density of the declared parameters: a Jacobian would drive what the data leave alone to infinity. In a hierarchy that
+    // density has no maximum either, as all members become equal.
+    Objective const objective =
+        objective_of(*target, hierarchy ? ObjectiveKind::likelihood : ObjectiveKind::declared_posterior, draws);
     std::vector<FreeClimber> climbers = starts_of(objective, draws, untold, stop);
     double const before = best.empty() ? -infinity : best.front().log_density;
     for (FreeClimber& each : best) climbers.push_back({each.theta, each.log_density});
@@ -92,10 +119,13 @@ References find_references(MakeReferred const& make, std::vector<int> const& coo
     if (!best.empty() && std::isfinite(before) && best.front().log_density < before + better) break;
   }
   if (best.empty()) return {};
-  Objective const objective = objective_of(*target, draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket}, 64));
-  Eigen::VectorXd const sd = sds_of(free_slopes(objective, {best.front().theta}, untold).front().curvature);
   References found{{}, best.front().theta};
-  for (int const each : coordinates) found.of_coordinates.push_back(around(*target, each, best.front().theta(each), sd(each)));
+  Objective objective =
+      objective_of(*target, ObjectiveKind::likelihood, draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket}, 64));
+  if (hierarchy) follow_prior(*target, coordinates, free_slopes(objective, {found.place}, untold).front().curvature, found.place);
+  objective.objective_kind = ObjectiveKind::declared_posterior;
+  Eigen::VectorXd const sd = sds_of(free_slopes(objective, {found.place}, untold).front().curvature);
+  for (int const each : coordinates) found.of_coordinates.push_back(around(*target, each, found.place(each), sd(each)));
   return found;
 }
 
