@@ -40,7 +40,7 @@ std::optional<Diagnostic> improper_prior(Task const& task, std::string_view back
 }
 
 /// Where all members of a population are equal the likelihood is positive, so that 1/x has no integral down to a spread of zero,
-/// whatever the data: unless the same parameter is the size of something that is measured.              Gelman 2006, section 2.2
+/// whatever the data: unless the same parameter is the size of something that is measured.              Gelman 2006
 std::optional<Diagnostic> improper_spread(Task const& task, ParameterSpace const& space) {
   Model const& model = space.model();
   std::vector<NodeId> measured;
