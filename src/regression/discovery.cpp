@@ -179,6 +179,7 @@ class Finder {
       FoundTerm& to = found_.terms[static_cast<std::size_t>(usable_[k])];
       to.kept = from.kept;
       to.measure = from.measure;
+      to.measure_error = from.measure_error;
       to.precision = from.precision;
       to.dropped_in = from.dropped_in;
       to.mean = from.mean;

@@ -31,6 +31,7 @@ struct FoundTerm {
   bool kept = false;
   bool excluded = false;           // not offered to the selector: a concern says why
   double measure = 0;              // SelectorRow::measure
+  double measure_error = 0;        // one standard error, where it is sampled
   double precision = 0;            // ard
   int dropped_in = 0;              // threshold
   double coefficient = 0, sd = 0;  // on the chosen support; 0 when not kept
@@ -45,7 +46,7 @@ struct FoundEquation {
   std::vector<FoundTerm> terms;   // as in the dictionary
   Support chosen;                 // terms are indices of the dictionary's; coherent SI
   std::vector<Support> supports;  // the candidates, best first
-  Eigen::MatrixXd joint;          // spike_slab: as Choice::joint over the dictionary's terms
+  Eigen::MatrixXd joint;          // as Choice::joint over the dictionary's terms
   double explained = 0;    // 1 - |residual|^2 / |known|^2 on the chosen support, as projected; of projections, not of the motion
   double noise_ratio = 0;  // whitened residual sd; 1: as the measurement noise has it; 0: the form cannot say
   double own_noise = 0;    // sd, at a sample, of what the known side is off by itself (Projection::own_noise); its unit

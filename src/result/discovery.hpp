@@ -36,6 +36,7 @@ struct DiscoveredTerm {
   bool kept = false;
   double coefficient = 0, sd = 0;  // on the chosen support
   double measure = 0;              // DiscoveryReport::measure
+  double measure_error = 0;        // one standard error, where it is sampled; else 0
   double mean = 0, mean_sd = 0;    // as the selector has it, averaged over supports
   double contribution = 0;         // root mean square of coefficient * term over that of what is explained
   double inflation = 0;            // of the variance by the other terms; 0: not kept
@@ -44,7 +45,8 @@ struct DiscoveredTerm {
 /// Terms that could stand together, the best first.
 struct DiscoveredSupport {
   std::vector<std::string> terms;
-  double probability = 0;  // 0 where the selector knows none
+  double probability = 0;        // 0 where the selector knows none
+  double probability_error = 0;  // one standard error, where it is sampled; else 0
   double log_evidence = 0;
 };
 

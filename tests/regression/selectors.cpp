@@ -221,3 +221,78 @@ TEST_CASE("exchanges bring back a term that elimination has lost") {
   CHECK(path[2].terms == std::vector<int>{0, 3});
   CHECK(path.back().lost == -1);
 }
+
+namespace {
+
+/// Probabilities of all sets of terms, by the evidences of `spike_slab`.
+std::map<std::vector<int>, double> enumerated(LinearProblem const& p, std::map<std::string, SettingValue> given) {
+  given["supports"] = std::int64_t{10000};
+  std::map<std::vector<int>, double> all;
+  for (Support const& support : choose(p, "spike_slab", given).supports) all[support.terms] = support.probability;
+  return all;
+}
+
+Choice jump(LinearProblem const& p, std::uint64_t seed, std::map<std::string, SettingValue> const& given) {
+  SelectorRow const& row = *find_selector("reversible_jump");
+  Settings settings(row.settings);
+  for (auto const& [name, value] : given) settings.set(name, value);
+  SelectorContext context;
+  context.seed = seed;
+  return row.choose(p, settings, context);
+}
+
+}  // namespace
+
+TEST_CASE("jumps between sets of terms agree with the enumeration of all sets, under every prior") {
+  LinearProblem p = problem(21, 60, {0.4, 0, 0.25, 0, 0.2, 0, 0, 0}, 1);
+  p.always[3] = 1;
+  for (char const* prior : {"beta_prime", "unit_information", "zellner"})
+    for (char const* sizes : {"beta_binomial", "uniform"}) {
+      CAPTURE(prior);
+      CAPTURE(sizes);
+      auto const exact = enumerated(p, {{"prior", prior}, {"sizes", sizes}});
+      Choice const all = choose(p, "spike_slab", {{"prior", prior}, {"sizes", sizes}});
+      Choice const choice = jump(p, 1, {{"prior", prior}, {"sizes", sizes}, {"samples", std::int64_t{6000}}});
+      CHECK(choice.converged);
+      CHECK_FALSE(choice.exact);
+      for (std::size_t j = 0; j < p.always.size(); ++j) {
+        CAPTURE(j);
+        if (p.always[j] != 0) {
+          CHECK(choice.terms[j].kept);
+          continue;
+        }
+        CHECK(std::fabs(choice.terms[j].measure - all.terms[j].measure) < 3 * choice.terms[j].measure_error + 1e-12);
+        CHECK(choice.terms[j].measure_error < 0.02);
+      }
+      for (std::size_t s = 0; s < 3; ++s) {
+        Support const& support = choice.supports[s];
+        CHECK(std::fabs(support.probability - exact.at(support.terms)) < 3 * support.probability_error);
+      }
+    }
+}
+
+TEST_CASE("errors of inclusion probabilities are as large as their scatter over seeds") {
+  LinearProblem const p = problem(22, 50, {0.4, 0.1, 0.25, 0, 0.2, 0}, 1);
+  Choice const exact = choose(p, "spike_slab");
+  double squares = 0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Choice const choice = jump(p, seed, {{"samples", std::int64_t{1500}}, {"burn_in", std::int64_t{300}}});
+    for (std::size_t j = 0; j < p.always.size(); ++j) {
+      double const z = (choice.terms[j].measure - exact.terms[j].measure) / choice.terms[j].measure_error;
+      squares += z * z;
+      ++count;
+    }
+  }
+  double const rms = std::sqrt(squares / count);
+  MESSAGE("rms of errors over standard errors: " << rms);
+  CHECK(rms > 0.7);
+  CHECK(rms < 1.4);
+}
+
+TEST_CASE("exact data leave the chains one set of terms, and nothing that is not a number") {
+  LinearProblem const p = problem(23, 30, {2, 0, -1, 0}, 0);
+  Choice const choice = jump(p, 1, {{"samples", std::int64_t{600}}, {"burn_in", std::int64_t{100}}});
+  CHECK(kept(choice) == std::vector<int>{0, 2});
+  for (TermChoice const& term : choice.terms) CHECK(std::isfinite(term.mean));
+}

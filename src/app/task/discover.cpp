@@ -215,6 +215,7 @@ class Discover {
       to.coefficient = from.coefficient / scale;
       to.sd = from.sd / scale;
       to.measure = from.measure;
+      to.measure_error = from.measure_error;
       to.mean = from.mean / scale;
       to.mean_sd = from.mean_sd / scale;
       to.contribution = from.contribution;
@@ -227,7 +228,7 @@ class Discover {
     out.equation = equation_text(equation, printed);
     for (std::size_t s = 0; s < found.supports.size() && s < static_cast<std::size_t>(what_.top); ++s) {
       regression::Support const& support = found.supports[s];
-      DiscoveredSupport to{{}, support.probability, support.log_evidence};
+      DiscoveredSupport to{{}, support.probability, support.probability_error, support.log_evidence};
       for (int const j : support.terms)
         if (!equation.terms[static_cast<std::size_t>(j)].in_target)
           to.terms.push_back(equation.terms[static_cast<std::size_t>(j)].text);

@@ -26,7 +26,8 @@ enum class Purpose : std::uint32_t {
   calibration = 16,  // records that are made to see whether a fit finds their true values
   evidence = 17,     // draws of which an evidence is estimated
   bootstrap = 18,    // weights of samples in a Bayesian bootstrap
-  average = 19,      // seeds of the members of an averaged prediction
+  jump = 19,         // moves between models
+  average = 20,      // seeds of the members of an averaged prediction
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

@@ -23,29 +23,32 @@ struct LinearProblem {
 
 /// Terms that stand together, with their coefficients under least squares on them alone.
 struct Support {
-  std::vector<int> terms;       // rising
-  Eigen::VectorXd coefficient;  // one per term of the support
-  Eigen::MatrixXd covariance;   // of those, with the support's own noise estimate
-  double noise_sd = 0;          // residual sd, K - |terms| degrees of freedom
-  double log_evidence = 0;      // against the support of the `always` terms alone; all methods by `log_bayes_factor`
-  double probability = 0;       // spike_slab: posterior; else 0 or 1
+  std::vector<int> terms;        // rising
+  Eigen::VectorXd coefficient;   // one per term of the support
+  Eigen::MatrixXd covariance;    // of those, with the support's own noise estimate
+  double noise_sd = 0;           // residual sd, K - |terms| degrees of freedom
+  double log_evidence = 0;       // against the support of the `always` terms alone; all methods by `log_bayes_factor`
+  double probability = 0;        // spike_slab, reversible_jump: posterior; else 0 or 1
+  double probability_error = 0;  // one standard error, where it is sampled by reversible_jump
 };
 
 /// What happened to a term, and the number that decided it.
 struct TermChoice {
   bool kept = false;
-  double measure = 0;       // threshold: contribution when dropped, or at the end; ard: contribution at the evidence's maximum;
-                            // spike_slab: inclusion probability
-  double precision = 0;     // ard: of the coefficient's prior, column scaled to unit root mean square; infinite: dropped
-  int dropped_in = 0;       // threshold: the round, from 1; 0: kept
-  double mean = 0, sd = 0;  // of the method: spike_slab averages over supports, ard's posterior; threshold: least squares
+  double measure = 0;        // threshold: contribution when dropped, or at the end; ard: contribution at the evidence's maximum;
+                             // spike_slab, reversible_jump: inclusion probability
+  double measure_error = 0;  // one standard error, where it is sampled by reversible_jump
+  double precision = 0;      // ard: of the coefficient's prior, column scaled to unit root mean square; infinite: dropped
+  int dropped_in = 0;        // threshold: the round, from 1; 0: kept
+  double mean = 0,
+         sd = 0;  // of the method: spike_slab and reversible_jump average over supports, ard's posterior; threshold: least squares
 };
 
 struct Choice {
   std::vector<TermChoice> terms;  // [J]
   Support chosen;
   std::vector<Support> supports;  // candidates, best first; the chosen one is among them, first where it is the best
-  Eigen::MatrixXd joint;          // spike_slab: [J x J] probability that both are in; else empty
+  Eigen::MatrixXd joint;          // spike_slab, reversible_jump: [J x J] probability that both are in; else empty
   double noise_sd = 0;
   int iterations = 0;
   bool converged = true;

@@ -17,6 +17,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string sampled_text(double probability, double error) {
+  return error > 0 ? fmt::format("{} ± {:.1g}", probability_text(probability), error) : probability_text(probability);
+}
+
 ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation const& equation) {
   std::string title = fmt::format("terms of {}: {} {}", equation.target, equation.rows, discovery.windows ? "windows" : "samples");
   if (equation.noise_ratio > 0) title += fmt::format(", residual {} times the noise", significant(equation.noise_ratio, 3));
@@ -35,7 +39,8 @@ ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation cons
     bool const offered = term.fate.kind != TermFate::Kind::left_out;
     // Of the target it is known that it is there, not how large its coefficient is.
     table.rows.push_back({term.text, term.fate.kind == TermFate::Kind::known ? "always kept" : word(term.fate),
-                          term.kept ? value : "", term.kept ? sd : "", term.unit, offered ? probability_text(term.measure) : ""});
+                          term.kept ? value : "", term.kept ? sd : "", term.unit,
+                          offered ? sampled_text(term.measure, term.measure_error) : ""});
     if (discovery.measure != "contribution") table.rows.back().push_back(term.kept ? significant(term.contribution, 3) : "");
   }
   return table;
@@ -53,7 +58,8 @@ ReportTable support_table(DiscoveredEquation const& equation) {
   for (DiscoveredSupport const& support : equation.supports) {
     table.rows.push_back(
         {support.terms.empty() ? "none" : fmt::format("{}", fmt::join(support.terms, ", ")), significant(support.log_evidence, 5)});
-    if (probable) table.rows.back().insert(table.rows.back().begin() + 1, probability_text(support.probability));
+    if (probable)
+      table.rows.back().insert(table.rows.back().begin() + 1, sampled_text(support.probability, support.probability_error));
   }
   return table;
 }
@@ -95,7 +101,7 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
     out["left_out"].push_back({{"term", each.term}, {"reason", each.reason}});
   for (DiscoveredEquation const& equation : discovery.equations) {
     Json terms = Json::array(), supports = Json::array();
-    for (DiscoveredTerm const& term : equation.terms)
+    for (DiscoveredTerm const& term : equation.terms) {
       terms.push_back({{"term", term.text},
                        {"name", term.name},
                        {"unit", term.unit},
@@ -108,8 +114,12 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
                        {"mean_sd", term.mean_sd},
                        {"contribution", term.contribution},
                        {"inflation", term.inflation}});
-    for (DiscoveredSupport const& support : equation.supports)
+      if (term.measure_error > 0) terms.back()["measure_error"] = term.measure_error;
+    }
+    for (DiscoveredSupport const& support : equation.supports) {
       supports.push_back({{"terms", support.terms}, {"probability", support.probability}, {"log_evidence", support.log_evidence}});
+      if (support.probability_error > 0) supports.back()["probability_error"] = support.probability_error;
+    }
     out["equations"].push_back({{"target", equation.target},
                                 {"equation", equation.equation},
                                 {"rows", equation.rows},
