@@ -72,7 +72,7 @@ class FileChecker {
     check_unused_data();
     remove_cascades(tree_, diagnostics_);
     if (diagnostics_.has_errors()) return std::nullopt;
-    for (Model const& model : file_.models) warn_of_unused(model, diagnostics_);
+    warn_of_unused(file_.models, diagnostics_);
     return std::move(file_);
   }
 

@@ -110,6 +110,20 @@ TEST_CASE("what nothing reads is warned of, once the file has no errors") {
   CHECK(unread("parameter a ~ normal(0, sd = 1)\nderive e = f") == 0);        // an error says enough
 }
 
+TEST_CASE("a coefficient whose term an argument of 0 takes out is read where the term stands") {
+  auto const warned = [](std::string const& members) {
+    return messages(
+               "model m(cubic) {\nstate y [m]\ninitial y = 0\nparameter k [1/s] ~ normal(1, sd = 1)\n"
+               "parameter k3 [m^-2/s] ~ normal(1, sd = 1)\ny' = -k*y - cubic*k3*y^3\nobserve d ~ normal(y, sd = 1)\n}\n"
+               "candidates laws { " +
+               members + " }\n")
+               .find("warning[E3019]") != std::string::npos;
+  };
+  CHECK_FALSE(warned("m(cubic = 0..1)"));
+  CHECK_FALSE(warned("m(cubic = 1)"));
+  CHECK(warned("m(cubic = 0)"));
+}
+
 TEST_CASE("a column in a unit of another kind is refused, with both units") {
   std::string const shown = fitted("time t\ninput x = x [m] hold linear\nmeasure displacement = y [s]");
   CHECK(errors_in(shown) == 2);

@@ -245,8 +245,10 @@ TEST_CASE("wrong units planted in the shipped models are found where they are") 
     CHECK_MESSAGE(diagnostics.all().empty(), render(diagnostics, source));
     Planter planter{text, {}, {}};
     for (ast::Item const& item : tree->items)
-      if (auto const* model = std::get_if<ast::Model>(&item))
+      if (auto const* model = std::get_if<ast::Model>(&item)) {
+        for (ast::ModelArgument const& argument : model->arguments) planter.pure.insert(argument.name.text);
         for (ast::ModelStatement const& statement : model->statements) planter.statement(statement);
+      }
     if (std::none_of(tree->items.begin(), tree->items.end(),
                      [](ast::Item const& item) { return std::holds_alternative<ast::Model>(item); }))
       continue;  // of a dictionary: coefficients take up any unit

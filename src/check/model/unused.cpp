@@ -1,6 +1,7 @@
 // Leaves that cannot be reached from any root of the model.
 #include "check/model/unused.hpp"
 
+#include <string_view>
 #include <vector>
 
 #include "check/message/errors.hpp"
@@ -43,7 +44,9 @@ void mark(Model const& model, Roots const& roots, Read& read) {
 
 }  // namespace
 
-void warn_of_unused(Model const& model, Diagnostics& diagnostics) {
+namespace {
+
+Read read_in(Model const& model) {
   Read read{std::vector<bool>(model.parameters.size()), std::vector<bool>(model.inputs.size())};
   mark(model, results(model), read);
   // A prior counts once its parameter does, and sampling order puts each parameter behind those that its prior reads.
@@ -54,12 +57,44 @@ void warn_of_unused(Model const& model, Diagnostics& diagnostics) {
     add(prior, *model.parameters[index].prior);
     mark(model, prior, read);
   }
-  for (std::size_t i = 0; i < model.parameters.size(); ++i)
-    if (!read.parameters[i] && !model.parameters[i].coefficient)
-      diagnostics.add_once(
-          errors::unused_parameter(model.parameters[i].span, model.parameters[i].name, model.parameters[i].prior.has_value()));
-  for (std::size_t i = 0; i < model.inputs.size(); ++i)
-    if (!read.inputs[i]) diagnostics.add_once(errors::unused_input(model.inputs[i].span, model.inputs[i].name));
+  return read;
+}
+
+/// "law" of "law(n = 2)": models of one text.
+std::string_view text_name(Model const& model) { return std::string_view(model.name).substr(0, model.name.find('(')); }
+
+}  // namespace
+
+void warn_of_unused(std::span<Model const> models, Diagnostics& diagnostics) {
+  std::vector<Read> read;
+  for (Model const& model : models) read.push_back(read_in(model));
+  // A term that an argument of 0 takes out leaves its coefficient to the models in which it stands.
+  auto const elsewhere = [&](Model const& model, auto const& is_read) {
+    for (std::size_t m = 0; m < models.size(); ++m)
+      if (text_name(models[m]) == text_name(model) && is_read(m)) return true;
+    return false;
+  };
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    Model const& model = models[m];
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      Parameter const& parameter = model.parameters[i];
+      if (read[m].parameters[i] || parameter.coefficient) continue;
+      bool const other = elsewhere(model, [&](std::size_t o) {
+        for (std::size_t p = 0; p < models[o].parameters.size(); ++p)
+          if (models[o].parameters[p].name == parameter.name && read[o].parameters[p]) return true;
+        return false;
+      });
+      if (!other) diagnostics.add_once(errors::unused_parameter(parameter.span, parameter.name, parameter.prior.has_value()));
+    }
+    for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+      bool const other = elsewhere(model, [&](std::size_t o) {
+        for (std::size_t p = 0; p < models[o].inputs.size(); ++p)
+          if (models[o].inputs[p].name == model.inputs[i].name && read[o].inputs[p]) return true;
+        return false;
+      });
+      if (!other) diagnostics.add_once(errors::unused_input(model.inputs[i].span, model.inputs[i].name));
+    }
+  }
 }
 
 }  // namespace sysid
