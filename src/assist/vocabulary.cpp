@@ -118,14 +118,21 @@ Word setting_word(SettingRow const& row) {
           std::string(row.summary) + fallback};
 }
 
-/// The settings of a back end, selector of terms, form of derivatives or solver.
-std::span<SettingRow const> setting_rows(std::string_view owner) {
-  if (auto const* row = find_backend(owner)) return row->settings;
-  if (auto const* row = find_selector(owner)) return row->settings;
-  if (auto const* row = regression::find_selector(owner)) return row->settings;
-  if (auto const* row = regression::find_form(owner)) return row->settings;
-  if (auto const* row = find_solver(owner)) return row->settings;
-  return {};
+/// The settings of a back end, selector of terms, form of derivatives or solver; of a name that models and terms share, both, each
+/// once.
+std::vector<SettingRow> setting_rows(std::string_view owner) {
+  std::vector<SettingRow> all;
+  auto const add = [&](auto const* row) {
+    if (row == nullptr) return;
+    for (SettingRow const& setting : row->settings)
+      if (find_setting(all, setting.name) == nullptr) all.push_back(setting);
+  };
+  add(find_backend(owner));
+  add(find_selector(owner));
+  add(regression::find_selector(owner));
+  add(regression::find_form(owner));
+  add(find_solver(owner));
+  return all;
 }
 
 Words as_choices(std::string_view text) {
@@ -200,7 +207,8 @@ std::vector<Word> choices_of(std::string_view owner, std::string_view setting) {
     return all;
   }
   if (setting == "derivatives") return words_of(WordKind::derivative);
-  if (SettingRow const* row = find_setting(setting_rows(owner), setting))
+  std::vector<SettingRow> const rows = setting_rows(owner);
+  if (SettingRow const* row = find_setting(rows, setting))
     return as_choices(row->kind == SettingKind::flag ? "yes no" : row->choices);
   if (setting == "solver") return words_of(WordKind::solver);
   for (TaskOptionRow const& row : task_options(owner))

@@ -71,7 +71,9 @@ std::vector<CandidateData> stored_candidates(StoredResult const& stored) {
     NetcdfGroup posterior("posterior");
     add_draws(posterior, resampled);
     candidate.data.add(std::move(posterior));
-    add_weighted(candidate.data, stored.folder / fmt::format("particles_{}.csv", file), parameters);
+    auto const particles = stored.folder / fmt::format("particles_{}.csv", file);
+    bool const by_distance = std::filesystem::exists(particles);
+    if (by_distance) add_weighted(candidate.data, particles, parameters);
     // Chains on the likelihood know parameters of the noise, too.
     Draws refined = parameters_of(model.value("polished", nlohmann::ordered_json::object()));
     for (int c = 1; std::filesystem::exists(stored.folder / fmt::format("polished_{}_{}.csv", file, c)); ++c)
@@ -82,7 +84,8 @@ std::vector<CandidateData> stored_candidates(StoredResult const& stored) {
       candidate.data.add(std::move(group));
     }
     candidate.data.omitted.push_back(
-        "posterior_predictive, log_likelihood, prior, prior_predictive: a selection by distance does not estimate the noise");
+        fmt::format("posterior_predictive, log_likelihood, prior, prior_predictive: {}",
+                    by_distance ? "a selection by distance does not estimate the noise" : "a selection does not compute them"));
     candidates.push_back(std::move(candidate));
   }
   return candidates;

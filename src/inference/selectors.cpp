@@ -4,6 +4,8 @@
 #include "core/setting/table.hpp"
 #include "inference/abc/abc_smc.hpp"
 #include "inference/abc/settings.hpp"
+#include "inference/jump/plan.hpp"
+#include "inference/jump/reversible_jump.hpp"
 
 namespace sysid {
 namespace {
@@ -11,6 +13,8 @@ namespace {
 SelectorRow const selector_rows[] = {
     {"abc_smc", "approximate Bayesian computation (ABC) by sequential Monte Carlo, over models and parameters", abc::settings(),
      &abc::refuse, &abc::run},
+    {"reversible_jump", "chains that jump between models, by their likelihoods", jump::settings(), &jump::refuse, nullptr,
+     &jump::run},
 };
 
 }  // namespace

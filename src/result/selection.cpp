@@ -74,6 +74,7 @@ Draws resampled_draws(SelectedModel const& model, std::uint64_t seed) {
   for (int const j : resample(model.weight, static_cast<int>(model.weight.size()), stream.uniform())) {
     draws.chains[0].values.emplace_back();
     for (int d = 0; d < model.declared.rows(); ++d) draws.chains[0].values.back().push_back(model.declared(d, j));
+    if (!model.log_density.empty()) draws.chains[0].log_density.push_back(model.log_density[static_cast<std::size_t>(j)]);
   }
   return draws;
 }

@@ -43,6 +43,26 @@ struct WeightedSummary {
   double mean = 0, sd = 0, median = 0, q5 = 0, q95 = 0;
 };
 
+/// What chains that jump between models have come to. A model's number is its place among the candidates.
+struct JumpRecord {
+  int chains = 0;
+  std::uint64_t samples = 0, burn_in = 0;  // of each chain
+  struct OfModel {
+    double error = 0;                               // one standard error of its probability
+    double log_bayes_factor = 0, factor_error = 0;  // against the most probable model; -infinity: never visited
+    double log_evidence = 0, evidence_error = 0;    // by importance sampling from the proposals of the jumps
+    double visits = 0;                              // part of the iterations, under `bias`
+    double bias = 0;                                // log of the factor by which its visits were made rarer
+    double accepted_in = 0, accepted_out = 0;       // of the jumps to it from others, and from it to others
+    double accepted_within = 0;                     // of the walks
+    double spread = 0;                              // variance between chains over that within them; 1 is chance
+    std::uint64_t simulations = 0;
+    std::string solver;  // empty where nothing is solved
+    friend bool operator==(OfModel const&, OfModel const&) = default;
+  };
+  std::vector<OfModel> models;
+};
+
 struct SelectedModel {
   std::string name;
   double prior = 0, probability = 0, share = 0;
@@ -50,17 +70,19 @@ struct SelectedModel {
   bool by_chance = false;  // when it died, that need not have been its distance
   std::vector<ParameterInfo> parameters;
   LaneArray theta, declared;             // [D x particles]; of a dead model: its last ones
-  std::vector<double> weight, distance;  // weights sum to 1 within the model
+  std::vector<double> weight, distance;  // weights sum to 1 within the model; of jumping chains no distance
+  std::vector<double> log_density;       // of jumping chains alone: of prior times likelihood, on the sampler's coordinates
   std::vector<WeightedSummary> summaries;
 };
 
 struct SelectionResult {
   std::vector<SelectedModel> models;  // in the user's order
   std::vector<PopulationRecord> populations;
-  double threshold = 0;       // that all particles satisfy
-  double next_threshold = 0;  // that another population would have had
-  std::string stopped_by;     // in words
-  bool ran_out = false;       // a budget ended it, not its own rule
+  std::optional<JumpRecord> jumps;  // in place of populations
+  double threshold = 0;             // that all particles satisfy
+  double next_threshold = 0;        // that another population would have had
+  std::string stopped_by;           // in words
+  bool ran_out = false;             // a budget ended it, not its own rule
   Settings settings;
   Findings findings;
   bool interrupted = false;

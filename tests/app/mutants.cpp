@@ -187,8 +187,8 @@ class Mutator {
     std::string doubled = text_;
     doubled.insert(span.end, "\n" + statement);
     Span const both{span.begin, span.end + 1 + (span.end - span.begin)};
-    // Equal terms are one.
-    if (!tokens()[first].is("terms")) out_.push_back({"doubled statement", std::move(doubled), both, both, {}, {}});
+    // Equal terms are one, and so are equal shared names.
+    if (!tokens()[first].is("terms") && !tokens()[first].is("shared")) out_.push_back({"doubled statement", std::move(doubled), both, both, {}, {}});
     // What is derived or shared may be left out.
     if (tokens()[first].is("derive") || tokens()[first].is("shared") || !(declaration(first) || tokens()[first + 1].is("=")))
       return;

@@ -330,6 +330,8 @@ std::vector<CheckpointCase> checkpoint_cases() {
           {"tempering", "fit", decay + "tempering" + chains + ", temperatures = 2)", "/state"},
           {"abc_smc", "select",
            "select laws to dish with abc_smc(particles = 20, populations = 3, polish = yes, polish_samples = 100)", "/chains"},
+          {"reversible_jump", "select",
+           "select laws to dish with reversible_jump(samples = 40, burn_in = 16, thin = 1, chains = 2, pilot = 100)", "/state"},
           {"function", "fit", "fit curve to list with map", "/journal"},
           {"climb", "fit", decay + "map", "/journal/part/1/climbers"}};
 }

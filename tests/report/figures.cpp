@@ -597,3 +597,17 @@ TEST_CASE("of characters each term of a discovery has one line, with its bar and
   // Two words of a label say more than "of": three panels stand in a row where they have room.
   CHECK(coefficient_figure(discovery, 0).script.find("'coefficient of term0'") != std::string::npos);
 }
+
+TEST_CASE("models between which chains jumped are shown by falling probability") {
+  SelectionReport selection;
+  selection.result.jumps.emplace();
+  for (auto const& [name, probability] : {std::pair{"rare", 0.1}, {"likely", 0.9}}) {
+    selection.result.models.emplace_back();
+    selection.result.models.back().name = name;
+    selection.result.models.back().probability = probability;
+  }
+  plot::Figure const figure = model_figure(selection);
+  CHECK(figure.script.find("likely") < figure.script.find("rare"));
+  CHECK(figure.script.find("0.900") != std::string::npos);
+  CHECK(figure.caption.find("models") == std::string::npos);  // all are shown
+}

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/session/fit_target.hpp"
+#include "core/numeric/elementary.hpp"
 #include "core/text/diagnostic.hpp"
 #include "likelihood/simulated_parameters.hpp"
 
@@ -97,6 +98,22 @@ std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate
                                                ExecutionOptions const& execution) {
   return make_fit_target(session, *candidate.fit, candidate.compiled, candidate.space, experiments_of(candidate.data), solver,
                          execution);
+}
+
+double log_unit(Candidate const& candidate, Candidate const& first) {
+  double term = 0;
+  for (Channel const& channel : candidate.compiled->model.channels) {
+    auto const& others = first.compiled->model.channels;
+    auto const same = std::find_if(others.begin(), others.end(), [&](Channel const& each) { return each.name == channel.name; });
+    if (same == others.end() || !channel.unit || !same->unit || channel.unit->scale == same->unit->scale) continue;
+    auto const c = static_cast<std::size_t>(&channel - candidate.compiled->model.channels.data());
+    double samples = 0;
+    for (ExperimentData const& each : candidate.data)
+      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
+        samples += each.experiment.scored[i] != 0 && std::isfinite(each.experiment.measured[c][i]) ? 1 : 0;
+    term += samples * elementary::log(same->unit->scale / channel.unit->scale);
+  }
+  return term;
 }
 
 }  // namespace sysid

@@ -31,4 +31,8 @@ ModelSelectionTarget selection_target(Session const& session, SelectTask const& 
 std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver,
                                                ExecutionOptions const& execution);
 
+/// What a log density of a candidate's record, in its declared units, gains in those of the first candidate: the logarithm of the
+/// ratio of units, for every sample.
+double log_unit(Candidate const& candidate, Candidate const& first);
+
 }  // namespace sysid

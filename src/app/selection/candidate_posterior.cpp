@@ -23,24 +23,6 @@ constexpr double tolerable_offset = 0.5;
 /// Nats below the most probable model from which on it does not matter how many.
 constexpr double negligible = 30;
 
-/// What a density of one candidate's declared units gains in those of the first candidate: the logarithm of the ratio of units, for
-/// every sample.
-double unit_term(Candidate const& candidate, Candidate const& first) {
-  double term = 0;
-  for (Channel const& channel : candidate.compiled->model.channels) {
-    auto const& others = first.compiled->model.channels;
-    auto const same = std::find_if(others.begin(), others.end(), [&](Channel const& each) { return each.name == channel.name; });
-    if (same == others.end() || !channel.unit || !same->unit || channel.unit->scale == same->unit->scale) continue;
-    auto const c = static_cast<std::size_t>(&channel - candidate.compiled->model.channels.data());
-    double samples = 0;
-    for (ExperimentData const& each : candidate.data)
-      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
-        samples += each.experiment.scored[i] != 0 && std::isfinite(each.experiment.measured[c][i]) ? 1 : 0;
-    term += samples * elementary::log(same->unit->scale / channel.unit->scale);
-  }
-  return term;
-}
-
 /// Follows the modes to finer solvers; a solver that the task states is only asked.
 void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_t seed, Journal& journal,
                       CandidatePosterior& posterior) {
@@ -101,7 +83,7 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
   for (std::size_t i = 0; i < order.size(); ++i) {
     std::size_t const k = order[i];
     SolverSettings const& solver = candidates[k].fit->solver;
-    double const per_mass = unit_term(candidates[k], candidates.front()) + elementary::log(result.models[k].prior);
+    double const per_mass = log_unit(candidates[k], candidates.front()) + elementary::log(result.models[k].prior);
     LocalSearches found = modes_near(
         *likelihood_target(session, candidates[k], solver, session.interruptible()), result.models[k], best - per_mass - negligible,
         seed, extra, [&] { return session.interrupted(); }, &journal);
@@ -142,7 +124,7 @@ std::vector<std::optional<LikelihoodCheck>> evidences(std::vector<Candidate> con
   std::vector<double> logs;  // of what a model's probability is in proportion to
   double highest = -std::numeric_limits<double>::infinity(), total = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    double const evidence = log_evidence(posteriors[k].modes) + unit_term(candidates[k], candidates.front());
+    double const evidence = log_evidence(posteriors[k].modes) + log_unit(candidates[k], candidates.front());
     logs.push_back(evidence + elementary::log(result.models[k].prior));
     if (!std::isfinite(logs[k])) continue;  // nothing was found, which says nothing
     checks[k] = LikelihoodCheck{evidence, 0, {}, posteriors[k].given_up};

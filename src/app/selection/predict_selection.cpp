@@ -21,6 +21,7 @@
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
 #include "experiment/fitted_rows.hpp"
+#include "inference/table.hpp"
 #include "mechanics/restoring_force.hpp"
 
 namespace sysid {
@@ -126,7 +127,9 @@ class PredictSelection {
     report.findings.push_back({FindingCode::without_noise,
                                Severity::note,
                                {},
-                               "the bands are of the response alone: a selection by distance does not estimate the noise",
+                               find_selector(select_.backend)->run == nullptr
+                                   ? "the bands are of the response alone: predictions of a selection leave out the noise"
+                                   : "the bands are of the response alone: a selection by distance does not estimate the noise",
                                ""});
   }
 

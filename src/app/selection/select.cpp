@@ -350,6 +350,7 @@ class Select {
 }  // namespace
 
 ExitCode run_select(Session& session, int index, Task const& task, SelectTask const& what) {
+  if (find_selector(what.backend)->run == nullptr) return run_select_by_likelihood(session, index, task, what);
   return Select(session, index, task, what).run();
 }
 

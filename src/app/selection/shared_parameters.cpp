@@ -12,10 +12,11 @@ namespace {
 /// Rows that a name stands for in a model's parameters: itself, or one for each experiment.
 bool stands_for(std::string const& row, std::string const& name) { return row == name || row.starts_with(name + "["); }
 
-std::vector<std::string> rows_of(std::string const& name, std::vector<Candidate> const& candidates) {
+/// by_distance: parameters of the noise have no particles.
+std::vector<std::string> rows_of(std::string const& name, std::vector<Candidate> const& candidates, bool by_distance) {
   std::vector<std::string> rows;
   for (Candidate const& each : candidates)
-    for (ParameterInfo const& info : each.simulated->infos())
+    for (ParameterInfo const& info : (by_distance ? each.simulated : each.space)->infos())
       if (stands_for(info.name, name) && std::find(rows.begin(), rows.end(), info.name) == rows.end()) rows.push_back(info.name);
   return rows;
 }
@@ -56,7 +57,7 @@ std::optional<SelectionReport::Unmoved> unmoved(Session const& session, std::str
 void summarise_shared(Session const& session, CandidateSet const& set, std::vector<Candidate> const& candidates,
                       SelectionReport& selection) {
   for (std::string const& name : set.shared) {
-    std::vector<std::string> const rows = rows_of(name, candidates);
+    std::vector<std::string> const rows = rows_of(name, candidates, !selection.result.jumps);
     std::size_t const before = selection.shared.size();
     for (std::string const& row : rows)
       if (auto summary = averaged(row, selection.result)) selection.shared.push_back(std::move(*summary));

@@ -106,8 +106,12 @@ std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std:
                                   std::vector<std::vector<ExperimentData>> const& data) {
   SelectorRow const& selector = *find_selector(what.backend);
   if (std::string const why = selector.refuse(what.settings); !why.empty()) return refused_settings(task, selector.name, why);
+  bool const by_distance = selector.run != nullptr;
+  if (!by_distance && what.distance.stated)
+    return refused(task, "E6203", fmt::format("`{}` compares models by their likelihoods and has no distance", selector.name),
+                   "remove `distance` and `weights`, or use `abc_smc`", {std::string(selector.name)});
   // The noise has particles in no population, but the searches by likelihood start from draws of it.
-  bool const with_noise = what.settings.flag("cross_check") || what.settings.flag("polish");
+  bool const with_noise = !by_distance || what.settings.flag("cross_check") || what.settings.flag("polish");
   for (std::size_t c = 0; c < what.fits.size(); ++c) {
     Model const& model = models[static_cast<std::size_t>(what.fits[c].model)];
     std::string const of = what.fits.size() > 1 ? " of `" + model.name + "`" : std::string();

@@ -11,6 +11,7 @@
 #include "check/task/select_options.hpp"
 #include "core/text/number.hpp"
 #include "experiment/experiments.hpp"
+#include "inference/table.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 
@@ -90,9 +91,10 @@ std::string resolved_select(Session const& session, Task const& task, SelectTask
   return fmt::format(
       "# all settings of `{}`, defaults included; paths are relative to the folder of the original file\n{}\n{} = select {} to {} "
       "with {}, "
-      "{}, {}, seed = {}\n",
+      "{}{}, seed = {}\n",
       task.name, without_tasks(session), task.name, session.file.candidates[static_cast<std::size_t>(what.candidates)].name,
-      data_names(session.file, first.experiments), settings_text(what.backend, what.settings), select_options_text(what),
+      data_names(session.file, first.experiments), settings_text(what.backend, what.settings),
+      find_selector(what.backend)->run == nullptr ? std::string() : select_options_text(what) + ", ",
       simulation_text(session.file.models[static_cast<std::size_t>(first.model)], first,
                       first.refine_solver ? without_accuracy(first.solver) : first.solver.text()),
       seed);

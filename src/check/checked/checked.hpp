@@ -140,6 +140,7 @@ struct DistanceRule {
   std::vector<std::vector<NodeId>> expressions;  // [candidate][channel] in the graph of the candidate's model, SI; else empty
   std::string text;                              // as written
   std::vector<std::string> weighted;             // channels whose weight is stated
+  bool stated = false;                           // it or weights
 };
 
 /// The selection of a model among candidates.

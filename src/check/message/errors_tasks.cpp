@@ -124,6 +124,8 @@ constexpr Synonym backend_synonyms[] = {
     {"smc", "tempering"},
     {"pt", "tempering"},
     {"abc", "abc_smc"},
+    {"rjmcmc", "reversible_jump"},
+    {"rj", "reversible_jump"},
     {"sindy", "spike_slab"},
     {"rvm", "ard"},
     {"parallel_tempering", "tempering"},

@@ -31,6 +31,7 @@ class DistanceChecker {
         before_(diagnostics.all().size()),
         first_(file.models[static_cast<std::size_t>(set.models.front().model)]) {
     rule_.channels = std::move(channels);
+    rule_.stated = options.distance != nullptr || options.weights != nullptr;
     rule_.weights.assign(rule_.channels.size(), 1.0);
     rule_.text = options.distance == nullptr ? "nmse" : unparse(options.distance->value);
   }

@@ -53,7 +53,8 @@ bool shows_something(PredictedQuantity const& quantity) {
 
 std::vector<Figure> figures(Report const& report) {
   std::vector<Figure> out;
-  if (report.selection) out.push_back(population_figure(*report.selection));
+  if (report.selection)
+    out.push_back(report.selection->result.jumps ? model_figure(*report.selection) : population_figure(*report.selection));
   if (report.calibration && report.calibration->with_draws() > 0) {
     out.push_back(true_ranks_figure(*report.calibration));
     out.push_back(rank_difference_figure(*report.calibration));

@@ -42,6 +42,8 @@ plot::Figure trace_figure(Draws const& draws);
 plot::Figure rank_figure(Draws const& draws);
 /// Model probabilities and thresholds over the populations of a selection.
 plot::Figure population_figure(SelectionReport const& selection);
+/// Probabilities of models between which chains have jumped.
+plot::Figure model_figure(SelectionReport const& selection);
 /// How often true values have which rank among posterior draws. There are replications with draws.
 plot::Figure true_ranks_figure(CalibrationReport const& calibration);
 /// The distribution of these ranks minus the uniform one, with its simultaneous band.

@@ -53,6 +53,33 @@ ReportTable model_table(SelectionReport const& selection) {
   return table;
 }
 
+std::string error_text(double error) {
+  return error == 0 ? "-" : error < 1e-6 ? "< 1e-6" : significant(error, error < 0.01 ? 1 : 2);
+}
+
+ReportTable jump_table(SelectionReport const& selection) {
+  JumpRecord const& jumps = *selection.result.jumps;
+  ReportTable table{
+      "models",
+      "Probability: from how likely jumps are accepted; errors are one standard error. log BF: log Bayes factor against the most "
+      "probable model. log evidence: by importance sampling, from the same proposals. Jumps: accepted fraction, to "
+      "and from the model.",
+      {"model", "prior", "probability", "error", "log BF", "error", "log evidence", "error", "jumps to", "jumps from"},
+      {}};
+  for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
+    SelectedModel const& model = selection.result.models[m];
+    JumpRecord::OfModel const& of = jumps.models[m];
+    bool const visited = std::isfinite(of.log_bayes_factor), weighed = std::isfinite(of.log_evidence);
+    table.rows.push_back({model.name, model_probability_text(model.prior),
+                          visited ? compared_probability_text(model.probability) : "0", visited ? error_text(of.error) : "-",
+                          visited ? fmt::format("{:.2f}", of.log_bayes_factor) : "-", visited ? error_text(of.factor_error) : "-",
+                          weighed ? fmt::format("{:.2f}", of.log_evidence) : "-", weighed ? error_text(of.evidence_error) : "-",
+                          visited ? fmt::format("{:.2f}", of.accepted_in) : "-",
+                          visited ? fmt::format("{:.2f}", of.accepted_out) : "-"});
+  }
+  return table;
+}
+
 ReportTable population_table(SelectionReport const& selection) {
   ReportTable table{
       "populations", "Under each model: its probability by weights.", {"", "threshold", "simulations", "acceptance", "ess"}, {}};
@@ -80,10 +107,11 @@ bool is_refined(SelectionReport const& selection, std::size_t m) {
 ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
   SelectedModel const& model = selection.result.models[m];
   bool const refined = is_refined(selection, m);
-  ReportTable table{"parameters of " + model.name,
-                    "The sd of the particles depends on the threshold and is not that of the posterior.",
-                    {"", "unit", "mean", "sd", "q5", "median", "q95"},
-                    {}};
+  ReportTable table{
+      "parameters of " + model.name,
+      selection.result.jumps ? "" : "The sd of the particles depends on the threshold and is not that of the posterior.",
+      {"", "unit", "mean", "sd", "q5", "median", "q95"},
+      {}};
   if (refined) table.header.push_back("from");
   for (WeightedSummary const& s : model.summaries)
     add_row(table, as_summary(s, effective_particles(model.weight)), refined ? "particles" : "");
@@ -92,12 +120,19 @@ ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
   return table;
 }
 
+double effective_of(SelectionResult const& result) {
+  if (!result.jumps) return result.populations.back().ess;
+  std::size_t draws = 0;
+  for (SelectedModel const& model : result.models) draws += model.weight.size();
+  return static_cast<double>(draws);
+}
+
 ReportTable shared_table(SelectionReport const& selection) {
   ReportTable table{"shared parameters",
                     "Averaged over the models that have them, weighted by the probabilities of the models.",
                     {"", "unit", "mean", "sd", "q5", "median", "q95"},
                     {}};
-  for (WeightedSummary const& s : selection.shared) add_row(table, as_summary(s, selection.result.populations.back().ess), "");
+  for (WeightedSummary const& s : selection.shared) add_row(table, as_summary(s, effective_of(selection.result)), "");
   return table;
 }
 
@@ -138,6 +173,33 @@ std::string particles_csv(Report const& report, SelectedModel const& model) {
   return out;
 }
 
+/// Draws of a model of next to no probability are kept, but are no result.
+bool hardly_visited(SelectionResult const& result, std::size_t m) { return result.jumps && result.models[m].probability < 0.01; }
+
+Json jumps_json(SelectionReport const& selection) {
+  JumpRecord const& jumps = *selection.result.jumps;
+  Json out = {{"chains", jumps.chains}, {"samples", jumps.samples}, {"burn_in", jumps.burn_in}};
+  std::uint64_t simulations = 0;
+  for (auto const& each : jumps.models) simulations += each.simulations;
+  out["simulations"] = simulations;
+  return out;
+}
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+void add_jumps(JumpRecord::OfModel const& of, Json& entry) {
+  entry["probability_error"] = of.error;
+  entry["log_bayes_factor"] = number_or_null(of.log_bayes_factor);
+  entry["log_bayes_factor_error"] = number_or_null(of.factor_error);
+  entry["log_evidence"] = number_or_null(of.log_evidence);
+  entry["log_evidence_error"] = number_or_null(of.evidence_error);
+  entry["visits"] = of.visits;
+  entry["log_bias"] = of.bias;
+  entry["jumps_accepted"] = {{"to", of.accepted_in}, {"from", of.accepted_out}, {"within", of.accepted_within}};
+  entry["simulations"] = of.simulations;
+  if (!of.solver.empty()) entry["solver"] = of.solver;
+}
+
 }  // namespace
 
 std::string model_file_name(std::string const& model) {
@@ -150,9 +212,14 @@ std::string model_file_name(std::string const& model) {
 }
 
 std::vector<ReportTable> selection_tables(SelectionReport const& selection) {
-  std::vector<ReportTable> tables = {model_table(selection), population_table(selection)};
+  std::vector<ReportTable> tables;
+  if (selection.result.jumps)
+    tables = {jump_table(selection)};
+  else
+    tables = {model_table(selection), population_table(selection)};
   for (std::size_t m = 0; m < selection.result.models.size(); ++m)
-    if (selection.result.models[m].died_in == 0 && (!selection.result.models[m].summaries.empty() || is_refined(selection, m)))
+    if (selection.result.models[m].died_in == 0 && !hardly_visited(selection.result, m) &&
+        (!selection.result.models[m].summaries.empty() || is_refined(selection, m)))
       tables.push_back(parameter_table(selection, m));
   if (!selection.shared.empty()) tables.push_back(shared_table(selection));
   if (!selection.shared_unmoved.empty()) {
@@ -168,10 +235,13 @@ nlohmann::ordered_json models_json(SelectionReport const& selection) {
   for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
     SelectedModel const& model = selection.result.models[m];
     Json& entry = out[model.name];
-    entry = {{"prior", model.prior},
-             {"probability", model.probability},
-             {"share", model.share},
-             {"died_in_population", model.died_in > 0 ? Json(model.died_in) : Json(nullptr)}};
+    entry = {{"prior", model.prior}, {"probability", model.probability}};
+    if (selection.result.jumps) {
+      add_jumps(selection.result.jumps->models[m], entry);
+    } else {
+      entry["share"] = model.share;
+      entry["died_in_population"] = model.died_in > 0 ? Json(model.died_in) : Json(nullptr);
+    }
     if (model.died_in > 0) entry["died_by_chance"] = model.by_chance;
     if (m < selection.likelihoods.size() && selection.likelihoods[m]) {
       LikelihoodCheck const& check = *selection.likelihoods[m];
@@ -193,16 +263,20 @@ nlohmann::ordered_json models_json(SelectionReport const& selection) {
 
 nlohmann::ordered_json populations_json(SelectionReport const& selection) {
   Json out = Json::object();
-  out["count"] = selection.result.populations.size();
-  std::uint64_t simulated = 0;
-  for (PopulationRecord const& each : selection.result.populations) simulated += each.simulated;
-  out["simulations"] = simulated;
-  out["distance"] = selection.distance;
-  out["threshold"] = selection.result.threshold;
-  out["next_threshold"] = selection.result.next_threshold;
-  out["noise_floor"] = selection.floor ? Json(*selection.floor) : Json(nullptr);
-  out["ess"] = selection.result.populations.back().ess;
-  out["stopped_by"] = selection.result.stopped_by;
+  if (selection.result.jumps) {
+    out = jumps_json(selection);
+  } else {
+    out["count"] = selection.result.populations.size();
+    std::uint64_t simulated = 0;
+    for (PopulationRecord const& each : selection.result.populations) simulated += each.simulated;
+    out["simulations"] = simulated;
+    out["distance"] = selection.distance;
+    out["threshold"] = selection.result.threshold;
+    out["next_threshold"] = selection.result.next_threshold;
+    out["noise_floor"] = selection.floor ? Json(*selection.floor) : Json(nullptr);
+    out["ess"] = selection.result.populations.back().ess;
+    out["stopped_by"] = selection.result.stopped_by;
+  }
   if (!selection.shared.empty())
     for (WeightedSummary const& s : selection.shared) out["shared"][s.name] = weighted_json(s);
   for (auto const& each : selection.shared_unmoved)
@@ -212,12 +286,14 @@ nlohmann::ordered_json populations_json(SelectionReport const& selection) {
 
 std::vector<std::pair<std::string, std::string>> selection_files(Report const& report) {
   SelectionReport const& selection = *report.selection;
-  std::vector<std::pair<std::string, std::string>> files = {{"populations.csv", populations_csv(report)}};
+  bool const by_distance = !selection.result.jumps;
+  std::vector<std::pair<std::string, std::string>> files;
+  if (by_distance) files.emplace_back("populations.csv", populations_csv(report));
   for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
     SelectedModel const& model = selection.result.models[m];
     if (model.weight.empty()) continue;
     std::string const name = model_file_name(model.name);
-    files.emplace_back(particles_file(model.name), particles_csv(report, model));
+    if (by_distance) files.emplace_back(particles_file(model.name), particles_csv(report, model));
     if (model.died_in > 0) continue;
     Report of_model;
     of_model.version = report.version;

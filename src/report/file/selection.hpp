@@ -21,7 +21,8 @@ nlohmann::ordered_json models_json(SelectionReport const& selection);
 nlohmann::ordered_json populations_json(SelectionReport const& selection);
 
 /// File names and contents: populations.csv; per model with particles particles_MODEL.csv (weight__, distance__, population__, then
-/// parameters) and draws_MODEL.csv (as many particles resampled to equal weights, in the form of Stan's CSV).
+/// parameters) and draws_MODEL.csv (as many particles resampled to equal weights, in the form of Stan's CSV). Of jumping chains
+/// draws_MODEL.csv alone.
 std::vector<std::pair<std::string, std::string>> selection_files(Report const& report);
 
 }  // namespace sysid

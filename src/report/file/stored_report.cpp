@@ -1,5 +1,6 @@
 // The record lists the columns; each CSV file fills its own, in the order in which they were written.
 #include "report/file/stored_report.hpp"
+#include "report/file/selection.hpp"
 
 #include <fmt/format.h>
 
@@ -117,6 +118,22 @@ void read_particles(fs::path const& path, SelectedModel& model) {
   columns.end();
 }
 
+/// Draws of jumping chains are no particles: they are kept as draws alone.
+void read_jump_draws(fs::path const& path, SelectedModel& model) {
+  std::size_t const rows = model.weight.size();
+  Draws draws;
+  for (ParameterInfo const& parameter : model.parameters) draws.names.push_back(parameter.name);
+  Chain chain;
+  chain.values.resize(rows);
+  chain.log_density.resize(rows);
+  read_chain(path, draws, chain);
+  model.log_density = chain.log_density;
+  model.weight.assign(rows, 1.0 / static_cast<double>(rows));
+  for (std::size_t j = 0; j < rows; ++j)
+    for (std::size_t d = 0; d < draws.names.size(); ++d)
+      model.declared(static_cast<int>(d), static_cast<int>(j)) = chain.values[j][d];
+}
+
 }  // namespace
 
 Report read_result(fs::path const& folder) {
@@ -136,7 +153,10 @@ Report read_result(fs::path const& folder) {
   if (selection.refined_draws.size() > selection.result.models.size())
     throw unusable_result(fmt::format("`{}` is damaged", path.string()));
   for (SelectedModel& model : selection.result.models)
-    if (!model.weight.empty()) read_particles(folder / particles_file(model.name), model);
+    if (!model.weight.empty() && selection.result.jumps)
+      read_jump_draws(folder / fmt::format("draws_{}.csv", model_file_name(model.name)), model);
+    else if (!model.weight.empty())
+      read_particles(folder / particles_file(model.name), model);
   for (std::size_t m = 0; m < selection.refined_draws.size(); ++m) {
     if (selection.result.models[m].died_in > 0 || selection.result.models[m].weight.empty()) continue;  // they have no files
     Draws& draws = selection.refined_draws[m];

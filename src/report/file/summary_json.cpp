@@ -236,7 +236,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
   if (thinned(report) && report.draws.total() > 1) out["kept_draws"] = kept_draws(report);
   if (report.selection) {
     out["models"] = models_json(*report.selection);
-    out["populations"] = populations_json(*report.selection);
+    out[report.selection->result.jumps ? "jumps" : "populations"] = populations_json(*report.selection);
   }
   if (report.discovery) out["discovery"] = discovery_json(*report.discovery);
   if (report.average) out["average"] = average(*report.average);

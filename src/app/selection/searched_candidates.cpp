@@ -1,0 +1,109 @@
+// One search after another.
+#include "app/selection/searched_candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/session/fit_target.hpp"
+#include "app/session/solver_refinement.hpp"
+#include "core/system/interrupt.hpp"
+#include "diagnostics/tolerance.hpp"
+#include "search/local_searches.hpp"
+#include "search/search.hpp"
+
+namespace sysid {
+namespace {
+
+/// By so many sds a stated solver may put a candidate's modes off.
+constexpr double tolerable_error = 0.5;
+
+class CandidateSearch {
+ public:
+  CandidateSearch(Session& session, Candidate const& candidate, std::uint64_t seed, Journal& journal, Findings& findings)
+      : session_(session),
+        candidate_(candidate),
+        findings_(findings),
+        context_{.seed = seed,
+                 .progress = session.progress,
+                 .ledger = ledger_,
+                 .interrupted = [&session] { return session.interrupted(); },
+                 .checkpoint_interval = 0,
+                 .journal = &journal} {}
+
+  std::optional<SearchedCandidate> run() {
+    SearchedCandidate found{{}, candidate_.fit->solver, {}};
+    if (candidate_.space->dimension() == 0) return found;
+    SearchResult search = sysid::search(*target(found.solver), ObjectiveKind::posterior, context_);
+    if (search.interrupted || session_.interrupted()) return std::nullopt;
+    if (search.failure) {
+      found.excluded = search.failure->message;
+      return found;
+    }
+    found.modes = std::move(search.modes);
+    bool const solved = candidate_.compiled->model.integrated() && !found.solver.row().exact;
+    if (solved && candidate_.fit->refine_solver) refine(found);
+    if (solved && !candidate_.fit->refine_solver) ask(found);
+    if (session_.interrupted()) return std::nullopt;
+    return found;
+  }
+
+ private:
+  std::unique_ptr<ModelTarget> target(SolverSettings const& solver) const {
+    return likelihood_target(session_, candidate_, solver, session_.interruptible());
+  }
+  std::string const& name() const { return candidate_.what->name; }
+
+  void refine(SearchedCandidate& found) {
+    SolverSettings const stated = found.solver;
+    RefinedSolver refined = find_converged_solver([this](SolverSettings const& solver) { return target(solver); },
+                                                  ObjectiveKind::posterior, stated, std::move(found.modes), context_);
+    found.solver = refined.solver;
+    found.modes = std::move(refined.modes);
+    rank(ObjectiveKind::posterior, found.modes);
+    if (found.solver != stated)
+      session_.notices << fmt::format("the likelihood of `{}` is computed with {} (too coarse with {})\n", name(),
+                                      found.solver.text(), stated.text());
+    if (found.modes.empty()) found.excluded = fmt::format("no mode is left with a solver finer than {}", stated.text());
+    if (!refined.converged)
+      findings_.push_back({FindingCode::step_not_settled,
+                           Severity::warning,
+                           {name()},
+                           fmt::format("the likelihood of `{}` has not converged even with {}", name(), found.solver.text()),
+                           settling_advice(found.solver)});
+  }
+
+  void ask(SearchedCandidate const& found) {
+    double const move = move_to_finer(*target(found.solver.finer()), ObjectiveKind::posterior, {found.modes.front()}, context_.seed,
+                                      ledger_, context_.interrupted, context_.journal);
+    if (!(move > tolerable_error)) return;
+    findings_.push_back({FindingCode::integration_step,
+                         found.solver.as_model ? Severity::note : Severity::warning,
+                         {name()},
+                         fmt::format("the error of {} moves parameters of `{}` by {}", found.solver.text(), name(),
+                                     move > 5 ? "many sds" : fmt::format("{:.2g} sd", move)),
+                         found.solver.as_model ? "nothing, if the solver is meant to be part of the model"
+                                               : fmt::format("select again with `{}`", found.solver.finer().option())});
+  }
+
+  Session& session_;
+  Candidate const& candidate_;
+  Findings& findings_;
+  Ledger ledger_;  // of searches: those of a run that goes on read what is kept and simulate less
+  RunContext context_;
+};
+
+}  // namespace
+
+std::optional<std::vector<SearchedCandidate>> search_candidates(Session& session, std::vector<Candidate> const& candidates,
+                                                                std::uint64_t seed, Journal& journal, Findings& findings) {
+  std::vector<SearchedCandidate> all;
+  for (Candidate const& each : candidates) {
+    auto found = CandidateSearch(session, each, seed, journal, findings).run();
+    if (!found) return std::nullopt;
+    all.push_back(std::move(*found));
+  }
+  return all;
+}
+
+}  // namespace sysid

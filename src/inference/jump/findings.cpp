@@ -1,0 +1,117 @@
+// One finding for each kind of doubt; models of one kind are named together.
+#include "inference/jump/findings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text/words.hpp"
+#include "inference/jump/tally.hpp"
+
+namespace sysid::jump {
+namespace {
+
+constexpr double rarely = 0.05;     // of the jumps accepted
+constexpr double imprecise = 0.05;  // standard error of a probability
+constexpr double different = 4;     // standard errors
+constexpr double of_nats = 0.1;     // that a log evidence may differ by whatever its error
+
+constexpr char const* more_samples = "use more `samples`, and a longer `pilot` if jumps are rarely accepted";
+
+void add_not_visited(SelectionResult const& result, std::vector<std::string> const& excluded, Findings& findings) {
+  for (std::size_t m = 0; m < result.models.size(); ++m) {
+    std::string const& name = result.models[m].name;
+    if (!excluded[m].empty())
+      findings.push_back({FindingCode::model_not_visited,
+                          Severity::warning,
+                          {name},
+                          fmt::format("`{}` takes no part, and its probability is given as 0: {}", name, excluded[m]),
+                          "check its equations and priors, or fit it on its own to see where simulations fail"});
+    else if (!std::isfinite(result.jumps->models[m].log_bayes_factor))
+      findings.push_back({FindingCode::model_not_visited,
+                          Severity::warning,
+                          {name},
+                          fmt::format("no chain went to `{}` and came back, so its probability is not known", name),
+                          more_samples});
+  }
+}
+
+void add_rarely_accepted(SelectionResult const& result, Findings& findings) {
+  auto const visited = std::count_if(result.jumps->models.begin(), result.jumps->models.end(),
+                                     [](JumpRecord::OfModel const& each) { return std::isfinite(each.log_bayes_factor); });
+  if (visited < 2) return;  // there is nowhere to jump to
+  std::vector<std::string> names;
+  double least = 1;
+  for (std::size_t m = 0; m < result.models.size(); ++m) {
+    JumpRecord::OfModel const& model = result.jumps->models[m];
+    if (!std::isfinite(model.log_bayes_factor) || !(model.accepted_in < rarely || model.accepted_out < rarely)) continue;
+    names.push_back(result.models[m].name);
+    least = std::min({least, model.accepted_in, model.accepted_out});
+  }
+  if (names.empty()) return;
+  std::string const message = fmt::format(
+      "jumps to or from {} are rarely accepted (rate {:.2g}): its proposals do not cover its posterior", quoted(names), least);
+  findings.push_back({FindingCode::jumps_rarely_accepted, Severity::warning, std::move(names), message,
+                      "use a longer `pilot`; if that does not help, the posterior has narrow or curved parts: compare with the "
+                      "evidences of `fit`"});
+}
+
+/// Chains against each other, and jumps against the evidences of the same proposals.
+void add_disagreements(SelectionResult const& result, std::size_t lead, Findings& findings) {
+  std::vector<std::string> names;
+  JumpRecord::OfModel const& best = result.jumps->models[lead];
+  for (std::size_t m = 0; m < result.models.size(); ++m) {
+    JumpRecord::OfModel const& model = result.jumps->models[m];
+    if (!std::isfinite(model.log_bayes_factor)) continue;
+    if (model.spread > disagreement && model.error > 0.01) names.push_back(result.models[m].name);
+  }
+  if (!names.empty()) {
+    std::string const message = fmt::format("the chains disagree about the probability of {}", quoted(names));
+    findings.push_back({FindingCode::visits_disagree, Severity::error, std::move(names), message, more_samples});
+  }
+  for (std::size_t m = 0; m < result.models.size(); ++m) {
+    JumpRecord::OfModel const& model = result.jumps->models[m];
+    if (m == lead || !std::isfinite(model.log_bayes_factor) || result.models[m].probability < 1e-6) continue;
+    double const by_evidence = model.log_evidence - best.log_evidence, off = model.log_bayes_factor - by_evidence;
+    double const error = std::hypot(model.factor_error, std::hypot(model.evidence_error, best.evidence_error));
+    if (!(std::fabs(off) > different * error + of_nats)) continue;
+    findings.push_back(
+        {FindingCode::visits_disagree,
+         Severity::error,
+         {result.models[m].name},
+         fmt::format("the log Bayes factor of `{}` is {:.2f} by the jumps and {:.2f} by the weights of their proposals",
+                     result.models[m].name, model.log_bayes_factor, by_evidence),
+         more_samples});
+  }
+}
+
+void add_imprecise(SelectionResult const& result, Findings& findings) {
+  std::vector<std::string> names;
+  double largest = 0;
+  for (std::size_t m = 0; m < result.models.size(); ++m) {
+    double const error = result.jumps->models[m].error;
+    if (!(error > imprecise)) continue;
+    names.push_back(result.models[m].name);
+    largest = std::max(largest, error);
+  }
+  if (names.empty()) return;
+  std::string const message =
+      fmt::format("the probability of {} is known to {:.2g} only (one standard error)", quoted(names), largest);
+  findings.push_back({FindingCode::probabilities_imprecise, Severity::warning, std::move(names), message, more_samples});
+}
+
+}  // namespace
+
+Findings check_jumps(SelectionResult const& result, std::vector<std::string> const& excluded) {
+  Findings findings;
+  auto const lead = std::max_element(result.models.begin(), result.models.end(),
+                                     [](auto const& a, auto const& b) { return a.probability < b.probability; });
+  add_not_visited(result, excluded, findings);
+  add_rarely_accepted(result, findings);
+  add_disagreements(result, static_cast<std::size_t>(lead - result.models.begin()), findings);
+  add_imprecise(result, findings);
+  return findings;
+}
+
+}  // namespace sysid::jump
