@@ -80,6 +80,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::no_population, "no_population", error},
     {FindingCode::model_not_visited, "model_not_visited", warning},
     {FindingCode::jumps_rarely_accepted, "jumps_rarely_accepted", warning},
+    {FindingCode::posterior_not_covered, "posterior_not_covered", error},
     {FindingCode::visits_disagree, "visits_disagree", error},
     {FindingCode::probabilities_imprecise, "probabilities_imprecise", warning},
     {FindingCode::coverage_low, "coverage_low", warning},

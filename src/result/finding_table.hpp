@@ -79,6 +79,7 @@ enum class FindingCode {
   no_population,
   model_not_visited,
   jumps_rarely_accepted,
+  posterior_not_covered,
   visits_disagree,
   probabilities_imprecise,
   coverage_low,

@@ -55,6 +55,7 @@ struct JumpRecord {
     double bias = 0;                                // log of the factor by which its visits were made rarer
     double accepted_in = 0, accepted_out = 0;       // of the jumps to it from others, and from it to others
     double accepted_within = 0;                     // of the walks
+    double worth = 0;                               // part of their number that its proposals are worth
     double spread = 0;                              // variance between chains over that within them; 1 is chance
     std::uint64_t simulations = 0;
     std::string solver;  // empty where nothing is solved

@@ -12,6 +12,7 @@
 namespace sysid::jump {
 namespace {
 
+constexpr double covering = 0.01;   // worth of proposals
 constexpr double rarely = 0.05;     // of the jumps accepted
 constexpr double imprecise = 0.05;  // standard error of a probability
 constexpr double different = 4;     // standard errors
@@ -55,6 +56,24 @@ void add_rarely_accepted(SelectionResult const& result, Findings& findings) {
   findings.push_back({FindingCode::jumps_rarely_accepted, Severity::warning, std::move(names), message,
                       "use a longer `pilot`; if that does not help, the posterior has narrow or curved parts: compare with the "
                       "evidences of `fit`"});
+}
+
+void add_not_covered(SelectionResult const& result, Findings& findings) {
+  std::vector<std::string> names;
+  double least = 1;
+  for (std::size_t m = 0; m < result.models.size(); ++m) {
+    JumpRecord::OfModel const& model = result.jumps->models[m];
+    if (!std::isfinite(model.log_bayes_factor) || !(model.worth < covering)) continue;
+    names.push_back(result.models[m].name);
+    least = std::min(least, model.worth);
+  }
+  if (names.empty()) return;
+  std::string const message =
+      fmt::format("the proposals of {} are worth only {:.1g} of their number: a part of its posterior is hardly ever reached",
+                  quoted(names), least);
+  findings.push_back({FindingCode::posterior_not_covered, Severity::error, std::move(names), message,
+                      "use a `pilot` ten times as long; if that does not help, the posterior has narrow or curved parts: remove "
+                      "parameters that the data do not determine, or compare evidences of `fit`"});
 }
 
 /// Chains against each other, and jumps against the evidences of the same proposals.
@@ -109,6 +128,7 @@ Findings check_jumps(SelectionResult const& result, std::vector<std::string> con
                                      [](auto const& a, auto const& b) { return a.probability < b.probability; });
   add_not_visited(result, excluded, findings);
   add_rarely_accepted(result, findings);
+  add_not_covered(result, findings);
   add_disagreements(result, static_cast<std::size_t>(lead - result.models.begin()), findings);
   add_imprecise(result, findings);
   return findings;

@@ -23,7 +23,8 @@ struct KeptPilot {
 };
 
 /// Four chains of `mh` from the model's modes (it searches where there are none), a heavy-tailed mixture fitted to them and the
-/// modes, and the mean weight of draws of it. Nothing when interrupted; the chains are kept then. Throws checkpoint::Mismatch.
+/// modes, and the mean weight of draws of it; again with chains four and sixteen times as long where such draws are worth less than
+/// a tenth of their number. Nothing when interrupted; the chains are kept then. Throws checkpoint::Mismatch or a JSON exception.
 std::optional<Pilot> explore(LikelihoodCandidate const& candidate, Plan const& plan, RunContext& context, KeptPilot const& kept);
 
 nlohmann::json store(Pilot const& pilot);

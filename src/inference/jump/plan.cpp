@@ -17,7 +17,9 @@ constexpr SettingRow rows[] = {
     {"thin", SettingKind::integer, "4", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "8", 1, 65536, "", "number of independent chains"},
     {"pilot", SettingKind::integer, "2000", 100, 1e8, "",
-     "iterations of each of the four chains that learn a model's posterior beforehand, a quarter of them burn-in"},
+     "iterations of each of the four chains that learn a model's posterior beforehand, a quarter of them burn-in; up to 16 times "
+     "as "
+     "many where these are not enough"},
 };
 
 /// Parts of all chains together: their scatter is then known to a tenth.

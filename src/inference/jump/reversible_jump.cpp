@@ -77,12 +77,8 @@ class Run {
                              state_.chains_of_pilot = chains;
                              if (context_.checkpoint) save();
                            }};
-      try {
-        state_.pilots[k] = explore(candidates_[k], plan_, context_, kept);
-      } catch (checkpoint::Mismatch const& mismatch) {
-        result_.failure = checkpoint::unusable(mismatch.what());
-        return true;
-      }
+      result_.failure = checkpoint::read([&] { state_.pilots[k] = explore(candidates_[k], plan_, context_, kept); });
+      if (result_.failure) return true;
       if (!state_.pilots[k]) return false;
       state_.chains_of_pilot = json();
       if (context_.stop_requested()) return false;
@@ -345,6 +341,7 @@ class Run {
       model.accepted_out = rate(state_.jumps_out_accepted, state_.jumps_out);
       model.accepted_within = rate(state_.walks_accepted, state_.walks);
       model.spread = found.spread[m];
+      model.worth = state_.weights[m].worth();
       model.simulations = state_.simulations[m];
       result_.models[k].probability = found.probability[m];
       result_.models[k].share = model.visits;

@@ -105,6 +105,8 @@ double Weights::error() const {
   return std::sqrt(std::max(0.0, squares / (sum * sum) - 1 / count));
 }
 
+double Weights::worth() const { return sum > 0 ? sum * sum / squares / count : 0; }
+
 json identity(std::span<LikelihoodCandidate const> candidates, Settings const& settings, std::uint64_t seed) {
   json values = json::object(), models = json::array();
   for (auto const& [name, value] : settings.all()) std::visit([&](auto const& v) { values[name] = v; }, value);

@@ -21,6 +21,8 @@ struct Weights {
   /// log of their mean, and its standard error; -infinity, infinity where none is positive.
   double log_mean() const;
   double error() const;
+  /// The part of their number that they are worth; 0 where none is positive.
+  double worth() const;
 };
 
 /// Kept draws of a model: parameters one after another, chain after chain within an iteration.

@@ -239,7 +239,7 @@ void from_json(json const& stored, SelectedModel& model) {
   model.declared = LaneArray(static_cast<int>(model.parameters.size()), static_cast<int>(model.weight.size()));
 }
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JumpRecord::OfModel, error, log_bayes_factor, factor_error, log_evidence, evidence_error, visits,
-                                   bias, accepted_in, accepted_out, accepted_within, spread, simulations, solver)
+                                   bias, accepted_in, accepted_out, accepted_within, worth, spread, simulations, solver)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JumpRecord, chains, samples, burn_in, models)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionResult, models, populations, jumps, threshold, next_threshold, stopped_by, ran_out)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LikelihoodCheck, log_evidence, probability, solver, given_up)
@@ -261,8 +261,8 @@ void from_json(json const& stored, TermFate& fate) {
   if (!read) throw json::other_error::create(501, "a fate of a term that there is not", &stored);
   fate = *read;
 }
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredTerm, text, unit, name, fate, kept, coefficient, sd, measure, measure_error, mean, mean_sd,
-                                   contribution, inflation)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredTerm, text, unit, name, fate, kept, coefficient, sd, measure, measure_error, mean,
+                                   mean_sd, contribution, inflation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredSupport, terms, probability, probability_error, log_evidence)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredEquation, target, equation, terms, supports, explained, noise_ratio, own_noise, unit,
                                    rows, exact, converged)

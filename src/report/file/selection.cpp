@@ -193,6 +193,7 @@ void add_jumps(JumpRecord::OfModel const& of, Json& entry) {
   entry["log_bayes_factor_error"] = number_or_null(of.factor_error);
   entry["log_evidence"] = number_or_null(of.log_evidence);
   entry["log_evidence_error"] = number_or_null(of.evidence_error);
+  entry["proposals_worth"] = of.worth;
   entry["visits"] = of.visits;
   entry["log_bias"] = of.bias;
   entry["jumps_accepted"] = {{"to", of.accepted_in}, {"from", of.accepted_out}, {"within", of.accepted_within}};
