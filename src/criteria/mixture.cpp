@@ -45,17 +45,23 @@ Sides cumulative(std::span<MixtureDraws const> members, double x) {
 }  // namespace
 
 double mixture_quantile(std::span<MixtureDraws const> members, double probability) {
-  std::vector<double> all;
-  for (MixtureDraws const& member : members) all.insert(all.end(), member.values.begin(), member.values.end());
-  std::sort(all.begin(), all.end());
-  // The weights may sum to 1 but for rounding.
-  auto const reaches = [&](double x) { return cumulative(members, x).at >= probability; };
-  auto const found = std::partition_point(all.begin(), all.end(), [&](double x) { return !reaches(x); });
-  if (found == all.end()) return all.back();
-  Sides const here = cumulative(members, *found);
-  if (found == all.begin() || here.below <= probability) return *found;
-  double const before = *(found - 1), reached = cumulative(members, before).at;
-  return before + (*found - before) * (probability - reached) / (here.below - reached);
+  // The first draw of all where the sum reaches the probability, and the last before it; each member's draws are in order.
+  double found = std::numeric_limits<double>::infinity(), last = -found, before = -found;
+  for (MixtureDraws const& member : members) {
+    auto const reached = std::partition_point(member.values.begin(), member.values.end(),
+                                              [&](double x) { return cumulative(members, x).at < probability; });
+    if (reached != member.values.end()) found = std::min(found, *reached);
+    last = std::max(last, member.values.back());
+  }
+  if (found > last) return last;  // the weights may sum to 1 but for rounding
+  for (MixtureDraws const& member : members) {
+    auto const first = std::lower_bound(member.values.begin(), member.values.end(), found);
+    if (first != member.values.begin()) before = std::max(before, *(first - 1));
+  }
+  Sides const here = cumulative(members, found);
+  if (!std::isfinite(before) || here.below <= probability) return found;
+  double const reached = cumulative(members, before).at;
+  return before + (found - before) * (probability - reached) / (here.below - reached);
 }
 
 VarianceSplit split_variance(std::span<MemberMoments const> members) {

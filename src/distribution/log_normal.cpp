@@ -40,7 +40,7 @@ double quantile(double probability, Tail tail, Numbers a) {
 /// median exp(sd^2/2), median^2 exp(sd^2) (exp(sd^2) - 1).
 NoiseMoments moments(Numbers a) {
   double const growth = elementary::exp(a[1] * a[1]);
-  return {a[0] * std::sqrt(growth), a[0] * a[0] * growth * (growth - 1)};
+  return {a[0] * std::sqrt(growth), a[0] * a[0] * growth * elementary::expm1(a[1] * a[1])};  // 1 of exp hides a small sd
 }
 
 std::string_view refuse(Numbers a) {

@@ -79,6 +79,7 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   result.drift.resize(model.invariants.size());
   for (int w = 0; w < records.width(); ++w) {
     bool const good = outcome[static_cast<std::size_t>(w)].ok;
+    result.solved.push_back(good ? 1 : 0);
     std::size_t q = 0;
     for (int r = 0; r < rows; ++r) {
       auto const& record = compiled_->records[static_cast<std::size_t>(r)];

@@ -32,6 +32,8 @@ class Trajectory {
   /// from the stream of (noise_key, index d, step c). A failed vector is NaN throughout.
   struct Result {
     std::vector<std::vector<std::vector<double>>> values, noisy;
+    /// solved[d]: 1, vector d did not fail, whether or not it is defined everywhere.
+    std::vector<char> solved;
     /// Of all vectors; what failed has its place there.
     Ledger ledger;
     int failed() const { return static_cast<int>(ledger.failed()); }

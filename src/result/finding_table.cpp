@@ -91,7 +91,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::prior_redrawn, "prior_redrawn", warning_or_note},
     {FindingCode::backends_disagree, "backends_disagree", error_or_warning},
     {FindingCode::fitted_rows_predicted, "fitted_rows_predicted", note},
-    {FindingCode::from_doubtful_fit, "from_doubtful_fit", error_or_warning},
+    {FindingCode::from_doubtful_fit, "from_doubtful_fit", any},
     {FindingCode::prior_contradicted, "prior_contradicted", warning},
     {FindingCode::optimum_alone, "optimum_alone", note},
     {FindingCode::searched_near, "searched_near", note},

@@ -10,7 +10,10 @@
 namespace sysid {
 namespace {
 
-std::string number_cell(double value) { return std::isnan(value) ? "-" : significant(value, 4); }
+std::string number_cell(double value) {
+  if (std::isinf(value)) return value < 0 ? "-infinity" : "infinity";
+  return std::isnan(value) ? "-" : significant(value, 4);
+}
 std::string percent_cell(double share) { return std::isnan(share) ? "-" : fmt::format("{:.1f}", 100 * share); }
 
 std::vector<std::string> scores_row(std::string name, std::string weight, AverageScores const& scores) {
@@ -27,6 +30,14 @@ std::string weight_of(AveragedMember const& member) {
   return significant(member.weight, 3) + (member.error ? fmt::format(" ({})", significant(*member.error, 1)) : std::string());
 }
 
+std::string log_score_caption(AveragedChannel const& channel) {
+  std::string caption = "log score: mean over the samples of the log predictive density [nats], higher is better";
+  bool impossible = std::isinf(channel.average.log_score);
+  for (AverageScores const& each : channel.members) impossible = impossible || std::isinf(each.log_score);
+  if (impossible) caption += "\n-infinity: some sample is impossible by all draws";
+  return caption;
+}
+
 }  // namespace
 
 void add_average_tables(AverageReport const& average, std::vector<std::string> const& notes, std::vector<ReportTable>& tables) {
@@ -34,7 +45,7 @@ void add_average_tables(AverageReport const& average, std::vector<std::string> c
     std::string const unit = channel.unit.empty() ? "" : fmt::format(" [{}]", channel.unit);
     ReportTable table{
         fmt::format("Average and its members: {} on {}, {} samples", channel.channel, channel.experiment, channel.samples),
-        "log score: mean over the samples of the log predictive density [nats], higher is better",
+        log_score_caption(channel),
         {"fit", "weight", "log score", "NMSE [%]", "RMSE" + unit, "coverage_95"},
         {scores_row("average", "", channel.average)}};
     for (std::size_t k = 0; k < average.members.size(); ++k)
@@ -53,12 +64,14 @@ void add_average_tables(AverageReport const& average, std::vector<std::string> c
                     "mean over the record; sd: its root, with the noise of channels",
                     {"quantity", "sd", "parameter [%]", "model [%]", "noise [%]"},
                     {}};
-  bool several = false;
+  bool several = false, without = false;
+  for (VarianceShares const& each : average.shares) without = without || std::isnan(each.sd);
+  if (without) table.caption += "\n-: the noise has no finite variance at some of the draws";
   for (VarianceShares const& each : average.shares) several = several || each.experiment != average.shares.front().experiment;
   for (VarianceShares const& each : average.shares)
     table.rows.push_back({each.quantity + (several ? " on " + each.experiment : ""),
-                          number_cell(each.sd) + (each.unit.empty() ? "" : " " + each.unit), percent_cell(each.parameter),
-                          percent_cell(each.model), percent_cell(each.noise)});
+                          number_cell(each.sd) + (each.unit.empty() || std::isnan(each.sd) ? "" : " " + each.unit),
+                          percent_cell(each.parameter), percent_cell(each.model), percent_cell(each.noise)});
   tables.push_back(std::move(table));
 }
 

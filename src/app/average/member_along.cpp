@@ -12,48 +12,80 @@
 namespace sysid {
 namespace {
 
+template <class Quantities>
+Quantity const* named(Quantities const& all, std::string const& name) {
+  auto const found = std::find_if(all.begin(), all.end(), [&](Quantity const& each) { return each.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+Quantity const* quantity_of(Model const& model, std::string const& name, bool channel) {
+  if (channel) return named(model.channels, name);
+  Quantity const* const state = named(model.states, name);
+  return state != nullptr ? state : named(model.derived, name);
+}
+
+std::string unit_of(Quantity const& quantity) {
+  if (!quantity.unit) return "";
+  return quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit->text;
+}
+
 /// value -> offset + slope value.
 struct Conversion {
   double offset = 0, slope = 1;
 
-  Conversion(Channel const& from, std::vector<Channel> const& units) {
-    auto const to = std::find_if(units.begin(), units.end(), [&](Channel const& each) { return each.name == from.name; });
-    if (to == units.end()) return;
-    offset = to->from_si(from.to_si(0));
-    slope = to->from_si(from.to_si(1)) - offset;
+  Conversion(Quantity const& from, Quantity const& to) : offset(to.from_si(from.to_si(0))) {
+    slope = to.from_si(from.to_si(1)) - offset;
   }
-  bool nothing() const { return offset == 0 && slope == 1; }
   void apply(std::vector<std::vector<double>>& trajectories) const {
+    if (offset == 0 && slope == 1) return;
     for (std::vector<double>& trajectory : trajectories)
       for (double& value : trajectory) value = offset + slope * value;
   }
 };
 
-std::string unit_of(std::string const& name, std::string const& own, std::vector<Channel> const& units) {
-  for (Channel const& each : units)
-    if (each.name == name && each.unit) return each.unit_text();
-  return own;
+/// Of one dimension; a quantity without a unit is a pure number.
+bool comparable(Quantity const& one, Quantity const& other) {
+  return one.unit.value_or(Unit{}).dimension == other.unit.value_or(Unit{}).dimension;
 }
 
-/// Log of the mean over the draws that have a solution; -infinity where none gives the sample a density.
-double log_mean_density(std::vector<std::vector<double>> const& log_density, std::size_t sample) {
+/// Trajectories below this number get several draws of the noise each, so that there are `noisy_draws` at least: the quantiles
+/// of 2.5 and 97.5 % lie between draws from 39 on.
+constexpr int few_trajectories = 39, noisy_draws = 200;
+
+/// [channels][times * draws][rows]: the draws with noise, then the same with other noise, and so on.
+std::vector<std::vector<std::vector<double>>> noisy_again(PosteriorTrajectories const& member, int e, Trajectory const& trajectory,
+                                                          LaneArray const& parameters) {
+  int const draws = parameters.width(), times = (noisy_draws + draws - 1) / draws;
+  LaneArray all(parameters.rows(), draws * times);
+  for (int r = 0; r < all.rows(); ++r)
+    for (int w = 0; w < all.width(); ++w) all(r, w) = parameters(r, w % draws);
+  return member.run(e, trajectory, all).noisy;
+}
+
+/// Log of the mean over the draws that are solved; -infinity where none gives the sample a density. A draw whose equations have no
+/// value at the sample says that it is impossible.
+double log_mean_density(std::vector<std::vector<double>> const& log_density, std::vector<char> const& solved, std::size_t sample) {
+  auto const of = [&](std::size_t draw) {
+    double const value = log_density[draw][sample];
+    return std::isnan(value) ? -infinity : value;
+  };
   double largest = -infinity, sum = 0;
   int draws = 0;
-  for (std::vector<double> const& each : log_density)
-    if (!std::isnan(each[sample])) ++draws, largest = std::max(largest, each[sample]);
+  for (std::size_t d = 0; d < log_density.size(); ++d)
+    if (solved[d] != 0) ++draws, largest = std::max(largest, of(d));
   if (draws == 0) return not_a_number;
   if (!std::isfinite(largest)) return largest;
-  for (std::vector<double> const& each : log_density)
-    if (!std::isnan(each[sample])) sum += elementary::exp(each[sample] - largest);
+  for (std::size_t d = 0; d < log_density.size(); ++d)
+    if (solved[d] != 0) sum += elementary::exp(of(d) - largest);
   return largest + elementary::log(sum / draws);
 }
 
 std::vector<double> log_densities(PointwiseLikelihood const& pointwise, std::vector<std::vector<double>> const& of_channel,
-                                  int channel, std::size_t rows, double slope) {
+                                  std::vector<char> const& solved, int channel, std::size_t rows, double slope) {
   std::vector<double> out(rows, not_a_number);
   std::vector<int> const& samples = pointwise.samples(channel);
   for (std::size_t k = 0; k < samples.size(); ++k)
-    out[static_cast<std::size_t>(samples[k])] = log_mean_density(of_channel, k) - elementary::log(std::fabs(slope));
+    out[static_cast<std::size_t>(samples[k])] = log_mean_density(of_channel, solved, k) - elementary::log(std::fabs(slope));
   return out;
 }
 
@@ -61,7 +93,8 @@ void add(Findings findings, MemberAlong& to) {
   for (Finding& each : findings) to.findings.push_back(std::move(each));
 }
 
-void cut(std::vector<double>& values, std::size_t first, std::size_t count) {
+template <class Value>
+void cut(std::vector<Value>& values, std::size_t first, std::size_t count) {
   if (values.empty()) return;
   values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
   values.resize(count);
@@ -71,17 +104,16 @@ Experiment cut(Experiment experiment, std::size_t first, std::size_t count) {
   cut(experiment.time, first, count);
   for (InputSignal& input : experiment.inputs) input = input.view(static_cast<int>(first), static_cast<int>(count));
   for (std::vector<double>& channel : experiment.measured) cut(channel, first, count);
-  experiment.scored.erase(experiment.scored.begin(), experiment.scored.begin() + static_cast<std::ptrdiff_t>(first));
-  experiment.scored.resize(count);
+  cut(experiment.scored, first, count);
   experiment.first_row += static_cast<int>(first);
   experiment.history.clear();
-  experiment.has_lags.clear();
+  for (std::vector<std::uint8_t>& channel : experiment.has_lags) cut(channel, first, count);
   return experiment;
 }
 
 }  // namespace
 
-MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int e, std::vector<Channel> const& units) {
+MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int e, Model const& units) {
   MemberAlong out;
   out.experiment = member.data()[static_cast<std::size_t>(e)].experiment;
   Trajectory const trajectory = member.trajectory(e);
@@ -97,22 +129,29 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
   out.ledger = std::move(result.ledger);
   PointwiseLikelihood const pointwise = member.pointwise(e);
   auto const densities = pointwise.run(parameters);
+  if (!member.model().channels.empty() && parameters.width() < few_trajectories)
+    result.noisy = noisy_again(member, e, trajectory, parameters);
   for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
     TrajectoryQuantity const& from = trajectory.quantities()[q];
-    MemberQuantity quantity{from.name, from.unit, from.channel >= 0, std::move(result.values[q]), {}, {}, {}, {}};
-    if (from.channel >= 0) {
+    bool const is_channel = from.channel >= 0;
+    MemberQuantity quantity{from.name, from.unit, is_channel, true, std::move(result.values[q]), {}, {}, {}, {}};
+    Quantity const* const own = quantity_of(member.model(), from.name, is_channel);
+    Quantity const* to = quantity_of(units, from.name, is_channel);
+    quantity.comparable = to != nullptr && comparable(*own, *to);
+    if (!quantity.comparable) to = own;
+    Conversion const conversion(*own, *to);
+    quantity.unit = unit_of(*to);
+    conversion.apply(quantity.values);
+    if (is_channel) {
       auto const c = static_cast<std::size_t>(from.channel);
-      Conversion const conversion(member.model().channels[c], units);
       quantity.noisy = std::move(result.noisy[c]);
       quantity.noise_mean = std::move(result.noise_mean[c]);
       quantity.noise_variance = std::move(result.noise_variance[c]);
-      quantity.log_density = log_densities(pointwise, densities[c], from.channel, out.experiment.time.size(), conversion.slope);
-      if (!conversion.nothing()) {
-        quantity.unit = unit_of(from.name, from.unit, units);
-        for (auto* each : {&quantity.values, &quantity.noisy, &quantity.noise_mean}) conversion.apply(*each);
-        for (std::vector<double>& each : quantity.noise_variance)
-          for (double& variance : each) variance *= conversion.slope * conversion.slope;
-      }
+      quantity.log_density =
+          log_densities(pointwise, densities[c], result.solved, from.channel, out.experiment.time.size(), conversion.slope);
+      for (auto* each : {&quantity.noisy, &quantity.noise_mean}) conversion.apply(*each);
+      for (std::vector<double>& each : quantity.noise_variance)
+        for (double& variance : each) variance *= conversion.slope * conversion.slope;
     }
     out.quantities.push_back(std::move(quantity));
   }

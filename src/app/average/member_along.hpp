@@ -13,9 +13,13 @@ namespace sysid {
 struct MemberQuantity {
   std::string name, unit;
   bool channel = false;
-  std::vector<std::vector<double>> values, noisy;               // [draws][rows]; noisy: of a channel
-  std::vector<std::vector<double>> noise_mean, noise_variance;  // the same
-  std::vector<double> log_density;  // [rows] of each scored sample the mean over draws, of the unit; NaN where there is none
+  bool comparable = true;                   // with that of its name in the model that gives the units
+  std::vector<std::vector<double>> values;  // [draws][rows]
+  std::vector<std::vector<double>> noisy;   // of a channel: the same, or several times the draws one after another
+  std::vector<std::vector<double>> noise_mean, noise_variance;  // of a channel [draws][rows]
+  /// [rows] of each scored sample the log of the mean density over the draws that are solved, of the unit; -infinity where it is
+  /// impossible by all of them; NaN where there is no sample.
+  std::vector<double> log_density;
 };
 
 struct MemberAlong {
@@ -25,8 +29,8 @@ struct MemberAlong {
   Findings findings;  // of functions that are read out of their range, and of constraints that drift
 };
 
-/// units: the channels of the model in whose units all are.
-MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int experiment, std::vector<Channel> const& units);
+/// units: the model in whose units all are.
+MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int experiment, Model const& units);
 
 /// The rows of the file that all have, in all of them: models that look back further begin later.
 void cut_to_common_rows(std::vector<MemberAlong>& members);

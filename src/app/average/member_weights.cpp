@@ -90,8 +90,9 @@ void finish(AverageWeights by, MemberWeights& out) {
   for (AveragedMember& member : out.members) {
     member.weight /= sum;
     fits.push_back(member.fit);
-    shares.push_back(fmt::format("`{}` {}", member.fit, significant(member.weight, 3)));
-    if (!member.counted.empty())
+    if (member.counted.empty())
+      shares.push_back(fmt::format("`{}` {}", member.fit, significant(member.weight, 3)));
+    else
       out.findings.push_back({FindingCode::counted_once,
                               Severity::note,
                               {member.fit, member.counted},

@@ -6,20 +6,24 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 
 #include "app/average/average_tables.hpp"
 #include "app/average/member_weights.hpp"
 #include "app/average/mixture_bands.hpp"
+#include "app/comparison/compare.hpp"
 #include "app/session/made_from.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
 #include "app/session/solver_record.hpp"
 #include "app/session/stored_draws.hpp"
 #include "app/session/task_rows.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/coverage.hpp"
+#include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
 #include "experiment/experiments.hpp"
 #include "experiment/fitted_rows.hpp"
@@ -30,6 +34,28 @@ namespace {
 /// The draws of the first member are those of its prediction alone; the others have streams of their own.
 std::uint64_t seed_of(std::uint64_t seed, std::size_t member) {
   return member == 0 ? seed : Stream({seed, Purpose::average, member, 0}).bits();
+}
+
+/// The same record with the samples that all score, which others may be compared on. scored: of what rows of `along` each channel.
+ExperimentData with_samples(ExperimentData data, Model const& model, Experiment const& along,
+                            std::vector<ScoredChannel> const& scored) {
+  Experiment& experiment = data.experiment;
+  int const skipped = along.first_row - experiment.first_row;
+  std::vector<std::uint8_t> any(experiment.scored.size(), 0);
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    auto const found =
+        std::ranges::find_if(scored, [&](ScoredChannel const& each) { return each.scores.channel == model.channels[c].name; });
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
+      auto const row = static_cast<std::size_t>(static_cast<int>(i) - skipped);  // large where it is before the first
+      bool const all = found != scored.end() && row < found->rows.size() && found->rows[row] != 0;
+      if (all)
+        any[i] = 1;
+      else
+        experiment.measured[c][i] = not_a_number;
+    }
+  }
+  experiment.scored = std::move(any);
+  return data;
 }
 
 class PredictAverage {
@@ -55,11 +81,20 @@ class PredictAverage {
     Report report = begin_report(session_, task_, fit(lead_).model, what_text(), seed_);
     add_prediction_rule(model, what_.prediction, report);
     report.findings = weighed_.findings;
+    add_kinds(report);
     report.average = AverageReport{what_.weights, weighed_.members, {}, {}};
     for (std::size_t k = 0; k < members_.size(); ++k) add_optimum(k, report);
     for (int e = 0; e < static_cast<int>(members_[lead_]->data().size()); ++e) predict(e, report);
-    for (PredictTask const& member : what_.members)
-      add_source(session_.result_folder(session_.file.tasks[static_cast<std::size_t>(member.fit)]), report);
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      std::size_t const before = report.findings.size();
+      add_source(session_.result_folder(session_.file.tasks[static_cast<std::size_t>(what_.members[k].fit)]), report);
+      for (std::size_t f = before; f < report.findings.size(); ++f) {
+        Severity& severity = report.findings[f].severity;
+        // By a failed fit a weight may be small that should not be; a fit that counts with another has no part in anything.
+        severity = weighed_.members[k].counted.empty() ? std::max(severity, std::min(weighed(severity, k), Severity::warning))
+                                                       : Severity::note;
+      }
+    }
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)},
                        {"weights", std::string(word(what_.weights))},
                        {"start", start_text(what_.start)}};
@@ -86,6 +121,31 @@ class PredictAverage {
         model.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model, what_.prediction)) : std::string());
   }
 
+  /// The severity of what is wrong with the trajectories of a member, by its part in the average.
+  Severity weighed(Severity alone, std::size_t k) const {
+    if (weights_[k] < negligible_weight) return Severity::note;
+    constexpr double small = 0.1;
+    if (weights_[k] >= small) return alone;
+    return alone == Severity::error ? Severity::warning : Severity::note;
+  }
+
+  /// Models with past measured samples predict one step, others run freely: their scores say different things.
+  void add_kinds(Report& report) const {
+    std::vector<std::string> one_step, free;
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      if (weights_[k] == 0) continue;
+      (predicts_from_data(members_[k]->model()) ? one_step : free).push_back("`" + name(k) + "`");
+    }
+    if (report.prediction_rule.empty() || one_step.empty() || free.empty()) return;
+    report.prediction_rule = mixed_kinds;
+    report.findings.push_back({FindingCode::averaged_over_models,
+                               Severity::note,
+                               {},
+                               fmt::format("predictions of two kinds are averaged: {} from measured past samples, {} in free run",
+                                           fmt::join(one_step, ", "), fmt::join(free, ", ")),
+                               "to compare models, predict all alike, with `prediction = one_step` or `free_run`"});
+  }
+
   void add_optimum(std::size_t k, Report& report) const {
     if (members_[k]->fitted().draws.total() != 1) return;
     report.findings.push_back(
@@ -103,31 +163,83 @@ class PredictAverage {
     std::vector<MemberAlong> along;
     for (std::size_t k = 0; k < members_.size(); ++k) {
       stop_if_interrupted();
-      along.push_back(run_along(session_, *members_[k], e, members_[lead_]->model().channels));
+      along.push_back(run_along(session_, *members_[k], e, members_[lead_]->model()));
       add_findings(k, e, along.back(), report);
-      report.ledger.merge(along.back().ledger);
+      if (weights_[k] > 0) report.ledger.merge(along.back().ledger);
     }
     cut_to_common_rows(along);
     Model const& model = members_[lead_]->model();
     ExperimentData const& data = members_[lead_]->data()[static_cast<std::size_t>(e)];
-    add_data(session_.file, data, model, report);
     Experiment const& experiment = along[lead_].experiment;
     Prediction average = record_along(experiment, model);
-    average.quantities = averaged_quantities(along, weights_, lead_);
-    for (PredictedQuantity& quantity : average.quantities)
-      for (std::size_t c = 0; c < model.channels.size(); ++c)
-        if (model.channels[c].name == quantity.name)
-          for (double const si : experiment.measured[c]) quantity.measured.push_back(model.channels[c].from_si(si));
-    for (AveragedChannel& channel : averaged_scores(along, weights_, average)) {
-      report.fit.push_back({channel.experiment, channel.channel, channel.unit, {{"log_score", channel.average.log_score}}});
-      report.average->channels.push_back(std::move(channel));
+    std::vector<AveragedBand> bands = averaged_bands(along, weights_, lead_);
+    for (std::size_t c = 0; c < model.channels.size(); ++c) {
+      auto const band = std::ranges::find_if(bands, [&](auto const& each) { return each.average.name == model.channels[c].name; });
+      if (band == bands.end() && !experiment.measured[c].empty())
+        throw std::logic_error("a measured channel of an average is not of all its fits");
+      if (band == bands.end()) continue;
+      for (double const si : experiment.measured[c]) band->average.measured.push_back(model.channels[c].from_si(si));
     }
-    for (VarianceShares& shares : variance_shares(average)) report.average->shares.push_back(std::move(shares));
-    int failed = 0;
+    std::vector<ScoredChannel> scored = averaged_scores(along, weights_, average.experiment, bands);
+    add_data(session_.file, with_samples(data, model, experiment, scored), model, report);
+    if (!scored.empty()) std::ranges::fill(average.scored, std::uint8_t{0});
+    for (ScoredChannel& channel : scored) {
+      for (std::size_t i = 0; i < channel.rows.size(); ++i) average.scored[i] |= channel.rows[i];
+      auto const of = std::ranges::find_if(bands, [&](auto const& each) { return each.average.name == channel.scores.channel; });
+      std::vector<Score> all = scores(of->average, channel.rows);
+      all.insert(all.begin(), {"log_score", channel.scores.average.log_score});
+      report.fit.push_back({channel.scores.experiment, channel.scores.channel, channel.scores.unit, std::move(all)});
+      report.average->channels.push_back(std::move(channel.scores));
+    }
     for (std::size_t k = 0; k < along.size(); ++k)
-      if (weights_[k] > 0) failed += static_cast<int>(along[k].ledger.failed());
-    for (Finding& finding : band_findings(average, failed, failed, several())) report.findings.push_back(std::move(finding));
+      add_left_out(k, static_cast<int>(along[k].ledger.failed()), average, bands, report);
+    for (AveragedBand& band : bands) average.quantities.push_back(std::move(band.average));
+    for (VarianceShares& shares : variance_shares(average)) report.average->shares.push_back(std::move(shares));
     report.predictions.push_back(std::move(average));
+  }
+
+  /// Trajectories of member k that are left out of bands, and rows that it cannot predict.
+  void add_left_out(std::size_t k, int failed, Prediction const& along, std::vector<AveragedBand> const& bands,
+                    Report& report) const {
+    Prediction alone;
+    alone.experiment = along.experiment;
+    for (AveragedBand const& band : bands) {
+      PredictedQuantity const& own = band.members[k].band;
+      PredictedQuantity& counts = alone.quantities.emplace_back();
+      counts.name = own.name;
+      counts.measured = band.average.measured;
+      counts.response.draws = own.response.draws;
+      counts.response.excluded = own.response.excluded;
+      counts.noisy.draws = own.noisy.draws;
+      counts.noisy.excluded = own.noisy.excluded;
+    }
+    for (Finding& finding : band_findings(alone, failed, failed, several())) add_of_member(k, std::move(finding), report);
+    for (AveragedBand const& band : bands) {
+      int const undefined = band.members[k].undefined;
+      if (undefined == 0) continue;
+      auto const rows = static_cast<std::uint64_t>(along.time.size());
+      Severity severity = failure_severity(static_cast<std::uint64_t>(undefined), rows);
+      if (band.average.measured.empty()) severity = std::max(severity, Severity::warning);
+      add_of_member(k,
+                    {FindingCode::undefined_in_band,
+                     severity,
+                     {band.average.name, along.experiment},
+                     fmt::format("{}{} is undefined along every trajectory at {} of {} rows; {}", band.average.name,
+                                 several() ? " on " + along.experiment : std::string(), undefined, rows,
+                                 weights_[k] < negligible_weight ? "the average there is of the other fits"
+                                                                 : "the average has no value there"),
+                     "check for a root or a logarithm of a negative number, or a division by zero"},
+                    report);
+    }
+  }
+
+  /// A finding of member k alone, with its name, weighed.
+  void add_of_member(std::size_t k, Finding finding, Report& report) const {
+    finding.message = fmt::format("with `{}`: {}", name(k), finding.message);
+    finding.names.push_back(name(k));
+    if (Severity const severity = weighed(finding.severity, k); row_of(finding.code).severities.contains(severity))
+      finding.severity = severity;
+    report.findings.push_back(std::move(finding));
   }
 
   bool several() const { return members_[lead_]->data().size() > 1; }
@@ -135,11 +247,7 @@ class PredictAverage {
   /// What a prediction with member k alone would find, with its name.
   void add_findings(std::size_t k, int e, MemberAlong const& along, Report& report) const {
     ExperimentData const& data = members_[k]->data()[static_cast<std::size_t>(e)];
-    auto const add = [&](Finding finding) {
-      finding.message = fmt::format("with `{}`: {}", name(k), finding.message);
-      finding.names.push_back(name(k));
-      report.findings.push_back(std::move(finding));
-    };
+    auto const add = [&](Finding finding) { add_of_member(k, std::move(finding), report); };
     if (auto const drawn = members_[k]->drawn_from_prior(e); !drawn.empty())
       add({FindingCode::new_experiment,
            Severity::note,

@@ -116,15 +116,17 @@ std::string data_text(StoredSummary const& result) {
   return text;
 }
 
-std::string samples_of(StoredSummary const& result) {
-  std::string all;
+/// Digests of the samples in any order: a likelihood is their product.
+std::vector<std::string> samples_of(StoredSummary const& result) {
+  std::vector<std::string> all;
   for (json const& data : result.summary.at("data")) {
     std::string const digest = data.value("samples_sha256", "");
     if (digest.empty())
       throw not_comparable(fmt::format("`{}` does not record which samples it was fitted to", result.folder.string()),
                            run_again("it was written by an earlier program: "));
-    all += digest + "\n";
+    all.push_back(digest);
   }
+  std::sort(all.begin(), all.end());
   return all;
 }
 
@@ -192,7 +194,11 @@ std::string model_text(StoredSummary const& result) {
 std::string identity(StoredSummary const& result) {
   json const settings = result.summary.value("settings", json::object());
   json all = {model_text(result), result.summary.value("prediction_rule", ""), settings.value("start_state", "")};
-  for (json const& data : result.summary.at("data")) all.push_back({data.value("sha256", ""), data.value("inputs_sha256", "")});
+  std::vector<std::string> records;  // in any order
+  for (json const& data : result.summary.at("data"))
+    records.push_back(data.value("sha256", "") + " " + data.value("inputs_sha256", ""));
+  std::sort(records.begin(), records.end());
+  all.push_back(records);
   return all.dump();
 }
 
@@ -229,7 +235,7 @@ std::string kind_of(json const& summary) {
   if (rule == prediction_name(PredictionRule::free_run)) return "free run";
   if (rule == prediction_name(PredictionRule::one_step)) return "one step";
   if (rule == prediction_name(PredictionRule::as_written)) return summary.value("measured_past", false) ? "one step" : "free run";
-  return rule;  // none, or a number of steps
+  return rule;  // none, a number of steps, or mixed_kinds
 }
 
 void add_predictions(StoredSummary const& result, std::vector<ComparedPrediction>& predictions) {
@@ -250,7 +256,10 @@ void add_predictions(StoredSummary const& result, std::vector<ComparedPrediction
                               result.warnings(),
                               data.value("samples_sha256", "")};
       if (scores.contains("coverage_95") && scores["coverage_95"].is_number()) each.coverage = scores["coverage_95"].get<double>();
-      auto const same = [&](ComparedPrediction const& other) { return other.samples == each.samples && other.on == each.on; };
+      // An average of one-step predictions and free runs is neither, and stands with others of its kind.
+      auto const same = [&](ComparedPrediction const& other) {
+        return other.samples == each.samples && other.on == each.on && (other.kind == mixed_kinds) == (each.kind == mixed_kinds);
+      };
       auto const last = std::find_if(predictions.rbegin(), predictions.rend(), same);
       predictions.insert(last == predictions.rend() ? predictions.end() : last.base(), std::move(each));
     }

@@ -3,11 +3,15 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "report/page/comparison.hpp"
 
 namespace sysid {
+
+/// As `prediction_rule` of an average over one-step predictions and free runs.
+inline constexpr std::string_view mixed_kinds = "mixed";
 
 /// What a task's model is called, of the task's name and the name that its results know.
 using ModelNames = std::function<std::string(std::string const& task, std::string const& model)>;

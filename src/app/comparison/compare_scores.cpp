@@ -83,6 +83,18 @@ std::vector<Series> series_of(NumberTable const& table) {
   }
 }
 
+/// The experiments of a result by the digests of their samples: fits may name the same ones in any order.
+std::vector<int> places_of(json const& summary) {
+  std::vector<std::string> digests;
+  for (json const& data : summary.at("data")) digests.push_back(data.value("samples_sha256", ""));
+  std::vector<std::size_t> order(digests.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t e) { return digests[e]; });
+  std::vector<int> places(digests.size());
+  for (std::size_t k = 0; k < order.size(); ++k) places[order[k]] = static_cast<int>(k);
+  return places;
+}
+
 }  // namespace
 
 std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& model, std::filesystem::path const& folder,
@@ -108,11 +120,15 @@ std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& 
   std::vector<double> const series = column("series"), rows = column("row"), k = column("pareto_k"), loo = column("elpd_loo"),
                             future = column("elpd_future");
   std::vector<Series> const names = series_of(table);
+  std::vector<int> const places = places_of(summary);
+  auto const place_of = [&](int experiment) {  // of a result with all experiments, as all but old ones are
+    return static_cast<std::size_t>(experiment) < places.size() ? places[static_cast<std::size_t>(experiment)] : experiment;
+  };
   std::vector<ScoredSample> samples;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!(series[i] >= 1 && series[i] <= static_cast<double>(names.size()))) throw damaged();
     Series const& of = names[static_cast<std::size_t>(series[i]) - 1];
-    samples.push_back({of.channel, of.experiment, static_cast<int>(rows[i])});
+    samples.push_back({of.channel, place_of(of.experiment), static_cast<int>(rows[i])});
     fit.doubtful += k[i] > largest_k ? 1 : 0;
   }
   std::vector<std::size_t> order(samples.size());

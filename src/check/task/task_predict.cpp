@@ -211,8 +211,9 @@ void TaskChecker::suit_channels(std::vector<FitTask const*> const& fits, DataBlo
       Channel const *own = channel(k), *other = channel(first);
       if (own == nullptr)
         diagnostics_.add(errors::average_without_channel(name(k), measured.channel, name(first).text, block.name));
-      else if (own->unit && other->unit && own->unit->dimension != other->unit->dimension)
-        diagnostics_.add(errors::average_of_two_units(name(k), *own->unit, measured.channel, name(first).text, *other->unit));
+      else if (Unit const of_own = own->unit.value_or(Unit{}), of_other = other->unit.value_or(Unit{});
+               of_own.dimension != of_other.dimension)
+        diagnostics_.add(errors::average_of_two_units(name(k), of_own, measured.channel, name(first).text, of_other));
     }
   }
 }
