@@ -99,7 +99,8 @@ class PredictAverage {
                        {"weights", std::string(word(what_.weights))},
                        {"start", start_text(what_.start)}};
     if (model.integrated()) add_solver(members_[lead_]->fitted().solver, report.settings);
-    if (model.dynamics == Dynamics::discrete) report.settings.emplace_back("prediction", prediction_text(model, what_.prediction));
+    if (model.dynamics == Dynamics::discrete)
+      report.settings.emplace_back("prediction", two_kinds() ? "of each model" : prediction_text(model, what_.prediction));
     add_average_tables(*report.average, weighed_.notes, report.tables);
     bool const missed = add_coverage(report, model.dynamics == Dynamics::discrete && !model.states.empty());
     report.verdict = prediction_verdict(report, missed);
@@ -115,10 +116,11 @@ class PredictAverage {
 
   std::string what_text() const {
     Model const& model = members_[lead_]->model();
-    return fmt::format(
-        "predict {} on {} with draws({}), weights = {}{}", predicted_names(session_.file, what_),
-        data_names(session_.file, what_.experiments), what_.draws, word(what_.weights),
-        model.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model, what_.prediction)) : std::string());
+    return fmt::format("predict {} on {} with draws({}), weights = {}{}", predicted_names(session_.file, what_),
+                       data_names(session_.file, what_.experiments), what_.draws, word(what_.weights),
+                       model.dynamics == Dynamics::discrete && !two_kinds()
+                           ? fmt::format(" ({})", prediction_text(model, what_.prediction))
+                           : std::string());
   }
 
   /// The severity of what is wrong with the trajectories of a member, by its part in the average.
@@ -129,20 +131,26 @@ class PredictAverage {
     return alone == Severity::error ? Severity::warning : Severity::note;
   }
 
-  /// Models with past measured samples predict one step, others run freely: their scores say different things.
+  /// Names of the members that predict one step from measured samples, or that run freely.
+  std::vector<std::string> of_kind(bool one_step) const {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < members_.size(); ++k)
+      if (weights_[k] > 0 && predicts_from_data(members_[k]->model()) == one_step) names.push_back("`" + name(k) + "`");
+    return names;
+  }
+  bool two_kinds() const {
+    return members_[lead_]->model().dynamics == Dynamics::discrete && !of_kind(true).empty() && !of_kind(false).empty();
+  }
+
+  /// Their scores say different things.
   void add_kinds(Report& report) const {
-    std::vector<std::string> one_step, free;
-    for (std::size_t k = 0; k < members_.size(); ++k) {
-      if (weights_[k] == 0) continue;
-      (predicts_from_data(members_[k]->model()) ? one_step : free).push_back("`" + name(k) + "`");
-    }
-    if (report.prediction_rule.empty() || one_step.empty() || free.empty()) return;
+    if (!two_kinds()) return;
     report.prediction_rule = mixed_kinds;
     report.findings.push_back({FindingCode::averaged_over_models,
                                Severity::note,
                                {},
                                fmt::format("predictions of two kinds are averaged: {} from measured past samples, {} in free run",
-                                           fmt::join(one_step, ", "), fmt::join(free, ", ")),
+                                           fmt::join(of_kind(true), ", "), fmt::join(of_kind(false), ", ")),
                                "to compare models, predict all alike, with `prediction = one_step` or `free_run`"});
   }
 

@@ -124,20 +124,38 @@ stacked = predict curved, straight on table.test with draws(300), weights = stac
   CHECK(run.result.out.find("Average and its members: y on table.test, 60 samples") != std::string::npos);
 }
 
-TEST_CASE("the log score of a member is the mean over rows of the log of its mean density") {
-  CaseRun const run(models + "both = predict curved, straight on table.test with draws(1), weights = equal, seed = 5\n", files);
-  // One draw per member, equally weighed: the densities are normal ones, known from the draw.
+TEST_CASE("log scores are those of the stored draws, computed apart") {
+  CaseRun const run(models + "both = predict curved, straight on table.test with draws(100000), weights = equal, seed = 5\n",
+                    files);
+  auto const x = column(files.front().second, "x"), y = column(files.front().second, "y");
+  // [members][rows]: the mean density over all stored draws, since `draws` asks for no fewer.
+  std::vector<std::vector<double>> densities(2, std::vector<double>(60, 0));
+  for (int k = 0; k < 2; ++k) {
+    std::string const fit = k == 0 ? "curved" : "straight";
+    int draws = 0;
+    for (int chain = 1; chain <= 4; ++chain) {
+      std::string const text = run.file(fmt::format("{}/draws_{}.csv", fit, chain));
+      auto const a = column(text, "a"), b = column(text, "b"), sigma = column(text, "sigma");
+      auto const c = k == 0 ? column(text, "c") : std::vector<double>(a.size(), 0);
+      draws += static_cast<int>(a.size());
+      for (std::size_t d = 0; d < a.size(); ++d)
+        for (std::size_t i = 0; i < 60; ++i) {
+          double const z = (y[24 + i] - a[d] - b[d] * x[24 + i] - c[d] * x[24 + i] * x[24 + i]) / sigma[d];
+          densities[static_cast<std::size_t>(k)][i] += std::exp(-0.5 * z * z) / sigma[d] / std::sqrt(2 * std::acos(-1.0));
+        }
+    }
+    for (double& each : densities[static_cast<std::size_t>(k)]) each /= draws;
+  }
+  double one = 0, other = 0, both = 0;
+  for (std::size_t i = 0; i < 60; ++i) {
+    one += std::log(densities[0][i]) / 60;
+    other += std::log(densities[1][i]) / 60;
+    both += std::log((densities[0][i] + densities[1][i]) / 2) / 60;
+  }
   json const scores = run.summary("both").at("average").at("scores").at("table.test").at("y");
-  std::string const csv = run.file("both/predict.csv");
-  auto const noise = column(csv, "y_noise_variance"), mean = column(csv, "y_mean"), measured = column(csv, "y_measured"),
-             model = column(csv, "y_model_variance"), parameter = column(csv, "y_parameter_variance");
-  double const one = scores.at("members").at("curved").at("log_score"), other = scores.at("members").at("straight").at("log_score"),
-               both = scores.at("average").at("log_score");
-  CHECK(both >= std::min(one, other));
-  CHECK(both <= std::max(one, other) + std::log(2.0));
-  for (std::size_t i = 0; i < mean.size(); ++i) CHECK(parameter[i] == 0);
-  CHECK(*std::ranges::max_element(model) > 0);
-  CHECK(run.summary("both").at("average").at("members").at(0).at("draws") == 1);
+  CHECK(scores.at("members").at("curved").at("log_score").get<double>() == doctest::Approx(one).epsilon(1e-5));
+  CHECK(scores.at("members").at("straight").at("log_score").get<double>() == doctest::Approx(other).epsilon(1e-5));
+  CHECK(scores.at("average").at("log_score").get<double>() == doctest::Approx(both).epsilon(1e-5));
 }
 
 TEST_CASE("a fit of the same model counts once, and an average of one model is its prediction") {
@@ -210,9 +228,17 @@ TEST_CASE("an average needs results of all its fits, and a result of other sampl
   CHECK(run(models + task, {"fit"}) == "0");
   CHECK(run(models + task, {"predict"}) == "0");
   json const before = json::parse(read_file(options.output / "both/summary.json"));
-  // Only the second fit is run again: the average is one of an earlier result.
   CHECK(before.at("versions").at("made_from") == "curved");
   CHECK(before.at("versions").at("made_from_2") == "straight");
+  CHECK(compare({options.output / "both"}).notes.empty());
+  // Only the second fit is run again: the average is one of an earlier result.
+  std::string const again = with(models, "chains = 4), seed = 2", "chains = 4), seed = 9");
+  REQUIRE(again != models);
+  write_file(folder.path() / "again.sysid", again);
+  run_text(folder.path() / "again.sysid", again, options, {"fit"});
+  auto const notes = compare({options.output / "both"}).notes;
+  REQUIRE(notes.size() == 1);
+  CHECK(notes.front().find("straight") != std::string::npos);
   CHECK(refusal(with(models, "straight = fit line to table.train", "straight = fit line to table") + task) == "E6705");
   CHECK(refusal(with(models, "straight = fit line to table.train", "straight = fit line to table") +
                 with(task, "draws(50)", "draws(50), weights = equal")) == "");
@@ -230,7 +256,8 @@ TEST_CASE("what is wrong with one fit is said with its name") {
   CHECK(doubtful.at("severity") == "error");
   CHECK(doubtful.at("names").at(0) == "curved");
   CHECK(summary.at("verdict").at("pass") == false);
-  CHECK(finding(summary, "fitted_rows_predicted").at("message").get<std::string>().find("`") != std::string::npos);
+  CHECK(finding(summary, "fitted_rows_predicted").at("message").get<std::string>().find("`curved` was fitted to") !=
+        std::string::npos);
 }
 
 TEST_CASE("the bands of a selection have the parts of parameters and models, which sum to their variance") {
@@ -246,4 +273,163 @@ forecast = predict selection on table.test with draws(200), seed = 1
   for (std::size_t i = 0; i < sd.size(); ++i) CHECK(parameter[i] + model[i] == doctest::Approx(sd[i] * sd[i]).epsilon(1e-9));
   CHECK(*std::ranges::max_element(model) > 0);
   CHECK(csv.find("y_noise_variance") == std::string::npos);
+}
+
+TEST_CASE("units of other names are one unit") {
+  for (auto const& [one, other] : std::vector<std::pair<std::string, std::string>>{{"Hz", "1/s"}, {"", ""}}) {
+    auto const in = [](std::string const& unit) { return unit.empty() ? std::string() : " [" + unit + "]"; };
+    auto const number = [](std::string const& unit) { return unit.empty() ? "1" : "1 [" + unit + "]"; };
+    std::string const noise = one.empty() ? "0.3" : "0.3 [Hz]", sd = one.empty() ? "exp(a*0)" : "1";
+    std::string const text =
+        fmt::format(R"(
+model first {{ input x; parameter a{0} ~ normal(0, sd = 3); observe y{0} ~ normal(a + x*{2}, sd = {4}) }}
+model second {{ input x; parameter a{1} ~ normal(0, sd = 3); observe y{1} ~ normal({6}, sd = {4}) }}
+data table {{ file "table.csv"; input x = x; measure y = y{0}; split train = rows 1..24, test = rows 25..84 }}
+one = fit first to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 1
+other = fit second to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 2
+both = predict other, one on table.test with draws(100), weights = equal, seed = 5
+)",
+                    in(one), in(other), number(one), number(other), noise, sd, one.empty() ? "exp(a*x)" : "a + x*1 [1/s]");
+    CAPTURE(text);
+    CaseRun const run(text, files);
+    CHECK(run.summary("both").at("average").at("scores").at("table.test").at("y").at("samples") == 60);
+  }
+  CHECK(refusal(R"(
+model plain { input x; parameter a ~ normal(0, sd = 3); observe y ~ normal(a + x, sd = 0.3) }
+model metres { input x; parameter a [m] ~ normal(0, sd = 3); observe y [m] ~ normal(a + x*1[m], sd = 0.3 [m]) }
+data table { file "table.csv"; input x = x; measure y = y; split train = rows 1..24, test = rows 25..84 }
+one = fit plain to table.train with mh(samples = 30, burn_in = 5, chains = 2), seed = 1
+other = fit metres to table.train with mh(samples = 30, burn_in = 5, chains = 2), seed = 2
+both = predict one, other on table.test with draws(10), weights = equal, seed = 5
+)") != "");
+}
+
+namespace {
+
+/// y is undefined in the second model below x = -0.9, where the first 15 rows of the file lie, which are predicted.
+std::string undefined_rows() {
+  Stream stream({12, Purpose::test, 0, 0});
+  std::string text = "x,y\n";
+  for (int i = 0; i < 60; ++i) {
+    double const x = i < 15 ? -2 + i / 15.0 : -0.8 + (i - 15) / 20.0;
+    text += fmt::format("{},{}\n", x, 0.5 + x + 0.3 * stream.normal());
+  }
+  return text;
+}
+
+std::string const undefined = R"(
+model line { input x; parameter a ~ normal(0, sd = 2); parameter b ~ normal(0, sd = 2); observe y ~ normal(a + b*x, sd = 0.3) }
+model root { input x; parameter a ~ normal(0, sd = 2); parameter b ~ normal(0, sd = 2); observe y ~ normal(a + b*log(0.9 + x), sd = 0.3) }
+data table { file "table.csv"; input x = x; measure y = y; split test = rows 1..30, train = rows 31..60 }
+straight = fit line to table.train with mh(samples = 2000, burn_in = 500, thin = 5, chains = 4), seed = 1
+bent = fit root to table.train with mh(samples = 2000, burn_in = 500, thin = 5, chains = 4), seed = 1
+)";
+
+}  // namespace
+
+TEST_CASE("samples that a fit says are impossible count against it, and rows that it cannot predict are named") {
+  CaseRun const run(undefined + "both = predict straight, bent on table.test with draws(100), weights = equal, seed = 5\n",
+                    {{"table.csv", undefined_rows()}});
+  json const summary = run.summary("both"), scores = summary.at("average").at("scores").at("table.test").at("y");
+  CHECK(scores.at("samples") == 30);
+  CHECK(scores.at("members").at("bent").at("log_score").is_null());  // -infinity
+  CHECK(scores.at("average").at("log_score").is_number());
+  CHECK(scores.at("average").at("log_score").get<double>() >=
+        scores.at("members").at("straight").at("log_score").get<double>() + std::log(0.5) - 1e-12);
+  json const undefined_rows = finding(summary, "undefined_in_band");
+  REQUIRE_FALSE(undefined_rows.is_null());
+  CHECK(undefined_rows.at("severity") == "error");
+  CHECK(undefined_rows.at("message").get<std::string>().find("`bent`: y is undefined along every trajectory at 15 of 60 rows") !=
+        std::string::npos);
+}
+
+TEST_CASE("a fit of no weight blanks nothing") {
+  // The rows where its model has no value are fitted by the other alone: it counts with the first fit of the same model.
+  CaseRun const run(with(undefined, "bent = fit root",
+                         "again = fit line to table.train with mh(samples = 40, burn_in = 10, chains = 2), "
+                         "seed = 3\nbent = fit root") +
+                        "both = predict straight, again on table.test with draws(100), weights = stacking, seed = 5\n",
+                    {{"table.csv", undefined_rows()}});
+  json const summary = run.summary("both");
+  CHECK(member(summary, "again").at("counted_with") == "straight");
+  for (json const& each : summary.at("findings")) {
+    CAPTURE(each.dump());
+    CHECK(each.at("severity") == "note");
+  }
+  json const doubtful = finding(summary, "from_doubtful_fit");
+  REQUIRE_FALSE(doubtful.is_null());
+  CHECK(doubtful.at("names").at(0) == "again");
+  CHECK(summary.at("verdict").at("pass") == true);
+}
+
+TEST_CASE("the noisy band of optima holds the noise") {
+  CaseRun const run(
+      with(with(models, "straight = fit line to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4)",
+                "straight = fit line to table.train with map"),
+           "curved = fit parabola to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4)",
+           "curved = fit parabola to table.train with map") +
+          "both = predict curved, straight on table.test with weights = equal, seed = 5\n",
+      files);
+  json const summary = run.summary("both"), scores = summary.at("average").at("scores").at("table.test").at("y");
+  CHECK(scores.at("average").at("coverage_95").get<double>() > 0.85);
+  CHECK(scores.at("members").at("curved").at("coverage_95").get<double>() > 0.85);
+  CHECK(finding(summary, "coverage_low").is_null());
+  std::string const csv = run.file("both/predict.csv");
+  auto const noise = column(csv, "y_noise_variance"), lower = column(csv, "y_noisy_q2.5"), upper = column(csv, "y_noisy_q97.5");
+  for (std::size_t i = 0; i < noise.size(); ++i) CHECK(upper[i] - lower[i] > 2.5 * std::sqrt(noise[i]));
+}
+
+TEST_CASE("noise without a variance has no shares") {
+  CaseRun const run(R"(
+model heavy { input x; parameter a ~ normal(0, sd = 3); observe y ~ student_t(a + x, 1.5, scale = 0.3) }
+model light { input x; parameter a ~ normal(0, sd = 3); observe y ~ normal(a + x, sd = 0.3) }
+data table { file "table.csv"; input x = x; measure y = y; split train = rows 1..24, test = rows 25..84 }
+one = fit heavy to table.train with mh(samples = 2000, burn_in = 500, thin = 5, chains = 4), seed = 1
+other = fit light to table.train with mh(samples = 2000, burn_in = 500, thin = 5, chains = 4), seed = 2
+both = predict one, other on table.test with draws(100), weights = equal, seed = 5
+)",
+                    files);
+  json const shares = run.summary("both").at("average").at("variance").at("table.test").at("y");
+  for (char const* name : {"sd", "parameter", "model", "noise"}) CHECK(shares.at(name).is_null());
+  CHECK(run.result.out.find("no finite variance") != std::string::npos);
+}
+
+TEST_CASE("fits name the same samples in any order") {
+  std::string const tasks = R"(
+data other { file "table.csv"; input x = x; measure y = y; split train = rows 25..44 }
+straight = fit line to table.train, other.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 1
+curved = fit parabola to other.train, table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 2
+both = predict curved, straight on table.test with draws(50), seed = 5
+stacked = predict curved, straight on table.test with draws(50), weights = stacking, seed = 5
+)";
+  CHECK(refusal(models.substr(0, models.find("straight = fit")) + tasks) == "");
+}
+
+TEST_CASE("an average of one-step predictions and free runs is of neither kind") {
+  CaseRun const run(R"(
+model one_back { time discrete 1 [s]; parameter p ~ normal(0, sd = 1); parameter s ~ log_uniform(0.05, 5)
+  observe y ~ normal(p*lag(measured(y), 1), sd = s) }
+model free { time discrete 1 [s]; state v
+  initial v = 0
+  parameter m ~ normal(0, sd = 1); parameter p ~ uniform(-1, 1); parameter s ~ log_uniform(0.05, 5)
+  v = m + p*lag(v, 1)
+  observe y ~ normal(v, sd = s) }
+data series { file "table.csv"; step 1 [s]; measure y = y; split train = rows 6..40, test = rows 41..84 }
+one = fit one_back to series.train with mh(samples = 2000, burn_in = 500, thin = 5, chains = 4), seed = 1
+run = fit free to series.train with mh(samples = 2000, burn_in = 500, thin = 5, chains = 4), seed = 2
+alone = predict run on series.test with draws(50), seed = 5
+mixed = predict one, run on series.test with draws(50), weights = equal, seed = 5
+whole = predict one, run on series with draws(50), weights = equal, seed = 5
+)",
+                    files);
+  CHECK(run.summary("mixed").at("prediction_rule") == "mixed");
+  bool said = false;
+  for (json const& each : run.summary("mixed").at("findings"))
+    said = said || each.at("message").get<std::string>().starts_with("predictions of two kinds are averaged");
+  CHECK(said);
+  // The model that looks back scores one row less.
+  CHECK(run.summary("whole").at("data").at(0).at("scored") == 83);
+  auto const results = run.folder.path() / "results";
+  for (auto const& each : compare({results / "alone", results / "mixed"}).predictions)
+    CHECK(each.kind == (each.name == "mixed" ? "mixed" : "free run"));
 }
