@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
@@ -146,6 +148,7 @@ std::optional<std::vector<std::string>> samples_of(Session& session, FitTask con
   } catch (UserError const&) {
     return std::nullopt;
   }
+  std::sort(digests.begin(), digests.end());  // fits may name their records in any order
   return digests;
 }
 std::optional<Diagnostic> refused(Session& session, Task const& task) {
