@@ -100,6 +100,35 @@ std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate
                          execution);
 }
 
+void require_same_samples(std::vector<Candidate> const& candidates, Span place) {
+  Candidate const& first = candidates.front();
+  auto const& channels = first.compiled->model.channels;
+  for (Candidate const& other : candidates)
+    for (std::size_t e = 0; e < first.data.size(); ++e)
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        auto const& own = other.compiled->model.channels;
+        auto const same = std::ranges::find(own, channels[c].name, &Channel::name);
+        if (same == own.end()) continue;
+        auto const d = static_cast<std::size_t>(same - own.begin());
+        Experiment const &a = first.data[e].experiment, &b = other.data[e].experiment;
+        for (int row = std::min(a.first_row, b.first_row);; ++row) {
+          auto const i = static_cast<std::size_t>(row - a.first_row), j = static_cast<std::size_t>(row - b.first_row);
+          bool const in_a = row >= a.first_row, in_b = row >= b.first_row;
+          if ((in_a && i >= a.scored.size()) || (in_b && j >= b.scored.size())) break;
+          if ((in_a && a.is_scored(c, i)) == (in_b && b.is_scored(d, j))) continue;
+          throw UserError({Severity::error,
+                           "E6520",
+                           fmt::format("`{}` and `{}` score different samples: `{}` of row {} of {}, for example, enters only one of "
+                                       "the likelihoods",
+                                       first.compiled->model.name, other.compiled->model.name, channels[c].name, row, a.name),
+                           Label{place, {}},
+                           {},
+                           "models with lags leave out the first rows, and rows after missing samples: select rows that all can "
+                           "score, or compare models with the same longest lag"});
+        }
+      }
+}
+
 double log_unit(Candidate const& candidate, Candidate const& first) {
   double term = 0;
   for (Channel const& channel : candidate.compiled->model.channels) {
@@ -110,7 +139,7 @@ double log_unit(Candidate const& candidate, Candidate const& first) {
     double samples = 0;
     for (ExperimentData const& each : candidate.data)
       for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
-        samples += each.experiment.scored[i] != 0 && std::isfinite(each.experiment.measured[c][i]) ? 1 : 0;
+        samples += each.experiment.is_scored(c, i) ? 1 : 0;
     term += samples * elementary::log(same->unit->scale / channel.unit->scale);
   }
   return term;

@@ -31,6 +31,9 @@ ModelSelectionTarget selection_target(Session const& session, SelectTask const& 
 std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver,
                                                ExecutionOptions const& execution);
 
+/// UserError E6520 where candidates would score different samples: a likelihood of fewer of them is no weaker model's.
+void require_same_samples(std::vector<Candidate> const& candidates, Span place);
+
 /// What a log density of a candidate's record, in its declared units, gains in those of the first candidate: the logarithm of the
 /// ratio of units, for every sample.
 double log_unit(Candidate const& candidate, Candidate const& first);

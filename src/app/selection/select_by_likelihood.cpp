@@ -60,6 +60,7 @@ class SelectByLikelihood {
     std::vector<std::vector<ExperimentData>> data;
     for (Candidate const& each : candidates_) data.push_back(each.data);
     if (auto const why = refusal(task_, what_, session_.file.models, data)) throw UserError(*why);
+    require_same_samples(candidates_, task_.span);
     if (auto const stored = checkpoint_.stored()) {
       checkpoint_.reading([&] { content_ = stored->get<json::object_t>(); });
       session_.notices << fmt::format("{}: continuing from the checkpoint\n", task_.name);

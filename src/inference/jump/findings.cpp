@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numeric/not_finite.hpp"
 #include "core/text/words.hpp"
 #include "inference/jump/tally.hpp"
 
@@ -18,7 +19,18 @@ constexpr double imprecise = 0.05;  // standard error of a probability
 constexpr double different = 4;     // standard errors
 constexpr double of_nats = 0.1;     // that a log evidence may differ by whatever its error
 
+constexpr double log_negligible = -14;  // a probability of 1e-6
+
 constexpr char const* more_samples = "use more `samples`, and a longer `pilot` if jumps are rarely accepted";
+
+/// Whether the weights of the proposals say that the model has hardly any probability.
+bool negligible(SelectionResult const& result, std::size_t model) {
+  double best = -infinity;
+  for (JumpRecord::OfModel const& each : result.jumps->models)
+    if (std::isfinite(each.log_evidence)) best = std::max(best, each.log_evidence);
+  JumpRecord::OfModel const& own = result.jumps->models[model];
+  return std::isfinite(own.log_evidence) && own.log_evidence + different * own.evidence_error < best + log_negligible;
+}
 
 void add_not_visited(SelectionResult const& result, std::vector<std::string> const& excluded, Findings& findings) {
   for (std::size_t m = 0; m < result.models.size(); ++m) {
@@ -31,7 +43,7 @@ void add_not_visited(SelectionResult const& result, std::vector<std::string> con
                           "check its equations and priors, or fit it on its own to see where simulations fail"});
     else if (!std::isfinite(result.jumps->models[m].log_bayes_factor))
       findings.push_back({FindingCode::model_not_visited,
-                          Severity::warning,
+                          negligible(result, m) ? Severity::warning : Severity::error,
                           {name},
                           fmt::format("no chain went to `{}` and came back, so its probability is not known", name),
                           more_samples});
@@ -52,7 +64,7 @@ void add_rarely_accepted(SelectionResult const& result, Findings& findings) {
   }
   if (names.empty()) return;
   std::string const message = fmt::format(
-      "jumps to or from {} are rarely accepted (rate {:.2g}): its proposals do not cover its posterior", quoted(names), least);
+      "jumps to or from {} are rarely accepted (rate {:.2g}): the proposals do not cover the posterior of one of the models", quoted(names), least);
   findings.push_back({FindingCode::jumps_rarely_accepted, Severity::warning, std::move(names), message,
                       "use a longer `pilot`; if that does not help, the posterior has narrow or curved parts: compare with the "
                       "evidences of `fit`"});
@@ -91,7 +103,8 @@ void add_disagreements(SelectionResult const& result, std::size_t lead, Findings
   }
   for (std::size_t m = 0; m < result.models.size(); ++m) {
     JumpRecord::OfModel const& model = result.jumps->models[m];
-    if (m == lead || !std::isfinite(model.log_bayes_factor) || result.models[m].probability < 1e-6) continue;
+    if (m == lead || !std::isfinite(model.log_bayes_factor)) continue;
+    if (result.models[m].probability < 1e-6 && negligible(result, m)) continue;
     double const by_evidence = model.log_evidence - best.log_evidence, off = model.log_bayes_factor - by_evidence;
     double const error = std::hypot(model.factor_error, std::hypot(model.evidence_error, best.evidence_error));
     if (!(std::fabs(off) > different * error + of_nats)) continue;

@@ -239,6 +239,7 @@ TEST_CASE("an average needs results of all its fits, and a result of other sampl
   run_text(folder.path() / "again.sysid", again, options, {"fit"});
   auto const notes = compare({options.output / "both"}).notes;
   REQUIRE(notes.size() == 1);
+  CAPTURE(notes.front());
   CHECK(notes.front().find("straight") != std::string::npos);
   CHECK(refusal(with(models, "straight = fit line to table.train", "straight = fit line to table") + task) == "E6705");
   CHECK(refusal(with(models, "straight = fit line to table.train", "straight = fit line to table") +

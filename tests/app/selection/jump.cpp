@@ -216,3 +216,40 @@ TEST_CASE("a selection by likelihood refuses a distance and improper priors, and
     named = named || (finding.at("code") == "model_not_visited" && finding.at("names") == json::array({"wild"}));
   CHECK(named);
 }
+
+TEST_CASE("models in two units are equally probable, also where lagged samples are missing") {
+  TemporaryFolder folder;
+  Stream stream({.seed = 9, .purpose = Purpose::test, .index = 0, .step = 0});
+  std::string csv = "y\n";
+  double y = 1;
+  for (int i = 0; i < 60; ++i) {
+    y = 0.6 * y + 0.2 * stream.normal();
+    csv += i % 6 == 5 ? "nan\n" : fmt::format("{}\n", y);
+  }
+  write_file(folder.path() / "record.csv", csv);
+  std::string const text = R"(
+model metres { time discrete 1 [s]; parameter a ~ normal(0, sd = 1); observe y [m] ~ normal(a*lag(measured(y), 1), sd = 0.2 [m]) }
+model millimetres { time discrete 1 [s]; parameter a ~ normal(0, sd = 1); observe y [mm] ~ normal(a*lag(measured(y), 1), sd = 200 [mm]) }
+model longer { time discrete 1 [s]; parameter a ~ normal(0, sd = 1); observe y [m] ~ normal(a*lag(measured(y), 1) + 0*lag(measured(y), 3), sd = 0.2 [m]) }
+data record { file "record.csv"; step 1 [s]; measure y = y [m]; split part = rows 10..60 }
+candidates units { metres; millimetres }
+candidates lags { metres; longer }
+)";
+  RunOptions options;
+  options.output = folder.path() / "results";
+  auto const run = [&](char const* set) {
+    run_text(folder.path() / "case.sysid",
+             text + "s = select " + set + " to record.part with reversible_jump(samples = 2000), seed = 1\n", options);
+  };
+  run("units");
+  json const summary = json::parse(read_file(options.output / "s/summary.json"));
+  CAPTURE(summary.at("models").dump(1));
+  for (auto const& [name, model] : summary.at("models").items())
+    CHECK(model.at("probability").get<double>() == doctest::Approx(0.5).epsilon(0.02));
+  try {
+    run("lags");
+    CHECK_MESSAGE(false, "not refused");
+  } catch (UserError const& error) {
+    CHECK(error.diagnostic().code == "E6520");
+  }
+}
