@@ -111,6 +111,10 @@ Range range_of(double log_bayes_factor, Widths const& of, Widths const& best) {
 void weigh_models(std::vector<std::string> const& models, std::vector<ComparedFit>& fits) {
   std::vector<std::size_t> const places = standing(models, fits);
   if (places.empty()) return;
+  // One model with an evidence among others without has nothing to be more probable than.
+  std::string const& first = models[places.front()];
+  if (places.size() == 1 && std::any_of(models.begin(), models.end(), [&](std::string const& each) { return each != first; }))
+    return;
   ComparedFit const best = fits[places.front()];
   double sum = 0, square = 0;  // square: of P_j s_j
   bool known = true;           // all s_j

@@ -15,7 +15,7 @@ namespace sysid {
 ///   sd P_i = P_i sqrt((1 - P_i)^2 s_i^2 + sum over j != i of P_j^2 s_j^2)
 ///
 /// models: for each fit what model it is of; of several fits of a model the one whose evidence is known best stands for all: one
-/// that is confirmed, with the smallest error.
+/// that is confirmed, with the smallest error. Nothing where a single model among several has an evidence.
 void weigh_models(std::vector<std::string> const& models, std::vector<ComparedFit>& fits);
 
 /// Fits of one model whose evidences differ by more than their errors.

@@ -13,6 +13,7 @@
 #include "app/session/reporting.hpp"
 #include "app/session/search_near.hpp"
 #include "app/session/solver_refinement.hpp"
+#include "core/numeric/random.hpp"
 #include "data/start_rule.hpp"
 #include "likelihood/first_rows.hpp"
 #include "search/hierarchy/standardised.hpp"
@@ -21,6 +22,8 @@
 
 namespace sysid {
 namespace {
+
+constexpr std::uint64_t other_references = 13'000'000;  // of Purpose::start
 
 SolverSettings refined(SolverSettings solver, int times) {
   for (; times > 0; --times) solver = solver.finer();
@@ -51,7 +54,7 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   print_findings(session_, task_, ahead);
 
   preparation.solver = what_.solver;
-  if (!find_references(context, preparation)) return false;
+  if (!find_references(context, context.seed, preparation)) return false;
   std::optional<SearchSolver> solver;
   if (what_.refine_solver && model.integrated()) {
     solver = choose_search_solver(context, preparation);
@@ -86,7 +89,7 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
 }
 
 // Where the search looks for parameters whose prior is improper. False: interrupted.
-bool FitPreparation::find_references(RunContext const& context, Preparation& preparation) {
+bool FitPreparation::find_references(RunContext const& context, std::uint64_t seed, Preparation& preparation) {
   std::vector<int> const coordinates = improper_coordinates(likelihood_.space().infos());
   if (coordinates.empty()) return true;
   unbounded::References found = unbounded::find_references(
@@ -94,7 +97,8 @@ bool FitPreparation::find_references(RunContext const& context, Preparation& pre
         likelihood_.refer(references);
         return target(what_.solver);
       },
-      coordinates, !likelihood_.space().members().empty(), context.seed, context.interrupted);
+      coordinates, {!likelihood_.space().members().empty(), objective_kind_ == ObjectiveKind::likelihood}, seed,
+      context.interrupted);
   if (context.stop_requested()) return false;
   preparation.references = std::move(found.of_coordinates);
   before_search_ = std::move(found.place);
@@ -106,12 +110,29 @@ bool FitPreparation::find_references(RunContext const& context, Preparation& pre
   return true;
 }
 
-// An improper posterior has no draws. False: interrupted.
-bool FitPreparation::require_proper(SearchResult& found, Preparation const& preparation, RunContext const& context) {
+// An improper posterior has no draws. A poor mode may lie where the response is constant, and every constant is improper: so before
+// a fit is refused the search is made once more, from other references. False: interrupted.
+bool FitPreparation::require_proper(SearchResult& found, Preparation& preparation, RunContext& context) {
   if (preparation.references.empty() || objective_kind_ == ObjectiveKind::likelihood) return true;
-  unbounded::Propriety propriety =
-      unbounded::check_propriety(*target(preparation.solver), found.modes.front(), context.seed, context.interrupted);
+  auto const checked = [&](SearchResult const& of) {
+    return unbounded::check_propriety(*target(preparation.solver), of.modes.front(), context.seed, context.interrupted);
+  };
+  unbounded::Propriety propriety = checked(found);
   if (context.stop_requested()) return false;
+  if (propriety.failure && !what_.near) {
+    std::uint64_t const other_seed = Stream({context.seed, Purpose::start, 0, other_references}).bits() >> 11;
+    if (!find_references(context, other_seed, preparation)) return false;
+    if (ParameterSpace const* const space = hierarchies()) likelihood_.standardise(non_centred(*space));
+    SearchResult again = search(*target(preparation.solver), objective_kind_, context);
+    if (again.interrupted) return false;
+    double const before = found.modes.front().log_density;
+    if (!again.failure && again.modes.front().log_density > before + 1) {
+      if (!follow_members(again, context, preparation)) return false;
+      propriety = checked(again);
+      if (context.stop_requested()) return false;
+      found = std::move(again);
+    }
+  }
   if (propriety.failure) {
     checkpoint_.drop();
     throw UserError(no_result(task_, *propriety.failure));

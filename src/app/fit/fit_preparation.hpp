@@ -30,8 +30,8 @@ class FitPreparation {
  private:
   ShorterRecords shorter_records(SolverSettings const& solver) const;
   std::optional<SearchSolver> choose_search_solver(RunContext const& context, Preparation& preparation);
-  bool find_references(RunContext const& context, Preparation& preparation);
-  bool require_proper(SearchResult& found, Preparation const& preparation, RunContext const& context);
+  bool find_references(RunContext const& context, std::uint64_t seed, Preparation& preparation);
+  bool require_proper(SearchResult& found, Preparation& preparation, RunContext& context);
   SolverSettings coarsest(SearchResult const& found, Preparation& preparation);
   ParameterSpace const* hierarchies() const;
   bool follow_members(SearchResult& found, RunContext& context, Preparation& preparation);

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "distribution/location_scale.hpp"
 #include "experiment/experiments.hpp"
 #include "inference/table.hpp"
 #include "likelihood/simulated_parameters.hpp"
@@ -39,31 +40,64 @@ std::optional<Diagnostic> improper_prior(Task const& task, std::string_view back
                  {improper->name, model.name});
 }
 
-/// Where all members of a population are equal the likelihood is positive, so that 1/x has no integral down to a spread of zero,
-/// whatever the data: unless the same parameter is the size of something that is measured.              Gelman 2006
-std::optional<Diagnostic> improper_spread(Task const& task, ParameterSpace const& space) {
-  Model const& model = space.model();
-  std::vector<NodeId> measured;
-  for (State const& state : model.states) measured.insert(measured.end(), {state.derivative, state.initial});
-  for (Channel const& channel : model.channels)
-    measured.insert(measured.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
+/// The parameters that these nodes depend on.
+std::set<int> parameters_read(Model const& model, std::vector<NodeId> const& nodes) {
   std::set<int> read;
-  for (NodeId const id : model.graph.reachable(measured))
+  for (NodeId const id : model.graph.reachable(nodes))
     if (Node const& node = model.graph[id]; node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter)
       read.insert(node.index);
-  for (ParameterSpace::Member const& member : space.members())
-    for (int const coordinate : member.population) {
+  return read;
+}
+
+/// Whether the scale of member `m` vanishes as a coordinate goes there.
+bool vanishes(ParameterSpace const& space, std::size_t m, int coordinate, double there) {
+  constexpr double small = 1e-6;
+  LaneArray theta(space.dimension(), 2), scales(static_cast<int>(space.members().size()), 2);
+  for (int p = 0; p < theta.rows(); ++p) theta(p, 0) = theta(p, 1) = 0;
+  theta(coordinate, 1) = there;
+  space.member_scales(theta, scales);
+  auto const row = static_cast<int>(m);
+  return std::fabs(scales(row, 1)) < small * std::fabs(scales(row, 0));
+}
+
+/// Where all members of a population are equal the likelihood is positive, so that a spread under 1/x, or one that goes to zero as
+/// a parameter under `flat` goes to infinity, has no integral, whatever the data. Unless the likelihood vanishes there too: the
+/// same parameter is the size of the noise, or goes to infinity in what is measured.                       Gelman 2006
+std::optional<Diagnostic> improper_spread(Task const& task, ParameterSpace const& space) {
+  constexpr double far_on_line = 500, far_of_logarithm = 55;
+  Model const& model = space.model();
+  std::vector<NodeId> measured, noise;
+  for (State const& state : model.states) measured.insert(measured.end(), {state.derivative, state.initial});
+  for (Channel const& channel : model.channels) {
+    measured.insert(measured.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
+    if (std::optional<NodeId> const scale = scale_argument(channel.noise))
+      noise.push_back(*scale);
+    else
+      noise.insert(noise.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
+  }
+  std::set<int> const by_measured = parameters_read(model, measured), by_noise = parameters_read(model, noise);
+  for (std::size_t m = 0; m < space.members().size(); ++m)
+    for (int const coordinate : space.members()[m].population) {
+      ParameterInfo const& info = space.infos()[static_cast<std::size_t>(coordinate)];
+      if (info.improper == Improper::no) continue;
       int const p = space.rows()[static_cast<std::size_t>(space.sampled()[static_cast<std::size_t>(coordinate)])].parameter;
       Parameter const& spread = model.parameters[static_cast<std::size_t>(p)];
-      if (spread.prior->row->name != "log_flat" || read.contains(p)) continue;
-      return refused(task, "E6204",
-                     fmt::format("`{}` is the spread of a population, and with a `log_flat` prior its posterior is improper: as it "
-                                 "goes to zero, the density does not",
-                                 spread.name),
-                     fmt::format("give `{}` the prior `flat(lower = 0)`, if there are three members or more, or a proper one such "
-                                 "as half_normal",
-                                 spread.name),
-                     {spread.name, model.name});
+      bool const line = info.improper == Improper::line, logarithm = spread.prior->row->name == "log_flat";
+      double const far = line ? far_on_line : far_of_logarithm;
+      bool const at_low = ((logarithm && !(info.lower > 0) && !by_noise.contains(p)) || (line && !by_measured.contains(p))) &&
+                          vanishes(space, m, coordinate, -far);
+      bool const open = line || logarithm ? !std::isfinite(info.upper) : true;
+      bool const at_high = open && !by_measured.contains(p) && vanishes(space, m, coordinate, far);
+      if (!at_low && !at_high) continue;
+      return refused(
+          task, "E6204",
+          fmt::format("`{}` is the spread of a population, or sets it, and with a `{}` prior its posterior is improper: as "
+                      "the spread goes to zero, the density does not",
+                      spread.name, spread.prior->row->name),
+          fmt::format("give the spread itself the prior `flat(lower = 0)`, if there are three members or more, or give `{}` "
+                      "a proper one such as half_normal",
+                      spread.name),
+          {spread.name, model.name});
     }
   return std::nullopt;
 }
@@ -95,7 +129,8 @@ std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model c
   if (evidence && backend.objective_kind != ObjectiveKind::likelihood)
     if (auto const found = improper_prior(task, fmt::format("evidence = {}", word(what.evidence)), model, {})) return found;
   std::shared_ptr<ParameterSpace const> const space = parameter_space(model, what.experiments);
-  if (auto const found = improper_spread(task, *space)) return found;
+  if (backend.objective_kind != ObjectiveKind::likelihood)
+    if (auto const found = improper_spread(task, *space)) return found;
   if (space->dimension() == 0)
     return refused(task, "E6205", fmt::format("model `{}` has no parameter with a prior: there is nothing to fit", model.name),
                    "replace a fixed value by a prior: `parameter m ~ log_uniform(0.1, 10)`", {model.name});

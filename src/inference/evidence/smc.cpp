@@ -79,6 +79,7 @@ class Tempering {
     }
     estimate.simulations = simulations_;
     estimate.finished = power >= 1;
+    estimate.unmoved = unmoved_;
     describe(estimate);
     return estimate;
   }
@@ -172,7 +173,10 @@ class Tempering {
   /// Until the particles have forgotten where they were: each coordinate, and the likelihood.
   void move(double power, std::uint64_t most) {
     Mixture const mixture = with_modes(fit_mixture({}, all_.theta, seed_, stop_), power);
-    if (mixture.empty()) return;
+    if (mixture.empty()) {
+      unmoved_ = true;
+      return;
+    }
     std::vector<std::vector<double>> const before = ranked();
     double kept = 1;
     for (int moves = 0; moves < least_moves || (kept > forgotten && moves < most_moves); ++moves) {
@@ -313,6 +317,7 @@ class Tempering {
   Eigen::VectorXd widths_;  // of the prior
   std::uint64_t simulations_ = 0, step_ = 0, move_ = 0;
   double scale_ = 1;
+  bool unmoved_ = false;
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ struct SmcEstimate {
   double error = 0;      // one standard error, nats
   double effective = 0;  // number of ancestors that the last population is worth
   std::uint64_t simulations = 0;
+  bool unmoved = false;   // after some weighting there was nothing to propose by, and copies stayed copies
   bool finished = false;  // else the simulations were used up on the way
 };
 

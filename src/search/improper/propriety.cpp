@@ -16,6 +16,7 @@
 #include "core/text/words.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/improper/free_climb.hpp"
+#include "search/improper/repeats.hpp"
 #include "search/laplace.hpp"
 
 namespace sysid::unbounded {
@@ -198,16 +199,38 @@ enum class Tail { proper, improper, undecided };
 
 Tail tail_of(Ray const& ray) {
   if (ray.ended) return Tail::proper;
+  auto const fall_over_decade = [&](std::size_t from) { return ray.marginal[from - steps_per_decade] - ray.marginal[from]; };
+  bool const two_decades = ray.marginal.size() > 2 * steps_per_decade;
+  std::size_t const last = ray.marginal.size() - 1;
   if (ray.failed) {
+    // Numbers that overflow where the density has long been flat bound nothing.
+    if (two_decades && fall_over_decade(last) < improper && fall_over_decade(last - steps_per_decade) < improper)
+      return Tail::improper;
     bool const fallen = !ray.marginal.empty() && ray.marginal.back() < ray.highest - noticeable;
     return fallen ? Tail::proper : Tail::undecided;
   }
-  std::vector<double> const& g = ray.marginal;
-  std::size_t const last = g.size() - 1;
-  double const fall = g[last - steps_per_decade] - g[last],
-               fall_before = g[last - 2 * steps_per_decade] - g[last - steps_per_decade];
+  if (!two_decades) return Tail::undecided;
+  double const fall = fall_over_decade(last), fall_before = fall_over_decade(last - steps_per_decade);
   if (fall > proper && fall_before > proper) return Tail::proper;
   return fall < improper && fall_before < improper ? Tail::improper : Tail::undecided;
+}
+
+/// Whether the mass lies away from the mode: of an sd whose density, not its integral, grows without bound towards zero.
+bool rises(Ray const& ray) {
+  constexpr std::size_t looked_at = 4 * steps_per_decade;
+  if (ray.on_line || ray.sign < 0 || ray.marginal.size() <= looked_at) return false;
+  double const first = ray.marginal[2 * steps_per_decade], later = ray.marginal[looked_at];
+  return later - first > 2 * proper;
+}
+
+Finding mode_at_zero_noise() {
+  return {
+      FindingCode::propriety_not_checked,
+      Severity::warning,
+      {},
+      "the parameters can make the residuals zero: the mode that was found is that of no noise, and holds none of the mass of the "
+      "posterior",
+      "measure more samples than there are parameters, or give the size of the noise a proper prior"};
 }
 
 /// The deepest fall of g on the way.
@@ -276,10 +299,11 @@ Finding undecided_tail(Target const& target, Ray const& ray) {
           "bound the parameter by `lower` and `upper`, or give it a proper prior"};
 }
 
-/// Whether changes in the eleventh digit of the coordinates change the density: no record with noise tells so many.
+/// Whether changes in the last digit of the coordinates change the density: what is left of the residuals then is rounding. A
+/// record with noise tells fewer digits, however large its offset is.
 bool is_singular(Objective const& objective, Eigen::VectorXd const& mode, std::uint64_t seed) {
   constexpr int tries = 8;
-  constexpr double share = 1e-11;
+  constexpr double share = 1e-15;
   std::vector<Eigen::VectorXd> places{mode};
   Stream stream({seed, Purpose::start, 0, rounding_step});
   for (int k = 0; k < tries; ++k) {
@@ -307,10 +331,14 @@ std::optional<Finding> unbounded_density(Target const& target, Eigen::VectorXd c
 
 Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t seed, std::function<bool()> const& stop) {
   Propriety result;
-  result.failure = unbounded_density(target, theta_of(mode), seed);
-  if (result.failure) return result;
+  std::optional<Finding> singular = unbounded_density(target, theta_of(mode), seed);
   std::vector<Ray> const rays = Walk(target, mode, seed, stop).run();
   if (stop && stop()) return result;
+  if (singular && std::none_of(rays.begin(), rays.end(), rises)) {
+    result.failure = std::move(singular);
+    return result;
+  }
+  if (singular) result.findings.push_back(mode_at_zero_noise());
   Ray const* worst = nullptr;  // others may only follow from it
   for (Ray const& ray : rays) {
     Tail const tail = tail_of(ray);
@@ -318,6 +346,15 @@ Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t 
     if (tail == Tail::undecided) result.findings.push_back(undecided_tail(target, ray));
   }
   if (worst != nullptr) result.failure = improper_tail(target, *worst);
+  if (result.failure || singular) return result;
+  Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
+  for (Finding& each : find_repeats(objective, mode, seed, stop)) {
+    if (each.severity == Severity::error) {
+      result.failure = std::move(each);
+      break;
+    }
+    result.findings.push_back(std::move(each));
+  }
   return result;
 }
 

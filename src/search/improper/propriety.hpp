@@ -24,13 +24,15 @@ struct Propriety {
 ///
 /// whose integral is finite where it falls as a power of the distance. A side is followed until g has fallen by 30 nats, which no
 /// chain climbs back: what lies further off is as if cut off. Otherwise, over the last two decades, a fall of more than half a nat
-/// a decade is proper, of less than a tenth improper, and what is between is said to be undecided.
+/// a decade is proper, of less than a tenth improper, and what is between is said to be undecided. That holds for the last two
+/// decades before the model fails too.
 ///
-/// Improper too is what `unbounded_density` finds at the mode.
+/// Improper too is what `unbounded_density` finds at the mode, unless g rises by more than half a nat a decade from there as a
+/// parameter with a bound grows: then the density is unbounded, and its integral is not. And what `find_repeats` refuses.
 Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t seed, std::function<bool()> const& stop);
 
-/// Improper: a density that changes by more than a nat when the place is moved in its eleventh digit: there the residuals
-/// can be zero, and the density grows without bound as the noise goes to zero.
+/// Improper: a density that changes by more than a nat when the place is moved in its last digit: there the residuals can be zero,
+/// and the density grows without bound as the noise goes to zero.
 std::optional<Finding> unbounded_density(Target const& target, Eigen::VectorXd const& place, std::uint64_t seed);
 
 }  // namespace sysid::unbounded

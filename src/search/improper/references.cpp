@@ -9,6 +9,7 @@
 #include "core/numeric/not_finite.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/improper/free_climb.hpp"
+#include "search/improper/proper_priors.hpp"
 #include "search/starts.hpp"
 
 namespace sysid::unbounded {
@@ -17,7 +18,6 @@ namespace {
 constexpr double half_decades[] = {1.5, 3, 6, 10};
 constexpr int draws_per_bracket = 512, rounds_per_bracket = 15;
 constexpr std::size_t likeliest = 24, others = 8, kept = 4;
-constexpr double better = 0.1;                      // nats
 constexpr std::uint64_t bracket_step = 11'000'000;  // of Purpose::start
 
 /// Widths of what the brackets draw say nothing: on a line a unit is as good as any.
@@ -92,38 +92,41 @@ ImproperReference around(Target const& target, int coordinate, double place, dou
 
 }  // namespace
 
-References find_references(MakeReferred const& make, std::vector<int> const& coordinates, bool hierarchy, std::uint64_t seed,
+References find_references(MakeReferred const& make, std::vector<int> const& coordinates, Looked const& looked, std::uint64_t seed,
                            std::function<bool()> const& stop) {
   Ledger untold;
   std::unique_ptr<Target> target;
   std::vector<FreeClimber> best;
+  std::vector<ImproperReference> references;
+  ObjectiveKind const kind = looked.likelihood || looked.hierarchy ? ObjectiveKind::likelihood : ObjectiveKind::posterior;
   std::uint64_t bracket = 0;
+  // All of them, whatever they gain: what two brackets find alike may be a constant response, as far off as the third one is wide.
   for (double const width : half_decades) {
-    std::vector<ImproperReference> references;
+    references.clear();
     for (int const each : coordinates) references.push_back({ImproperReference::Kind::decades, each, 0, width});
     target = make(references);
     LaneArray draws = draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket++}, draws_per_bracket);
     begin_without_functions(*target, draws);
-    // The density of the declared parameters: a Jacobian would drive what the data leave alone to infinity. In a hierarchy that
-    // density has no maximum either, as all members become equal.
-    Objective const objective =
-        objective_of(*target, hierarchy ? ObjectiveKind::likelihood : ObjectiveKind::declared_posterior, draws);
+    ProperPriors const proper(*target, references);
+    Objective const objective = objective_of(proper, kind, draws);
     std::vector<FreeClimber> climbers = starts_of(objective, draws, untold, stop);
-    double const before = best.empty() ? -infinity : best.front().log_density;
     for (FreeClimber& each : best) climbers.push_back({each.theta, each.log_density});
     climb_freely(objective, climbers, rounds_per_bracket, untold, stop);
     if (stop && stop()) return {};
     sort_best_first(climbers);
     climbers.resize(std::min(climbers.size(), kept));
     best = std::move(climbers);
-    if (!best.empty() && std::isfinite(before) && best.front().log_density < before + better) break;
   }
   if (best.empty()) return {};
   References found{{}, best.front().theta};
-  Objective objective =
-      objective_of(*target, ObjectiveKind::likelihood, draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket}, 64));
-  if (hierarchy) follow_prior(*target, coordinates, free_slopes(objective, {found.place}, untold).front().curvature, found.place);
-  objective.objective_kind = ObjectiveKind::declared_posterior;
+  LaneArray const draws = draw_prior(*target, {seed, Purpose::start, 0, bracket_step + bracket}, 64);
+  if (looked.hierarchy) {
+    Objective const likelihood = objective_of(*target, ObjectiveKind::likelihood, draws);
+    follow_prior(*target, coordinates, free_slopes(likelihood, {found.place}, untold).front().curvature, found.place);
+  }
+  ProperPriors const proper(*target, references);
+  Objective const objective =
+      looked.hierarchy ? objective_of(*target, ObjectiveKind::declared_posterior, draws) : objective_of(proper, kind, draws);
   Eigen::VectorXd const sd = sds_of(free_slopes(objective, {found.place}, untold).front().curvature);
   for (int const each : coordinates) found.of_coordinates.push_back(around(*target, each, found.place(each), sd(each)));
   return found;

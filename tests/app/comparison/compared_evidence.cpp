@@ -46,6 +46,11 @@ TEST_CASE("errors of evidences are carried through to probabilities and Bayes fa
   CHECK(*fits[0].log_bayes_factor == 0);
   CHECK_FALSE(fits[3].probability);
   CHECK_FALSE(fits[3].log_bayes_factor);
+  std::vector<ComparedFit> alone = {fit("proper", 10, 0.1), fit("improper", 0, 0)};
+  alone[1].log_evidence.reset();
+  weigh_models({"a", "b"}, alone);
+  CHECK_FALSE(alone[0].probability);
+  CHECK_FALSE(alone[0].log_bayes_factor);
   // Of several fits of one model the best known evidence counts, in any order.
   ComparedFit unsure = fit("unsure", 12, 0.01);
   unsure.not_confirmed = "its error is 0.50, above 0.3";
