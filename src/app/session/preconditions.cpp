@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
-#include "distribution/location_scale.hpp"
 #include "experiment/experiments.hpp"
 #include "inference/table.hpp"
+#include "likelihood/member_coordinate.hpp"
 #include "likelihood/simulated_parameters.hpp"
 #include "model/lags.hpp"
 #include "regression/choice/selector.hpp"
