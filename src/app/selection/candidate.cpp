@@ -116,15 +116,16 @@ void require_same_samples(std::vector<Candidate> const& candidates, Span place) 
           bool const in_a = row >= a.first_row, in_b = row >= b.first_row;
           if ((in_a && i >= a.scored.size()) || (in_b && j >= b.scored.size())) break;
           if ((in_a && a.is_scored(c, i)) == (in_b && b.is_scored(d, j))) continue;
-          throw UserError({Severity::error,
-                           "E6520",
-                           fmt::format("`{}` and `{}` score different samples: `{}` of row {} of {}, for example, enters only one of "
-                                       "the likelihoods",
-                                       first.compiled->model.name, other.compiled->model.name, channels[c].name, row, a.name),
-                           Label{place, {}},
-                           {},
-                           "models with lags leave out the first rows, and rows after missing samples: select rows that all can "
-                           "score, or compare models with the same longest lag"});
+          throw UserError(
+              {Severity::error,
+               "E6520",
+               fmt::format("`{}` and `{}` score different samples: `{}` of row {} of {}, for example, enters only one of "
+                           "the likelihoods",
+                           first.compiled->model.name, other.compiled->model.name, channels[c].name, row, a.name),
+               Label{place, {}},
+               {},
+               "models with lags leave out the first rows, and rows after missing samples: select rows that all can "
+               "score, or compare models with the same longest lag"});
         }
       }
 }
@@ -138,8 +139,7 @@ double log_unit(Candidate const& candidate, Candidate const& first) {
     auto const c = static_cast<std::size_t>(&channel - candidate.compiled->model.channels.data());
     double samples = 0;
     for (ExperimentData const& each : candidate.data)
-      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
-        samples += each.experiment.is_scored(c, i) ? 1 : 0;
+      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i) samples += each.experiment.is_scored(c, i) ? 1 : 0;
     term += samples * elementary::log(same->unit->scale / channel.unit->scale);
   }
   return term;

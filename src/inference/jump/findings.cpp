@@ -64,7 +64,8 @@ void add_rarely_accepted(SelectionResult const& result, Findings& findings) {
   }
   if (names.empty()) return;
   std::string const message = fmt::format(
-      "jumps to or from {} are rarely accepted (rate {:.2g}): the proposals do not cover the posterior of one of the models", quoted(names), least);
+      "jumps to or from {} are rarely accepted (rate {:.2g}): the proposals do not cover the posterior of one of the models",
+      quoted(names), least);
   findings.push_back({FindingCode::jumps_rarely_accepted, Severity::warning, std::move(names), message,
                       "use a longer `pilot`; if that does not help, the posterior has narrow or curved parts: compare with the "
                       "evidences of `fit`"});

@@ -215,24 +215,6 @@ Tail tail_of(Ray const& ray) {
   return fall < improper && fall_before < improper ? Tail::improper : Tail::undecided;
 }
 
-/// Whether the mass lies away from the mode: of an sd whose density, not its integral, grows without bound towards zero.
-bool rises(Ray const& ray) {
-  constexpr std::size_t looked_at = 4 * steps_per_decade;
-  if (ray.on_line || ray.sign < 0 || ray.marginal.size() <= looked_at) return false;
-  double const first = ray.marginal[2 * steps_per_decade], later = ray.marginal[looked_at];
-  return later - first > 2 * proper;
-}
-
-Finding mode_at_zero_noise() {
-  return {
-      FindingCode::propriety_not_checked,
-      Severity::warning,
-      {},
-      "the parameters can make the residuals zero: the mode that was found is that of no noise, and holds none of the mass of the "
-      "posterior",
-      "measure more samples than there are parameters, or give the size of the noise a proper prior"};
-}
-
 /// The deepest fall of g on the way.
 double barrier(Ray const& ray) {
   double highest = -infinity, deepest = 0;
@@ -332,13 +314,12 @@ std::optional<Finding> unbounded_density(Target const& target, Eigen::VectorXd c
 Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t seed, std::function<bool()> const& stop) {
   Propriety result;
   std::optional<Finding> singular = unbounded_density(target, theta_of(mode), seed);
-  std::vector<Ray> const rays = Walk(target, mode, seed, stop).run();
-  if (stop && stop()) return result;
-  if (singular && std::none_of(rays.begin(), rays.end(), rises)) {
+  if (singular) {
     result.failure = std::move(singular);
     return result;
   }
-  if (singular) result.findings.push_back(mode_at_zero_noise());
+  std::vector<Ray> const rays = Walk(target, mode, seed, stop).run();
+  if (stop && stop()) return result;
   Ray const* worst = nullptr;  // others may only follow from it
   for (Ray const& ray : rays) {
     Tail const tail = tail_of(ray);
@@ -346,7 +327,7 @@ Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t 
     if (tail == Tail::undecided) result.findings.push_back(undecided_tail(target, ray));
   }
   if (worst != nullptr) result.failure = improper_tail(target, *worst);
-  if (result.failure || singular) return result;
+  if (result.failure) return result;
   Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
   for (Finding& each : find_repeats(objective, mode, seed, stop)) {
     if (each.severity == Severity::error) {

@@ -27,8 +27,7 @@ struct Propriety {
 /// a decade is proper, of less than a tenth improper, and what is between is said to be undecided. That holds for the last two
 /// decades before the model fails too.
 ///
-/// Improper too is what `unbounded_density` finds at the mode, unless g rises by more than half a nat a decade from there as a
-/// parameter with a bound grows: then the density is unbounded, and its integral is not. And what `find_repeats` refuses.
+/// Improper too is what `unbounded_density` finds at the mode, and what `find_repeats` refuses.
 Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t seed, std::function<bool()> const& stop);
 
 /// Improper: a density that changes by more than a nat when the place is moved in its last digit: there the residuals can be zero,

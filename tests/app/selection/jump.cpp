@@ -2,6 +2,8 @@
 // bytes for any threads, lanes and interruptions, predictions from what it leaves on disk, and what is refused.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -220,23 +222,24 @@ TEST_CASE("a selection by likelihood refuses a distance and improper priors, and
 TEST_CASE("models in two units are equally probable, also where lagged samples are missing") {
   TemporaryFolder folder;
   Stream stream({.seed = 9, .purpose = Purpose::test, .index = 0, .step = 0});
-  std::string csv = "y\n";
+  std::string csv = "n,y\n";
   double y = 1;
   for (int i = 0; i < 60; ++i) {
     y = 0.6 * y + 0.2 * stream.normal();
-    csv += i % 6 == 5 ? "nan\n" : fmt::format("{}\n", y);
+    csv += i % 6 == 5 ? fmt::format("{},\n", i) : fmt::format("{},{}\n", i, y);
   }
   write_file(folder.path() / "record.csv", csv);
   std::string const text = R"(
 model metres { time discrete 1 [s]; parameter a ~ normal(0, sd = 1); observe y [m] ~ normal(a*lag(measured(y), 1), sd = 0.2 [m]) }
 model millimetres { time discrete 1 [s]; parameter a ~ normal(0, sd = 1); observe y [mm] ~ normal(a*lag(measured(y), 1), sd = 200 [mm]) }
-model longer { time discrete 1 [s]; parameter a ~ normal(0, sd = 1); observe y [m] ~ normal(a*lag(measured(y), 1) + 0*lag(measured(y), 3), sd = 0.2 [m]) }
+model longer { time discrete 1 [s]; parameter a ~ normal(0, sd = 1); parameter b ~ normal(0, sd = 0.1); observe y [m] ~ normal(a*lag(measured(y), 1) + b*lag(measured(y), 3), sd = 0.2 [m]) }
 data record { file "record.csv"; step 1 [s]; measure y = y [m]; split part = rows 10..60 }
 candidates units { metres; millimetres }
 candidates lags { metres; longer }
 )";
   RunOptions options;
   options.output = folder.path() / "results";
+  options.force = true;
   auto const run = [&](char const* set) {
     run_text(folder.path() / "case.sysid",
              text + "s = select " + set + " to record.part with reversible_jump(samples = 2000), seed = 1\n", options);
