@@ -85,6 +85,15 @@ std::string refuse_lengths(Settings const& settings) {
   return {};
 }
 
+std::string refuse_kept(Settings const& settings) {
+  if (std::string why = refuse_lengths(settings); !why.empty()) return why;
+  std::int64_t const kept =
+      (settings.integer("samples") - settings.integer("burn_in")) / settings.integer("thin") * settings.integer("chains");
+  // All of them are held in memory and written out.
+  if (kept <= most_kept_draws) return {};
+  return fmt::format("{} draws would be kept, more than {}: increase `thin`, or use fewer samples", kept, most_kept_draws);
+}
+
 std::string refuse_unthinned(Settings const& settings) {
   if (std::string const why = refuse_lengths(settings); !why.empty()) return why;
   std::int64_t const kept = (settings.integer("samples") - settings.integer("burn_in")) * settings.integer("chains");

@@ -47,7 +47,9 @@ void report(Target const& target, ChainRun const& run, std::uint64_t thin, std::
 
 /// Why samples, burn_in and thin do not go together; empty where they do.
 std::string refuse_lengths(Settings const& settings);
-/// The same, for a back end that keeps every iteration after burn-in in memory.
+/// The same, for a back end that writes out every thin-th iteration: also where these are too many.
+std::string refuse_kept(Settings const& settings);
+/// The same as the first, for a back end that keeps every iteration after burn-in in memory.
 std::string refuse_unthinned(Settings const& settings);
 
 /// Draws of all chains: more than any figure shows and any other program likes to read.

@@ -304,14 +304,7 @@ void add_proposals(Target const& target, Plan const& plan, State const& state, F
 
 std::span<SettingRow const> settings() { return rows; }
 
-std::string refuse(Settings const& settings) {
-  if (std::string why = refuse_lengths(settings); !why.empty()) return why;
-  std::int64_t const kept =
-      (settings.integer("samples") - settings.integer("burn_in")) / settings.integer("thin") * settings.integer("chains");
-  // All of them are held in memory and written out.
-  if (kept <= most_kept_draws) return {};
-  return fmt::format("{} draws would be kept, more than {}: increase `thin`, or use fewer samples", kept, most_kept_draws);
-}
+std::string refuse(Settings const& settings) { return refuse_kept(settings); }
 
 FitResult run(Target const& target, Settings const& settings, RunContext& context) {
   FitResult result;

@@ -18,8 +18,7 @@ constexpr SettingRow rows[] = {
     {"chains", SettingKind::integer, "8", 1, 65536, "", "number of independent chains"},
     {"pilot", SettingKind::integer, "2000", 100, 1e8, "",
      "iterations of each of the four chains that learn a model's posterior beforehand, a quarter of them burn-in; up to 16 times "
-     "as "
-     "many where these are not enough"},
+     "as many where these are not enough"},
 };
 
 /// Parts of all chains together: their scatter is then known to a tenth.
@@ -29,13 +28,7 @@ constexpr std::uint64_t wanted_parts = 48, least_part = 5 * Plan::cycle;
 
 std::span<SettingRow const> settings() { return rows; }
 
-std::string refuse(Settings const& settings) {
-  if (std::string why = refuse_lengths(settings); !why.empty()) return why;
-  std::int64_t const kept =
-      (settings.integer("samples") - settings.integer("burn_in")) / settings.integer("thin") * settings.integer("chains");
-  if (kept <= most_kept_draws) return {};
-  return fmt::format("{} draws would be kept, more than {}: increase `thin`, or use fewer samples", kept, most_kept_draws);
-}
+std::string refuse(Settings const& settings) { return refuse_kept(settings); }
 
 std::uint64_t Plan::parts() const {
   std::uint64_t const wanted = std::max<std::uint64_t>(4, wanted_parts / static_cast<std::uint64_t>(chains));

@@ -1,4 +1,4 @@
-// The run: pilots, burn-in that makes visits even, jumps and walks, and what they have come to.
+// The run: pilots, burn-in that makes visits even, jumps and walks.
 #include "inference/jump/reversible_jump.hpp"
 
 #include <fmt/format.h>
@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "core/system/interrupt.hpp"
 #include "inference/backend/checkpoint.hpp"
-#include "inference/jump/findings.hpp"
+#include "inference/jump/jump_result.hpp"
 #include "inference/jump/state.hpp"
 
 namespace sysid::jump {
@@ -44,7 +45,7 @@ class Run {
     if (result_.failure) return std::move(result_);
     if (!iterate()) return stopped();
     if (context_.checkpoint && context_.checkpoint_end) save();
-    fill_result();
+    fill_result(candidates_, models_, plan_, state_, result_);
     return std::move(result_);
   }
 
@@ -129,41 +130,43 @@ class Run {
     state_.tally = Tally(count, plan_.chains, static_cast<int>(plan_.parts()));
   }
 
-  /// Each chain in a model in turn, at a draw of its mixture.
+  /// Each chain in a model in turn, at a draw of its mixture; in the next model where no draw can be simulated.
   void place_chains() {
-    std::vector<Place> places;
     Ledger spent;
+    std::vector<Place> places;
     for (int c = 0; c < plan_.chains; ++c) {
-      auto const index = static_cast<std::uint64_t>(c);
-      int const wanted = c % static_cast<int>(models_.size());
-      for (std::uint64_t attempt = 0;; ++attempt) {
-        Place place{wanted, {}, 0, 0};
-        Model const& model = models_[static_cast<std::size_t>(wanted)];
-        if (!model.mixture.empty()) {
-          LaneArray theta(model.candidate->target->dimension(), 1);
-          model.mixture.draw(key_.at(index, start_step + attempt), theta, 0);
-          for (int p = 0; p < theta.rows(); ++p) place.theta.push_back(theta(p, 0));
-        }
-        Place* const one = &place;
-        evaluate(models_, {&one, 1}, spent);
-        bool const finite = place.log_density > -infinity;
-        if (!finite && attempt < most_starts) continue;
-        // A pilot has weighed draws of the same mixture, and some were finite.
-        if (!finite) {
-          result_.failure = Finding{
-              FindingCode::no_finite_start,
-              Severity::error,
-              {model.candidate->name},
-              fmt::format("none of {} draws near the modes of `{}` has a finite likelihood", most_starts, model.candidate->name),
-              "check its equations and priors"};
-          return;
-        }
-        places.push_back(std::move(place));
-        break;
+      std::optional<Place> place;
+      for (std::size_t turn = 0; turn < models_.size() && !place; ++turn)
+        place = place_in((static_cast<std::size_t>(c) + turn) % models_.size(), c, turn * most_starts, spent);
+      if (!place) {
+        result_.failure =
+            Finding{FindingCode::no_finite_start,
+                    Severity::error,
+                    {},
+                    fmt::format("no candidate has a finite likelihood at any of {} draws near its modes", most_starts),
+                    "check the equations and priors of the candidates"};
+        return;
       }
+      places.push_back(std::move(*place));
     }
     context_.ledger.merge(spent);
     state_.places = std::move(places);
+  }
+
+  std::optional<Place> place_in(std::size_t m, int chain, std::uint64_t first_attempt, Ledger& spent) const {
+    Model const& model = models_[m];
+    for (std::uint64_t attempt = first_attempt; attempt < first_attempt + most_starts; ++attempt) {
+      Place place{static_cast<int>(m), {}, 0, 0};
+      if (!model.mixture.empty()) {
+        LaneArray theta(model.candidate->target->dimension(), 1);
+        model.mixture.draw(key_.at(static_cast<std::uint64_t>(chain), start_step + attempt), theta, 0);
+        for (int p = 0; p < theta.rows(); ++p) place.theta.push_back(theta(p, 0));
+      }
+      Place* const one = &place;
+      evaluate(models_, {&one, 1}, spent);
+      if (place.log_density > -infinity) return place;
+    }
+    return std::nullopt;
   }
 
   // --- the moves
@@ -225,7 +228,7 @@ class Run {
       }
     }
     if (accepted) now = std::move(to);
-    record(now, chain, iteration);
+    record(now, iteration);
   }
 
   void walk_all() {
@@ -242,7 +245,7 @@ class Run {
       ++state_.walks[m];
       state_.walks_accepted[m] += chance;
       if (uniform_of(c, state_.next) < chance) now = std::move(to);
-      record(now, c, state_.next);
+      record(now, state_.next);
     }
     ++state_.next;
     if (state_.next <= plan_.burn_in && state_.next % (walk_window * Plan::cycle) == 0) adapt_walks();
@@ -262,7 +265,7 @@ class Run {
     for (Place const& each : places) ++state_.simulations[static_cast<std::size_t>(each.model)];
   }
 
-  void record(Place const& place, int /*chain*/, std::uint64_t iteration) {
+  void record(Place const& place, std::uint64_t iteration) {
     if (iteration < plan_.burn_in) return;
     auto const m = static_cast<std::size_t>(place.model);
     ++state_.visits[m];
@@ -310,69 +313,6 @@ class Run {
     result_.interrupted = true;
     if (context_.checkpoint) save();
     return std::move(result_);
-  }
-
-  void fill_result() {
-    std::vector<double> prior;
-    for (Model const& model : models_) prior.push_back(model.candidate->prior);
-    Estimate const found = estimate(state_.tally, state_.bias, prior);
-    JumpRecord record;
-    record.chains = plan_.chains;
-    record.samples = plan_.samples;
-    record.burn_in = plan_.burn_in;
-    record.models.resize(candidates_.size());
-    for (JumpRecord::OfModel& each : record.models) each.log_bayes_factor = each.log_evidence = -infinity;
-    double visits = 0;
-    for (double const each : state_.visits) visits += each;
-    for (std::size_t m = 0; m < models_.size(); ++m) {
-      auto const k = static_cast<std::size_t>(state_.live[m]);
-      JumpRecord::OfModel& model = record.models[k];
-      auto const rate = [m](std::vector<double> const& accepted, std::vector<double> const& all) {
-        return all[m] > 0 ? accepted[m] / all[m] : 0;
-      };
-      model.error = found.error[m];
-      model.log_bayes_factor = found.factor[m];
-      model.factor_error = found.factor_error[m];
-      model.log_evidence = state_.weights[m].log_mean() - elementary::log(prior[m]);
-      model.evidence_error = state_.weights[m].error();
-      model.visits = state_.visits[m] / visits;
-      model.bias = state_.bias[m];
-      model.accepted_in = rate(state_.jumps_in_accepted, state_.jumps_in);
-      model.accepted_out = rate(state_.jumps_out_accepted, state_.jumps_out);
-      model.accepted_within = rate(state_.walks_accepted, state_.walks);
-      model.spread = found.spread[m];
-      model.worth = state_.weights[m].worth();
-      model.simulations = state_.simulations[m];
-      result_.models[k].probability = found.probability[m];
-      result_.models[k].share = model.visits;
-      fill_draws(m, result_.models[k]);
-    }
-    result_.jumps = std::move(record);
-    result_.stopped_by = fmt::format("`samples = {}` is reached", plan_.samples);
-    std::vector<std::string> excluded;
-    for (auto const& pilot : state_.pilots) excluded.push_back(pilot->excluded);
-    result_.findings = check_jumps(result_, excluded);
-  }
-
-  void fill_draws(std::size_t m, SelectedModel& model) const {
-    KeptDraws const& draws = state_.draws[m];
-    auto const count = static_cast<int>(draws.log_density.size()), dimension = static_cast<int>(model.parameters.size());
-    model.theta = LaneArray(dimension, count);
-    model.declared = LaneArray(dimension, count);
-    for (int w = 0; w < count; ++w)
-      for (int p = 0; p < dimension; ++p)
-        model.theta(p, w) =
-            draws.theta[static_cast<std::size_t>(w) * static_cast<std::size_t>(dimension) + static_cast<std::size_t>(p)];
-    models_[m].candidate->target->constrain(model.theta, model.declared);
-    model.log_density = draws.log_density;
-    double const constant = elementary::log(model.prior) + models_[m].candidate->log_unit;
-    for (double& each : model.log_density) each -= constant;
-    model.weight.assign(static_cast<std::size_t>(count), count > 0 ? 1.0 / count : 0);
-    if (count == 0) return;
-    for (int d = 0; d < dimension; ++d) {
-      ParameterInfo const& info = model.parameters[static_cast<std::size_t>(d)];
-      model.summaries.push_back(summarise_weighted(info.name, info.unit, model.declared.row(d), model.weight));
-    }
   }
 
   void save_sometimes() {
