@@ -8,11 +8,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/process/unknown_functions.hpp"
 #include "app/selection/candidate.hpp"
 #include "app/selection/candidate_posterior.hpp"
 #include "app/selection/mcmc_refinement.hpp"
 #include "app/selection/selection_checks.hpp"
+#include "app/selection/selection_report.hpp"
 #include "app/selection/shared_parameters.hpp"
 #include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
@@ -29,12 +29,9 @@
 #include "core/text/number.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/bands.hpp"
-#include "diagnostics/function_ranges.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/table.hpp"
 #include "likelihood/simulated_parameters.hpp"
-#include "likelihood/trajectory.hpp"
-#include "mechanics/restoring_force.hpp"
 #include "report/file/selection.hpp"
 
 namespace sysid {
@@ -169,33 +166,13 @@ class Select {
   // --- the end
   // --------------------------------------------------------------------------------------------------------------------
 
-  /// Bands of the leading model's particles over the fitted rows, and whether its unknown functions can be believed there.
+  /// Bands of the leading model's particles; the noise has none.
   void add_predictions(SelectionReport const& selection, Report& report) const {
-    auto const lead = static_cast<std::size_t>(selection.leader());
-    Candidate const& candidate = candidates_[lead];
-    LaneArray const values = leading_values(selection);
-    for (std::size_t e = 0; e < candidate.data.size(); ++e) {
-      Experiment const& experiment = candidate.data[e].experiment;
-      LaneArray parameters(static_cast<int>(candidate.compiled->model.parameters.size()), values.width());
-      candidate.simulated->select(values, static_cast<int>(e), parameters);
-      Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
-                                  session_.abandonable());
-      Trajectory::Result result = trajectory.run(parameters, prediction_noise(seed_, static_cast<int>(e)));
-      if (candidate.space->dimension() != candidate.simulated->dimension())
-        std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());  // the noise has no particles
-      report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, candidate.compiled->model));
-      add_restoring_forces(candidate.compiled->model, trajectory.quantities(), result, parameters, experiment, report.forces);
-      Findings noise_findings = leave_out_noise(candidate.compiled->model, report.predictions.back());
-      if (e == 0) report.findings.insert(report.findings.end(), noise_findings.begin(), noise_findings.end());
-      for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
-        report.findings.push_back(std::move(finding));
-      for (Finding& finding : check_ranges(candidate.compiled->model, experiment, candidate.fit->solver,
-                                           start_rows(candidate.fit->start), parameters, session_.abandonable()))
-        report.findings.push_back(std::move(finding));
-      if (e > 0) continue;
-      for (Finding& finding : check_expansions(candidate.compiled->model, parameters))
-        report.findings.push_back(std::move(finding));
-    }
+    Candidate const& leading = candidates_[static_cast<std::size_t>(selection.leader())];
+    add_leading_predictions(leading,
+                            {*leading.simulated, leading_values(selection), leading.fit->solver,
+                             leading.space->dimension() == leading.simulated->dimension()},
+                            seed_, session_.abandonable(), report);
   }
 
   LaneArray leading_values(SelectionReport const& selection) const {
@@ -207,7 +184,7 @@ class Select {
     bool interrupted = result.interrupted;
     SelectionReport selection = begin_selection(std::move(result));
     Candidate const& leading = candidates_[static_cast<std::size_t>(selection.leader())];
-    Report report = begin(leading, selection);
+    Report report = begin_selection_report(session_, task_, what_, candidates_, selection, seed_);
     std::vector<CandidatePosterior> posteriors;
     if (!interrupted && (what_.settings.flag("cross_check") || what_.settings.flag("polish"))) {
       interrupted = !find_posteriors(selection, posteriors);
@@ -244,21 +221,6 @@ class Select {
     selection.resampling_seed = seed_;
     summarise_shared(session_, set_, candidates_, selection);
     return selection;
-  }
-
-  Report begin(Candidate const& leading, SelectionReport const& selection) const {
-    Candidate const& first = candidates_.front();
-    Report report = begin_report(
-        session_, task_, leading.fit->model,
-        fmt::format("select {} to {} with {}", set_.name, data_names(session_.file, first.fit->experiments), what_.backend), seed_);
-    add_prediction_rule(leading.compiled->model, leading.fit->prediction, report);
-    report.priors = priors_of(*leading.space, report.priors);
-    report.findings = selection.result.findings;
-    for (ExperimentData const& each : first.data) add_data(session_.file, each, first.compiled->model, report);
-    for (Candidate const& candidate : candidates_)
-      for (ExperimentData const& each : candidate.data)
-        look_at_data(session_.file, each, candidate.compiled->model, report.findings);
-    return report;
   }
 
   void check_by_likelihood(Candidate const& leading, std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection,
@@ -310,11 +272,7 @@ class Select {
     report.ledger = ledger_;
     report.tables = selection_tables(selection);
     report.verdict = headline(selection, report.findings);
-    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
-    report.timing.emplace_back("wall_seconds", wall.count());
-    report.timing.emplace_back("threads", static_cast<std::int64_t>(session_.threads()));
-    report.timing.emplace_back("lanes", static_cast<std::int64_t>(session_.options.execution.lanes));
-    report.timing.emplace_back("executor", std::string(name(session_.options.execution.executor)));
+    add_timing(session_, began_, report);
   }
 
   // For predictions of this run.

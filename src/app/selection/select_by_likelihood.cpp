@@ -11,9 +11,9 @@
 #include "app/selection/candidate.hpp"
 #include "app/selection/searched_candidates.hpp"
 #include "app/selection/selection_checks.hpp"
+#include "app/selection/selection_report.hpp"
 #include "app/selection/shared_parameters.hpp"
 #include "app/session/fit_end.hpp"
-#include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
@@ -25,12 +25,8 @@
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
 #include "data/start_rule.hpp"
-#include "diagnostics/bands.hpp"
-#include "diagnostics/function_ranges.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/table.hpp"
-#include "likelihood/trajectory.hpp"
-#include "mechanics/restoring_force.hpp"
 #include "report/file/selection.hpp"
 
 namespace sysid {
@@ -140,7 +136,7 @@ class SelectByLikelihood {
     selection.resampling_seed = seed_;
     summarise_shared(session_, set_, candidates_, selection);
     auto const lead = static_cast<std::size_t>(selection.leader());
-    Report report = begin(candidates_[lead], selection);
+    Report report = begin_selection_report(session_, task_, what_, candidates_, selection, seed_);
     for (Findings const& more : {findings_, failure_findings(ledger_)})
       report.findings.insert(report.findings.end(), more.begin(), more.end());
     if (!searched_[lead].modes.empty()) {
@@ -160,45 +156,12 @@ class SelectByLikelihood {
     return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
   }
 
-  Report begin(Candidate const& leading, SelectionReport const& selection) const {
-    Candidate const& first = candidates_.front();
-    Report report = begin_report(
-        session_, task_, leading.fit->model,
-        fmt::format("select {} to {} with {}", set_.name, data_names(session_.file, first.fit->experiments), what_.backend), seed_);
-    add_prediction_rule(leading.compiled->model, leading.fit->prediction, report);
-    report.priors = priors_of(*leading.space, report.priors);
-    report.findings = selection.result.findings;
-    for (ExperimentData const& each : first.data) add_data(session_.file, each, first.compiled->model, report);
-    for (Candidate const& candidate : candidates_)
-      for (ExperimentData const& each : candidate.data)
-        look_at_data(session_.file, each, candidate.compiled->model, report.findings);
-    return report;
-  }
-
   /// Bands of the leading model's draws over the fitted rows, noise included.
   void add_predictions(std::size_t lead, SelectionReport const& selection, Report& report) const {
-    Candidate const& candidate = candidates_[lead];
-    Model const& model = candidate.compiled->model;
-    SolverSettings const& solver = searched_[lead].solver;
-    LaneArray const values =
-        candidate.space->values_of_declared(spread(resampled_draws(selection.result.models[lead], seed_), band_draws));
-    for (std::size_t e = 0; e < candidate.data.size(); ++e) {
-      Experiment const& experiment = candidate.data[e].experiment;
-      LaneArray parameters(static_cast<int>(model.parameters.size()), values.width());
-      candidate.space->select(values, static_cast<int>(e), parameters);
-      Trajectory const trajectory(candidate.compiled, experiment, solver, start_rows(candidate.fit->start),
-                                  session_.interruptible());
-      Trajectory::Result const result = trajectory.run(parameters, prediction_noise(seed_, static_cast<int>(e)));
-      report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model));
-      add_restoring_forces(model, trajectory.quantities(), result, parameters, experiment, report.forces);
-      for (Finding& finding : band_findings(report.predictions.back(), result.failed(), result.failed(), candidate.data.size() > 1))
-        report.findings.push_back(std::move(finding));
-      for (Finding& finding :
-           check_ranges(model, experiment, solver, start_rows(candidate.fit->start), parameters, session_.interruptible()))
-        report.findings.push_back(std::move(finding));
-      if (e > 0) continue;
-      for (Finding& finding : check_expansions(model, parameters)) report.findings.push_back(std::move(finding));
-    }
+    Candidate const& leading = candidates_[lead];
+    LaneArray values = leading.space->values_of_declared(spread(resampled_draws(selection.result.models[lead], seed_), band_draws));
+    add_leading_predictions(leading, {*leading.space, std::move(values), searched_[lead].solver, true}, seed_,
+                            session_.interruptible(), report);
   }
 
   void add_settings(std::size_t lead, SelectionReport const& selection, Report& report) const {
@@ -208,11 +171,7 @@ class SelectByLikelihood {
     if (candidates_[lead].compiled->model.integrated()) add_solver(searched_[lead].solver, report.settings);
     report.resolved_text = resolved_select(session_, task_, what_, seed_);
     report.ledger = ledger_;
-    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
-    report.timing.emplace_back("wall_seconds", wall.count());
-    report.timing.emplace_back("threads", static_cast<std::int64_t>(session_.threads()));
-    report.timing.emplace_back("lanes", static_cast<std::int64_t>(session_.options.execution.lanes));
-    report.timing.emplace_back("executor", std::string(name(session_.options.execution.executor)));
+    add_timing(session_, began_, report);
   }
 
   /// For predictions of this run: the parameters that a simulation reads, as a later run takes them from the files.

@@ -1,0 +1,73 @@
+// Parts of reports that selections by distances and by likelihoods share.
+#include "app/selection/selection_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/process/unknown_functions.hpp"
+#include "app/session/fit_target.hpp"
+#include "app/session/provenance.hpp"
+#include "app/session/reporting.hpp"
+#include "app/session/resolved.hpp"
+#include "diagnostics/bands.hpp"
+#include "diagnostics/function_ranges.hpp"
+#include "likelihood/trajectory.hpp"
+#include "mechanics/restoring_force.hpp"
+
+namespace sysid {
+namespace {
+
+void add(Findings const& more, Report& report) { report.findings.insert(report.findings.end(), more.begin(), more.end()); }
+
+}  // namespace
+
+Report begin_selection_report(Session& session, Task const& task, SelectTask const& what, std::vector<Candidate> const& candidates,
+                              SelectionReport const& selection, std::uint64_t seed) {
+  Candidate const& first = candidates.front();
+  Candidate const& leading = candidates[static_cast<std::size_t>(selection.leader())];
+  CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
+  Report report = begin_report(
+      session, task, leading.fit->model,
+      fmt::format("select {} to {} with {}", set.name, data_names(session.file, first.fit->experiments), what.backend), seed);
+  add_prediction_rule(leading.compiled->model, leading.fit->prediction, report);
+  report.priors = priors_of(*leading.space, report.priors);
+  report.findings = selection.result.findings;
+  for (ExperimentData const& each : first.data) add_data(session.file, each, first.compiled->model, report);
+  for (Candidate const& candidate : candidates)
+    for (ExperimentData const& each : candidate.data) look_at_data(session.file, each, candidate.compiled->model, report.findings);
+  return report;
+}
+
+void add_leading_predictions(Candidate const& leading, LeadingDraws const& draws, std::uint64_t seed,
+                             ExecutionOptions const& execution, Report& report) {
+  Model const& model = leading.compiled->model;
+  int const start = start_rows(leading.fit->start);
+  for (std::size_t e = 0; e < leading.data.size(); ++e) {
+    Experiment const& experiment = leading.data[e].experiment;
+    LaneArray parameters(static_cast<int>(model.parameters.size()), draws.values.width());
+    draws.space.select(draws.values, static_cast<int>(e), parameters);
+    Trajectory const trajectory(leading.compiled, experiment, draws.solver, start, execution);
+    Trajectory::Result result = trajectory.run(parameters, prediction_noise(seed, static_cast<int>(e)));
+    if (!draws.with_noise) std::fill(result.noisy.begin(), result.noisy.end(), std::vector<std::vector<double>>());
+    report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model));
+    add_restoring_forces(model, trajectory.quantities(), result, parameters, experiment, report.forces);
+    if (!draws.with_noise) {
+      Findings const left_out = leave_out_noise(model, report.predictions.back());
+      if (e == 0) add(left_out, report);
+    }
+    add(band_findings(report.predictions.back(), result.failed(), result.failed(), leading.data.size() > 1), report);
+    add(check_ranges(model, experiment, draws.solver, start, parameters, execution), report);
+    if (e == 0) add(check_expansions(model, parameters), report);
+  }
+}
+
+void add_timing(Session const& session, std::chrono::steady_clock::time_point began, Report& report) {
+  std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
+  report.timing.emplace_back("wall_seconds", wall.count());
+  report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
+  report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
+  report.timing.emplace_back("executor", std::string(name(session.options.execution.executor)));
+}
+
+}  // namespace sysid
