@@ -610,4 +610,13 @@ TEST_CASE("models between which chains jumped are shown by falling probability")
   CHECK(figure.script.find("likely") < figure.script.find("rare"));
   CHECK(figure.script.find("0.900") != std::string::npos);
   CHECK(figure.caption.find("models") == std::string::npos);  // all are shown
+  // Shortened in the middle, members of a family would all have one name.
+  selection.result.models[0].name = "duffing(quadratic = 1, cubic = 1, drag = 0)";
+  selection.result.models[1].name = "duffing(quadratic = 0, cubic = 1, drag = 0)";
+  plot::Figure const family = model_figure(selection);
+  CHECK(family.script.find("'quadratic 1, cubic 1, drag 0'") != std::string::npos);
+  CHECK(family.script.find("'quadratic 0, cubic 1, drag 0'") != std::string::npos);
+  CHECK(family.caption.find("arguments of duffing") != std::string::npos);
+  selection.result.models[1].name = "linear";
+  CHECK(model_figure(selection).script.find("duffing(") != std::string::npos);
 }

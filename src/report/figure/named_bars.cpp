@@ -22,7 +22,7 @@ constexpr int value_width = 13;
 double room_for_names(std::vector<NamedBar> const& bars) {
   double widest = 40;
   for (NamedBar const& bar : bars) widest = std::max(widest, text_pixels(bar.name));
-  return std::min(widest + 30, 180.0);
+  return std::min(widest + 30, 230.0);
 }
 
 /// Names and values as labels, in the middle of each bar's row.
