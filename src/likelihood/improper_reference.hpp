@@ -1,6 +1,7 @@
 // What stands in the place of draws where a prior is improper: where a search looks, and how wide its steps are. It is no part of
 // the posterior.
 #pragma once
+#include "core/numeric/random.hpp"
 
 namespace sysid {
 
@@ -14,6 +15,11 @@ struct ImproperReference {
   Kind kind = Kind::decades;
   int coordinate = 0;
   double centre = 0, width = 3;
+
+  /// A value between bounds, which may be infinite, in a unit of `unit` each.
+  double draw(double lower, double upper, double unit, Stream& stream) const;
+  /// Of `normal`, at a place of the sampler's coordinate. Nothing is asked of `decades`.
+  double log_density(double theta) const;
 
   friend bool operator==(ImproperReference const&, ImproperReference const&) = default;
 };

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "core/numeric/not_finite.hpp"
 #include "core/text/diagnostic.hpp"
@@ -231,7 +230,8 @@ void ParameterSpace::draw(std::span<int const> order, Place const& place, bool b
     double const lower = prior.lower ? number(*prior.lower) : -infinity, upper = prior.upper ? number(*prior.upper) : infinity;
     if (ImproperReference const* const reference = by_reference && !prior.row->proper ? reference_of(place(p)) : nullptr) {
       double const natural = prior.row->lower == nullptr ? -infinity : 0;
-      values(place(p), lane) = draw_reference(*reference, place(p), std::max(lower, natural), upper, stream);
+      double const unit = rows_[static_cast<std::size_t>(place(p))].to_si(1);
+      values(place(p), lane) = reference->draw(std::max(lower, natural), upper, unit, stream);
       continue;
     }
     values(place(p), lane) = sysid::draw(*prior.row, arguments, lower, upper, stream);
@@ -251,26 +251,6 @@ ImproperReference const* ParameterSpace::reference_of(int row) const {
   return found == references_.end() ? nullptr : &*found;
 }
 
-double ParameterSpace::draw_reference(ImproperReference const& reference, int row, double lower, double upper,
-                                      Stream& stream) const {
-  bool const above = std::isfinite(lower), below = std::isfinite(upper);
-  FittedParameter const& of = rows_[static_cast<std::size_t>(row)];
-  if (reference.kind == ImproperReference::Kind::normal) {
-    double const u = reference.centre + reference.width * stream.normal();
-    if (above && below) return lower + (upper - lower) / (1 + elementary::exp(-u));
-    return above ? lower + elementary::exp(u) : below ? upper - elementary::exp(u) : u;
-  }
-  if (above && below) return lower + (upper - lower) * stream.uniform();
-  double const exponent = reference.centre + reference.width * (2 * stream.uniform() - 1);
-  double const distance = elementary::exp(std::numbers::ln10 * exponent);
-  if (above || below) {
-    double const si = of.to_si(distance);
-    return above ? lower + si : upper - si;
-  }
-  return of.to_si(stream.uniform() < 0.5 ? distance : -distance);
-}
-
-/// Nothing is normalised for `decades`, which no density is asked of.
 void ParameterSpace::log_reference(ConstLanes theta, std::span<double> out) const {
   log_prior(theta, out, true);
   LaneArray improper(1, theta.width());
@@ -278,10 +258,7 @@ void ParameterSpace::log_reference(ConstLanes theta, std::span<double> out) cons
   for (int w = 0; w < theta.width(); ++w) {
     double& sum = out[static_cast<std::size_t>(w)];
     sum -= improper(0, w);
-    for (ImproperReference const& each : references_) {
-      double const z = (theta(each.coordinate, w) - each.centre) / each.width;
-      sum -= 0.5 * z * z + elementary::log(each.width) + 0.5 * elementary::log(2 * std::numbers::pi);
-    }
+    for (ImproperReference const& each : references_) sum += each.log_density(theta(each.coordinate, w));
     if (std::isnan(sum)) sum = -infinity;
   }
 }

@@ -112,7 +112,6 @@ class ParameterSpace {
   void lay_out();
   void compile();
   ImproperReference const* reference_of(int row) const;
-  double draw_reference(ImproperReference const& reference, int row, double lower, double upper, Stream& stream) const;
   MemberCoordinate const* standardised(int coordinate) const;
   /// A value between its bounds, expressions of the rows that they read.
   struct Constrained {
