@@ -63,6 +63,7 @@ enum class LeafKind : std::uint8_t {
   control,      // a lane's step control: program/embedded.hpp
   interval,     // what step control reads of the data between two samples
   coefficient,  // of an input's polynomial there
+  disturbance,  // white noise that nobody measured: `index` says which
 };
 
 /// Place within one integrator step where an input or time leaf is read: its begin, middle or end. Equations use `begin`.

@@ -367,6 +367,8 @@ std::string describe(Model const& model, Graph const& graph, NodeId node, Source
         return model.channels[index].name;
       case LeafKind::time:
         return "time";
+      case LeafKind::disturbance:
+        return model.disturbances[index].name;
       default:
         return "?";
     }

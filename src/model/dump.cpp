@@ -35,6 +35,8 @@ std::string present_name(Model const& model, Node const& leaf) {
       return fmt::format("previous({})", index);
     case LeafKind::unknown:
       return index < model.unknowns.size() ? model.unknowns[index].name : fmt::format("unknown({})", index);
+    case LeafKind::disturbance:
+      return model.disturbances[index].name;
     case LeafKind::step_size:
     case LeafKind::equal_step:
       return "h";

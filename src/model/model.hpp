@@ -24,6 +24,15 @@ struct State : Quantity {  // named "y", "y'", "y''", ...; in discrete time "lag
   NodeId derivative = 0;   // expression in state, input, parameter, time leaves; in discrete time the component's next value
   NodeId initial = 0;      // expression in parameters only; in discrete time also measured leaves with a lag
   bool initial_given = false;
+  std::optional<NodeId> initial_variance;  // of a random initial value, `initial` is its mean: expression in parameters only, SI
+};
+
+/// What moves the states and is not measured: leaf disturbance(i), white noise of mean 0 that derivatives read linearly; in
+/// discrete time independent from sample to sample. A disturbance with a memory is a state besides, which reads the leaf.
+struct Disturbance : Quantity {
+  NodeId intensity = 0;  // q of its autocovariance q*delta(t), SI; in discrete time its variance: expression in parameters only
+  int state = -1;        // that is the disturbance as equations see it; -1: the leaf itself
+  bool held = false;  // in continuous time: one value from sample to sample, as an error of an input; `intensity` is its variance
 };
 
 /// Leaf parameter(i). Sampled when it has a prior, else fixed at `value`. `per_experiment`: every experiment has its own; a data
@@ -98,6 +107,7 @@ struct Model {
   std::vector<Derived> derived;
   std::vector<Unchecked> unchecked;  // in the order of the text
   std::vector<LaggedQuantity> lagged_quantities;
+  std::vector<Disturbance> disturbances;
   std::vector<NodeId> memories;  // leaf previous(i): the value that memories[i] had at the sample before, at the first its own
 
   // Where an unknown is algebraic, or cannot be solved for; else empty. Residuals are zero, of index 1, as many as unknowns. Where
@@ -109,6 +119,13 @@ struct Model {
 
   /// Whether a solver integrates it, so that substeps mean something.
   bool integrated() const { return dynamics == Dynamics::continuous && !states.empty(); }
+  /// Whether states are random given the parameters: then the likelihood is that of a filter.
+  bool filtered() const {
+    if (!disturbances.empty()) return true;
+    for (State const& each : states)
+      if (each.initial_variance) return true;
+    return false;
+  }
   /// The first parameter whose prior cannot be drawn from; null where all can.
   Parameter const* improper() const {
     for (Parameter const& each : parameters)

@@ -1,0 +1,15 @@
+// How the likelihood of a model with random states is computed.
+#pragma once
+
+namespace sysid {
+
+/// What a task may state as `filter = ...`.
+enum class FilterRule {
+  automatic,  // kalman where the model is linear in its states, else extended
+  kalman,     // exact: linear in states and disturbances, normal noise
+  extended,   // the model linearised at the mean of the states
+  unscented,  // moments over sigma points
+  particle,   // by weighted particles: an unbiased estimate, for any noise
+};
+
+}  // namespace sysid
