@@ -58,6 +58,7 @@ class Trajectory {
   void record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const;
   void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
   void collect_moments(LaneArray const& records, std::vector<Outcome> const& outcome, Result& result) const;
+  void add_spread(ConstLanes records, int lane, int spread, StreamKey key, std::vector<double>& values) const;
   std::vector<std::vector<double>> with_noise(LaneArray const& records, std::vector<Outcome> const& outcome, int row,
                                               StreamKey key) const;
 
@@ -66,6 +67,7 @@ class Trajectory {
   std::unique_ptr<StartState> start_;
   Describe describe_;
   std::vector<TrajectoryQuantity> quantities_;
+  std::vector<int> spreads_;  // per record the one that is its sd, -1: none
 };
 
 }  // namespace sysid
