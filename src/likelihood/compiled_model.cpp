@@ -251,11 +251,12 @@ int CompiledModel::parameter_rows() const {
   return static_cast<int>(model.parameters.size()) + (free_start ? static_cast<int>(model.states.size()) : 0);
 }
 
-std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method) {
+std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method, FilterRule filter) {
   auto compiled = std::make_shared<CompiledModel>();
   compiled->model = std::move(model);
   compiled->free_start = free_start;
   compiled->method = method;
+  compiled->filter = filter;
   compile_kernels(*compiled);
   compile_programs(*compiled);
   if (!free_start) choose_derivatives(*compiled);

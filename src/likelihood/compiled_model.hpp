@@ -8,6 +8,7 @@
 
 #include "core/system/lazily.hpp"
 #include "core/text/source.hpp"
+#include "model/filter_rule.hpp"
 #include "model/model.hpp"
 #include "program/kernel.hpp"
 #include "program/simulation_program.hpp"
@@ -20,6 +21,7 @@ struct CompiledModel {
   Model model;
   bool free_start = false;
   std::string method;  // of the solver that the simulations are compiled for
+  FilterRule filter = FilterRule::automatic;
 
   Kernel derived;                  // parameters, SI -> quantities derived from parameters alone, declared units
   Kernel initial;                  // parameters, SI -> the model's own initial state, SI
@@ -57,7 +59,9 @@ struct CompiledModel {
 };
 
 /// free_start: the initial state is read from extra parameter rows instead of the model's initial values. method: a solver's name.
-std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method);
+/// filter: where states are random.
+std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method,
+                                             FilterRule filter = FilterRule::automatic);
 
 /// A program that sums, over the scored samples of each channel, an expression of `grown`: the model's graph and what was added to
 /// it.
