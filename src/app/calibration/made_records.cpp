@@ -146,7 +146,7 @@ RecordMaker::RecordMaker(Session& session, FitTask const& what, std::vector<Expe
     : session_(session),
       what_(what),
       data_(data),
-      compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
+      compiled_(session.compiled(what, what.solver.method)),
       space_(parameter_space(compiled_->model, what.experiments)) {}
 
 std::optional<MadeRecords> RecordMaker::make(std::uint64_t seed) const {

@@ -66,8 +66,7 @@ std::vector<double> log_likelihoods(Draws const& draws) {
 }  // namespace
 
 std::vector<QuantityName> ranked_quantities(Session& session, CalibrationPlan const& plan) {
-  auto const compiled = session.compiled(plan.what.model, plan.what.start.kind == StartRule::Kind::estimated,
-                                         plan.what.solver.method, plan.what.prediction);
+  auto const compiled = session.compiled(plan.what, plan.what.solver.method);
   std::vector<QuantityName> quantities;
   auto const space = parameter_space(compiled->model, plan.what.experiments);
   for (ParameterInfo const& each : space->infos())

@@ -27,7 +27,7 @@ PosteriorTrajectories::PosteriorTrajectories(Session& session, PredictTask const
       fitted_(fitted_model(session, what.fit)),
       fit_(std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what)),
       free_start_(what.start.kind == StartRule::Kind::estimated),
-      compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method, what.prediction)),
+      compiled_(session.compiled(fit_, free_start_, fitted_.solver.method, what.prediction)),
       space_(parameter_space(compiled_->model, fit_.experiments)),
       data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(fit_.model)], what.start,
                              what.prediction, fitted_.solver)),

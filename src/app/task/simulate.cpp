@@ -122,7 +122,9 @@ class Simulate {
       functions_.emplace(with_prediction(written_, rule).value(), what.solver.method, parameters_, function_key);
     for (Process const& process : written_.processes)
       drawn_.push_back(fmt::format("function {} drawn from its prior", process.name));
-    compiled_ = functions_ ? functions_->compiled() : session.compiled(what.model, false, what.solver.method, rule);
+    FitTask own;
+    own.model = what.model;
+    compiled_ = functions_ ? functions_->compiled() : session.compiled(own, false, what.solver.method, rule);
     history_ = data_lag(model());
     require_memory(fmt::format("the simulation `{}` of {} samples", task_.name, what_.samples),
                    bytes_to_simulate(what_, *compiled_), "use fewer samples");
