@@ -10,6 +10,7 @@
 #include "app/session/fit_target.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/system/interrupt.hpp"
+#include "likelihood/drawn_disturbances.hpp"
 #include "likelihood/trajectory.hpp"
 #include "model/lags.hpp"
 
@@ -207,11 +208,18 @@ std::optional<std::vector<std::vector<double>>> RecordMaker::samples(int e, Cons
 
 std::optional<std::vector<std::vector<double>>> RecordMaker::samples(Experiment experiment, ConstLanes parameters, StreamKey noise,
                                                                      bool& settled) const {
-  Model const& model = compiled_->model;
+  std::shared_ptr<CompiledModel const> compiled = compiled_;
+  if (compiled_->model.filtered()) {
+    DrawnDisturbances drawn =
+        draw_disturbances(compiled_->model, parameters, std::move(experiment), {noise.seed, Purpose::disturbance, noise.index, 0});
+    experiment = std::move(drawn.experiment);
+    compiled = compile(std::move(drawn.model), compiled_->free_start, what_.solver.method);
+  }
+  Model const& model = compiled->model;
   SolverSettings solver = what_.solver;
   bool const refine = model.integrated() && !solver.as_model && !solver.row().exact;
   auto const trajectory_of = [&](SolverSettings const& with) {
-    return Trajectory(compiled_, experiment, with, start_rows(what_.start), session_.abandonable());
+    return Trajectory(compiled, experiment, with, start_rows(what_.start), session_.abandonable());
   };
   Trajectory::Result result = trajectory_of(solver).run(parameters, noise);
   bool fine_enough = !refine;
