@@ -130,17 +130,20 @@ std::optional<NodeId> ModelChecker::law_argument(ast::DisturbanceDeclaration con
                                                  DisturbanceArgumentRow const& row, ast::Expression const& value_tree) {
   std::string const name(row.name);
   std::optional<Unit> const unit = unit_of_argument(row, disturbance.unit);
+  Diagnostics ignored;
+  auto const seen = scope_.with(ignored).expression(value_tree);
+  if (seen)
+    if (std::string const what = moving_part(model_.graph, seen->node); !what.empty()) {
+      diagnostics_.add(errors::law_reads(tree.law.span, disturbance.name, what));
+      return std::nullopt;
+    }
   // The unit of the disturbance itself in place of that of its intensity: a message of its own.
-  if (row.unit_power == 2 && unit) {
-    Diagnostics ignored;
-    auto const value = scope_.with(ignored).expression(value_tree);
-    Dimension const& given = value ? with_own_unit(*value).unit.dimension : unit->dimension;
-    bool const variance = given == power(*disturbance.unit, {2, 1}).dimension;
-    if (value && value->kind == Typed::Kind::known && given != unit->dimension &&
-        (variance || given == disturbance.unit->dimension)) {
-      Unit const found = with_own_unit(*value).unit;
+  if (row.unit_power == 2 && unit && seen && seen->kind == Typed::Kind::known) {
+    Unit const given = with_own_unit(*seen).unit;
+    bool const variance = given.dimension == power(*disturbance.unit, {2, 1}).dimension;
+    if (given.dimension != unit->dimension && (variance || given.dimension == disturbance.unit->dimension)) {
       diagnostics_.add(
-          errors::unit_of_intensity(value_tree.span, disturbance.name, scope_.units().words(found), scope_.units().words(*unit)));
+          errors::unit_of_intensity(value_tree.span, disturbance.name, scope_.units().words(given), scope_.units().words(*unit)));
       return std::nullopt;
     }
   }
@@ -148,10 +151,6 @@ std::optional<NodeId> ModelChecker::law_argument(ast::DisturbanceDeclaration con
   auto const value = scope_.expression_in(unit, disturbance.span, value_tree,
                                           {Occasion::Kind::distribution, name, disturbance.name, declared, true});
   if (!value) return std::nullopt;
-  if (std::string const what = moving_part(model_.graph, value->node); !what.empty()) {
-    diagnostics_.add(errors::law_reads(tree.law.span, disturbance.name, what));
-    return std::nullopt;
-  }
   return adapt(model_.graph, *value, unit);
 }
 

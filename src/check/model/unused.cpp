@@ -118,6 +118,7 @@ void warn_of_unused(std::span<Model const> models, Diagnostics& diagnostics) {
 void refuse_unused_disturbances(std::span<Model const> models, Diagnostics& diagnostics) {
   for (Model const& model : models)
     for (Disturbance const& disturbance : model.disturbances) {
+      if (model.channels.empty()) continue;  // a part, whose whole reads it
       bool const read = std::any_of(models.begin(), models.end(), [&](Model const& other) {
         if (text_name(other) != text_name(model)) return false;
         return std::any_of(other.disturbances.begin(), other.disturbances.end(), [&](Disturbance const& each) {

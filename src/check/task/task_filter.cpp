@@ -54,6 +54,7 @@ void TaskChecker::filter(ast::Option const& option, FilterRule& rule) {
     rule = *found;
   else
     diagnostics_.add(errors::option_choice(option.value.span, "filter", given, filter_names()));
+  filter_needed_ = !find_filter(given);  // nothing more is said of a word that is none
 }
 
 void TaskChecker::report_needless_filter() {
