@@ -39,12 +39,19 @@ Quantity const& quantity_of(Model const& model, CompiledModel::Record const& rec
   return model.channels[index];
 }
 
+/// The rows that states are corrected at take the place of those that are scored, of which a trajectory needs nothing.
+Experiment with_corrections(Model const& model, Experiment experiment) {
+  if (model.filtered() && !experiment.corrects.empty()) experiment.scored = experiment.corrects;
+  return experiment;
+}
+
 }  // namespace
 
 Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, SolverSettings const& solver,
                        int start_rows, ExecutionOptions options, Describe describe)
     : compiled_(std::move(compiled)),
-      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, solver), options),
+      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, with_corrections(compiled_->model, experiment), solver),
+                 options),
       describe_(std::move(describe)) {
   if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, solver, options);
   spreads_.assign(compiled_->records.size(), -1);
@@ -86,6 +93,7 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   int const samples = this->samples(), rows = static_cast<int>(compiled_->records.size());
   double const nan = std::nan("");
   result.values.resize(quantities_.size());
+  result.random.resize(quantities_.size());
   result.noisy.resize(model.channels.size());
   result.drift.resize(model.invariants.size());
   for (int w = 0; w < records.width(); ++w) {
@@ -107,10 +115,16 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
       std::vector<double> values(static_cast<std::size_t>(samples), nan);
       if (good)
         for (int i = 0; i < samples; ++i) values[static_cast<std::size_t>(i)] = records(i * rows + r, w);
-      if (int const spread = spreads_[static_cast<std::size_t>(r)]; spread >= 0)
+      auto const declared = [&](std::vector<double> si) {
+        for (double& value : si) value = quantity.from_si(value);
+        return si;
+      };
+      result.values[q].push_back(declared(values));
+      if (int const spread = spreads_[static_cast<std::size_t>(r)]; spread >= 0) {
         add_spread(records, w, spread, state_key(noise_key, first + w, r), values);
-      for (double& value : values) value = quantity.from_si(value);
-      result.values[q++].push_back(std::move(values));
+        result.random[q].push_back(declared(std::move(values)));
+      }
+      ++q;
       if (record.kind != RecordKind::centre) continue;
     }
   }
@@ -124,7 +138,7 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   }
 }
 
-/// What random states add to a quantity at each sample, by itself: bands of one sample are right, paths along several are not.
+/// What random states add to a quantity at each sample.
 void Trajectory::add_spread(ConstLanes records, int lane, int spread, StreamKey key, std::vector<double>& values) const {
   int const rows = static_cast<int>(compiled_->records.size());
   Stream stream(key);

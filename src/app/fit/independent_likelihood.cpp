@@ -27,7 +27,7 @@ class IndependentLikelihood : public FitLikelihood {
         what_(what),
         data_(data),
         seed_(seed),
-        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
+        compiled_(session.compiled(what, what.solver.method)),
         declared_(parameter_space(compiled_->model, what.experiments)),
         space_(declared_) {}
 
@@ -153,7 +153,7 @@ class IndependentLikelihood : public FitLikelihood {
  private:
   std::shared_ptr<CompiledModel const> compiled_for(SolverSettings const& solver) const {
     if (solver.method == what_.solver.method) return compiled_;
-    return session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, solver.method, what_.prediction);
+    return session_.compiled(what_, solver.method);
   }
 
   Experiment const& experiment(int e) const { return data_[static_cast<std::size_t>(e)].experiment; }
