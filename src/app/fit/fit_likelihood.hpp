@@ -2,6 +2,7 @@
 // and the checks are the same (fit.cpp, fit_checks.cpp).
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "app/session/session.hpp"
@@ -70,6 +71,8 @@ class FitLikelihood {
   virtual Findings check_ranges(std::vector<double> const& sampled, SolverSettings const& solver) const = 0;
   /// Bands along an experiment, constraints and values that are undefined there. Restoring forces are added to `forces`.
   virtual FittedRows fitted_rows(Draws const& draws, int experiment, std::vector<RestoringForce>& forces) const = 0;
+  /// Random states and disturbances along an experiment, given all its samples; nothing where states are known.
+  virtual std::optional<Prediction> states(Draws const& draws, int experiment) const = 0;
   /// What the report's settings hold beside those of every fit.
   virtual Facts settings() const = 0;
 };

@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "app/fit/fit_likelihood.hpp"
+#include "app/fit/smoothed_states.hpp"
 #include "app/process/unknown_functions.hpp"
 #include "app/session/derived_draws.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
+#include "core/system/lazily.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
@@ -145,6 +147,15 @@ class IndependentLikelihood : public FitLikelihood {
     return rows;
   }
 
+  std::optional<Prediction> states(Draws const& draws, int e) const override {
+    if (!model().filtered()) return std::nullopt;
+    auto const& smoothing = smoothing_.get([&] { return compile_smoothing(compiled_); });
+    LaneArray const columns = spread(draws, 100);
+    LaneArray parameters(static_cast<int>(model().parameters.size()), columns.width());
+    space_->select(space_->values_of_declared(columns), e, parameters);
+    return smoothed_states(smoothing, experiment(e), solver_, start_rows(what_.start), session_.interruptible(), parameters);
+  }
+
   Facts settings() const override { return {}; }
 
  private:
@@ -175,6 +186,7 @@ class IndependentLikelihood : public FitLikelihood {
   std::shared_ptr<ParameterSpace const> declared_, space_;
   SolverSettings solver_;
   std::unique_ptr<ModelTarget> target_;
+  Lazily<std::shared_ptr<SmoothingProgram const>> smoothing_;
 };
 
 }  // namespace
