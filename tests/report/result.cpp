@@ -10,6 +10,8 @@
 #include "core/text/diagnostic.hpp"
 #include "example.hpp"
 #include "report/figure/gnuplot.hpp"
+#include "report/file/report_cbor.hpp"
+#include "report/file/stored_report.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;
