@@ -43,6 +43,11 @@ class FitLikelihood {
   /// solver: of the task's method, or of any other to try.
   virtual std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution) const = 0;
+  /// The same with another filter of random states; null where none has one.
+  virtual std::unique_ptr<Target> with_filter(FilterRule, std::vector<Experiment>, SolverSettings const&,
+                                              ExecutionOptions const&) const {
+    return nullptr;
+  }
   /// Log densities of the samples of these experiments that are scored, one series for each experiment and channel, with these
   /// values of the sampled parameters, declared; empty where samples are not independent given the trajectory.
   virtual std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,

@@ -61,6 +61,14 @@ class IndependentLikelihood : public FitLikelihood {
     return make_fit_target(session_, what_, compiled_for(solver), space_, std::move(experiments), solver, execution);
   }
 
+  std::unique_ptr<Target> with_filter(FilterRule filter, std::vector<Experiment> experiments, SolverSettings const& solver,
+                                      ExecutionOptions const& execution) const override {
+    FitTask other = what_;
+    other.filter = filter;
+    return make_fit_target(session_, what_, session_.compiled(other, solver.method), space_, std::move(experiments), solver,
+                           execution);
+  }
+
   std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,
                                                  std::vector<double> const& sampled) const override {
     std::vector<std::vector<double>> all;
