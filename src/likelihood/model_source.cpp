@@ -80,7 +80,7 @@ SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
 }
 
 /// The moments of a model with random states, and the noise that they give its channels together with that of the sensors.
-void filter(Folded& folded, CompiledModel const& compiled, ModelSource& source) {
+void filter(Folded& folded, CompiledModel const& compiled, bool since, ModelSource& source) {
   Model const& model = compiled.model;
   Graph& graph = folded.graph;
   RandomStates random;
@@ -92,8 +92,9 @@ void filter(Folded& folded, CompiledModel const& compiled, ModelSource& source) 
   for (Distribution const& noise : source.noise)
     channels.push_back({noise.arguments[0], graph.multiply(noise.arguments[1], noise.arguments[1])});
   source.dynamics.graph = graph;
-  source.moments = with_moments(std::move(source.dynamics), random, channels,
-                                compiled.filter == FilterRule::unscented ? MomentRule::sigma_points : MomentRule::linearised);
+  source.moments =
+      with_moments(std::move(source.dynamics), random, channels,
+                   compiled.filter == FilterRule::unscented ? MomentRule::sigma_points : MomentRule::linearised, since);
   graph = source.moments->source.graph;
   source.dynamics = source.moments->source;
   for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -131,12 +132,12 @@ bool keeps_unknowns(CompiledModel const& compiled) {
   return !compiled.model.unknowns.empty() && find_solver(compiled.method)->implicit;
 }
 
-ModelSource source_of(Folded& folded, CompiledModel const& compiled) {
+ModelSource source_of(Folded& folded, CompiledModel const& compiled, bool since) {
   ModelSource source;
   source.dynamics = dynamics(folded, compiled);
   for (Channel const& channel : compiled.model.channels) source.noise.push_back(folded(channel.noise));
   source.correct.resize(source.noise.size());
-  if (compiled.model.filtered()) filter(folded, compiled, source);
+  if (compiled.model.filtered()) filter(folded, compiled, since, source);
   return source;
 }
 

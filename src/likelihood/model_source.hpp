@@ -47,7 +47,8 @@ struct ModelSource {
   /// The variance that random states give to an expression of them, to first order; 0 where they are known.
   NodeId variance(Graph& graph, NodeId expression) const;
 };
-ModelSource source_of(Folded& folded, CompiledModel const& compiled);
+/// since: of a model with random states, how they vary together with those of the last sample (SincePastSample).
+ModelSource source_of(Folded& folded, CompiledModel const& compiled, bool since = false);
 
 /// log density of a channel's sample in the declared unit; the largest any location gives it; and where the noise is centred.
 struct ChannelDensity {

@@ -54,7 +54,7 @@ class MomentWriter {
     for (int i = 0; i < states_; ++i) means_.push_back(graph_.leaf(LeafKind::state, i));
   }
 
-  Moments write(std::span<NormalChannel const> channels) {
+  Moments write(std::span<NormalChannel const> channels, bool since) {
     for (NodeId const derivative : source_.derivative) rules_.push_back(row(at_rest(derivative)));
     for (NormalChannel const& channel : channels) outputs_.push_back(row(channel.mean));
     add_noise();
@@ -69,6 +69,7 @@ class MomentWriter {
     result.means = static_cast<std::size_t>(states_);
     for (int i = 0; i < states_; ++i)
       for (int j = 0; j < states_; ++j) result.covariance.push_back(covariance_(i, j));
+    if (since) add_past(result);
     result.source = std::move(source_);
     return result;
   }
@@ -108,6 +109,8 @@ class MomentWriter {
       NodeId const intensity = noise.held && !source_.map ? graph_.multiply(noise.intensity, sampling_interval()) : noise.intensity;
       std::vector<NodeId> gains;
       for (NodeId const derivative : source_.derivative) gains.push_back(at_rest(graph_.differentiate(derivative, leaf)));
+      gains_.push_back(gains);
+      intensities_.push_back(intensity);
       for (int i = 0; i < states_; ++i)
         for (int j = 0; j <= i; ++j)
           add_product(noise_(i, j), intensity,
@@ -178,6 +181,9 @@ class MomentWriter {
   struct Point {
     std::vector<NodeId> ahead, behind;  // the states at m + offset, m - offset
     std::vector<NodeId> offset;         // sqrt(c) times a column of the Cholesky factor
+    int state = 0;                      // of whose variance that column takes what is left
+    std::vector<NodeId> column;         // of the factor
+    NodeId positive = 0, root = 0;      // whether that is more than 0; its root
   };
 
   bool by_points(MomentRow const& row) const { return rule_ == MomentRule::sigma_points && !row.linear; }
@@ -193,6 +199,8 @@ class MomentWriter {
     NodeId const scale = graph_.constant(std::sqrt(spread_));
     std::vector<std::vector<NodeId>> columns;  // of the factor, by state
     for (int const j : random) {
+      Point point;
+      point.state = j;
       std::vector<NodeId> column(static_cast<std::size_t>(states_), zero_);
       auto const left = [&](int i) {  // of P after the columns so far
         NodeId rest = covariance_(i, j);
@@ -207,16 +215,16 @@ class MomentWriter {
       column[static_cast<std::size_t>(j)] = graph_.select(positive, root, zero_);
       for (int const i : random)
         if (i > j) column[static_cast<std::size_t>(i)] = graph_.select(positive, graph_.divide(left(i), root), zero_);
-      columns.push_back(std::move(column));
-    }
-    for (auto const& column : columns) {
-      Point point;
+      point.positive = positive;
+      point.root = root;
       for (int i = 0; i < states_; ++i) {
         NodeId const offset = graph_.multiply(scale, column[static_cast<std::size_t>(i)]);
         point.offset.push_back(offset);
         point.ahead.push_back(graph_.add(means_[static_cast<std::size_t>(i)], offset));
         point.behind.push_back(graph_.subtract(means_[static_cast<std::size_t>(i)], offset));
       }
+      columns.push_back(column);
+      point.column = std::move(column);
       points_.push_back(std::move(point));
     }
     return points_;
@@ -306,6 +314,101 @@ class MomentWriter {
     return result;
   }
 
+  // --- what was at the last sample
+  /// A c of a column c in the range of P, one entry per row of the rules; A as P is moved by it.
+  std::vector<NodeId> moved(std::vector<NodeId> const& column) {
+    std::vector<NodeId> result, whitened;
+    for (MomentRow const& row : rules_) {
+      NodeId sum = zero_;
+      if (by_points(row)) {
+        if (whitened.empty()) whitened = whiten(column);
+        Values const of = values(row.value);
+        for (std::size_t p = 0; p < points_.size(); ++p) add_product(sum, whitened[p], graph_.subtract(of.ahead[p], of.behind[p]));
+        sum = graph_.multiply(graph_.constant(0.5 / std::sqrt(spread_)), sum);
+      } else {
+        for (int k = 0; k < states_; ++k)
+          add_product(sum, row.slopes[static_cast<std::size_t>(k)], column[static_cast<std::size_t>(k)]);
+      }
+      result.push_back(sum);
+    }
+    return result;
+  }
+
+  /// The v with L v = column, L the Cholesky factor of P; 0 where that has no column.
+  std::vector<NodeId> whiten(std::vector<NodeId> const& column) {
+    std::vector<NodeId> result;
+    for (Point const& point : points()) {
+      NodeId left = column[static_cast<std::size_t>(point.state)];
+      for (std::size_t k = 0; k < result.size(); ++k) {
+        NodeId const entry = points_[k].column[static_cast<std::size_t>(point.state)];
+        if (!is_zero(entry) && !is_zero(result[k])) left = graph_.subtract(left, graph_.multiply(entry, result[k]));
+      }
+      result.push_back(is_zero(left) ? zero_ : graph_.select(point.positive, graph_.divide(left, point.root), zero_));
+    }
+    return result;
+  }
+
+  /// A further state.
+  NodeId add_state(NodeId initial, NodeId derivative) {
+    source_.initial.push_back(initial);
+    source_.derivative.push_back(derivative);
+    return graph_.leaf(LeafKind::state, static_cast<int>(source_.derivative.size()) - 1);
+  }
+
+  void add_past(Moments& result) {
+    SincePastSample since;
+    auto const n = static_cast<std::size_t>(states_);
+    int next = static_cast<int>(source_.derivative.size());
+    for (int i = 0; i < next; ++i) since.begin.push_back(graph_.leaf(LeafKind::state, i));
+    since.states.assign(n * n, zero_);
+    for (int j = 0; j < states_; ++j) {
+      std::vector<NodeId> column(n, zero_), change(n, zero_);
+      for (int i = 0; i < states_ && source_.map; ++i)
+        change[static_cast<std::size_t>(i)] = with_state(rules_[static_cast<std::size_t>(i)], j);
+      // Between samples P is closed under A, so that C has its zeros.
+      for (int i = 0; i < states_; ++i)
+        if (!is_zero(source_.map ? change[static_cast<std::size_t>(i)] : covariance_(i, j)))
+          column[static_cast<std::size_t>(i)] = graph_.leaf(LeafKind::state, next++);
+      if (!source_.map) change = moved(column);
+      for (int i = 0; i < states_; ++i) {
+        auto const row = static_cast<std::size_t>(i);
+        if (is_zero(column[row])) continue;
+        add_state(zero_, change[row]);
+        since.begin.push_back(covariance_(i, j));
+        since.states[row * n + static_cast<std::size_t>(j)] = column[row];
+      }
+    }
+    for (std::size_t d = 0; d < gains_.size(); ++d) add_summed_noise(d, since);
+    result.since = std::move(since);
+  }
+
+  void add_summed_noise(std::size_t d, SincePastSample& since) {
+    auto const n = static_cast<std::size_t>(states_);
+    std::vector<bool> some(n);
+    for (bool grown = true; std::exchange(grown, false);)
+      for (std::size_t i = 0; i < n; ++i) {
+        if (some[i]) continue;
+        bool there = !is_zero(gains_[d][i]);
+        for (std::size_t k = 0; k < n && !source_.map; ++k) there = there || (some[k] && !is_zero(rules_[i].slopes[k]));
+        if (there) some[i] = grown = true;
+      }
+    int next = static_cast<int>(source_.derivative.size());
+    std::vector<NodeId> column(n, zero_);
+    for (std::size_t i = 0; i < n; ++i)
+      if (some[i]) column[i] = graph_.leaf(LeafKind::state, next++);
+    std::vector<NodeId> change = source_.map ? std::vector<NodeId>(n, zero_) : moved(column);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (some[i]) {
+        add_product(change[i], gains_[d][i], intensities_[d]);
+        add_state(zero_, change[i]);
+        since.begin.push_back(zero_);
+      }
+      since.noises.push_back(column[i]);
+    }
+    since.sums.push_back(add_state(zero_, intensities_[d]));
+    since.begin.push_back(zero_);
+  }
+
   Symmetric next_covariance() {
     Symmetric result(states_, zero_);
     for (int i = 0; i < states_; ++i)
@@ -352,6 +455,8 @@ class MomentWriter {
   NodeId zero_;
   std::vector<NodeId> means_;
   std::vector<MomentRow> rules_, outputs_;
+  std::vector<std::vector<NodeId>> gains_;  // G, by noise
+  std::vector<NodeId> intensities_;
   Symmetric covariance_;  // leaves, or zero
   Symmetric noise_;
   std::vector<Point> points_;
@@ -361,8 +466,8 @@ class MomentWriter {
 }  // namespace
 
 Moments with_moments(SimulationSource dynamics, RandomStates const& random, std::span<NormalChannel const> channels,
-                     MomentRule rule) {
-  return MomentWriter(std::move(dynamics), random, rule).write(channels);
+                     MomentRule rule, bool since) {
+  return MomentWriter(std::move(dynamics), random, rule).write(channels, since);
 }
 
 }  // namespace sysid

@@ -38,14 +38,25 @@ struct Innovation {
   std::vector<NodeId> correct;    // for ChannelSource::correct
 };
 
+/// Further states that say how the states now vary together with what was at the last sample: what smoothing needs.
+struct SincePastSample {
+  /// [n x n] covariance of state i now with state j at the last sample, given the samples up to that.
+  std::vector<NodeId> states;
+  /// [noises x n] covariance of the noise, summed up since the last sample, with state i now; and its variance [noises].
+  std::vector<NodeId> noises, sums;
+  std::vector<NodeId> begin;  // ChannelSource::correct of a channel behind all others and of all samples: from here on anew
+};
+
 struct Moments {
-  /// Of the means, states 0 ... n - 1, then of those covariances that may differ from 0; no channels and records yet.
+  /// Of the means, states 0 ... n - 1, then of those covariances that may differ from 0, then of those of `since`; no channels and
+  /// records yet.
   SimulationSource source;
   std::vector<Innovation> channels;
   /// [n x n] the covariance of two states, an expression of the states of `source`.
   std::vector<NodeId> covariance;
   NodeId of(int i, int j) const { return covariance[static_cast<std::size_t>(i) * means + static_cast<std::size_t>(j)]; }
   std::size_t means = 0;
+  std::optional<SincePastSample> since;
 };
 
 /// Between samples, with A = df/dx and G = df/dw at the mean m,
@@ -57,8 +68,13 @@ struct Moments {
 /// times the columns of the Cholesky factor of P, c = max(n, 3) of n random states, weights 1/(2 c), and 1 - n/c at m (Julier &
 /// Uhlmann 2004, with no negative weight).
 ///
+/// With `since`, C = cov(x, x at the last sample) and u = cov(x, integral of w) beside them, C = P and u = 0 after a sample:
+///   C' = A C,  u' = A u + G q         and of a map C <- cov(f(x), x), u <- G q
+/// where from sigma points A stands for cov(f, x) P^-1, by which also P moves; C and u lie in the range of P, which may be
+/// singular.
+///
 /// dynamics: without channels, records, memories and constraints.
 Moments with_moments(SimulationSource dynamics, RandomStates const& random, std::span<NormalChannel const> channels,
-                     MomentRule rule);
+                     MomentRule rule, bool since = false);
 
 }  // namespace sysid

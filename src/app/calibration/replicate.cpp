@@ -133,7 +133,7 @@ void Replicator::fit(MadeRecords const& made, Replication& replication) {
   }
   bool const optimum = is_optimum(*plan_.backend);
   if (!optimum && report.draws.total() < static_cast<std::size_t>(plan_.draws)) {
-    replication.failure = "there are fewer draws than ranks";
+    replication.failure = "the fit kept too few draws to rank the true values";
     return;
   }
   // Of no rank, which NaN would have too: it is below nothing.

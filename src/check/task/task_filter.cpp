@@ -10,8 +10,8 @@
 #include "check/task/task_options.hpp"
 #include "check/units/units.hpp"
 #include "core/setting/table.hpp"
-#include "expression/affine.hpp"
 #include "model/input_errors.hpp"
+#include "model/linear_states.hpp"
 
 namespace sysid {
 namespace {
@@ -189,15 +189,7 @@ void TaskChecker::suit_filter(FitTask& task, Model const& model) {
 
 void TaskChecker::suit_kalman(FitTask const& task, Model const& model) {
   if (task.filter != FilterRule::kalman) return;
-  auto const varies = [](Node const& node) { return is_leaf(node, LeafKind::state) || is_leaf(node, LeafKind::disturbance); };
-  std::vector<NodeId> roots;
-  for (State const& state : model.states) roots.push_back(state.derivative);
-  for (Channel const& channel : model.channels) roots.push_back(channel.noise.arguments.front());
-  auto node = find_not_affine(model.graph, roots, varies);
-  // The sd of a channel is a number to a filter that is exact.
-  for (Channel const& channel : model.channels)
-    for (std::size_t a = 1; a < channel.noise.arguments.size() && !node; ++a)
-      if (model.graph.depends(channel.noise.arguments[a], varies)) node = channel.noise.arguments[a];
+  auto const node = find_nonlinear_in_states(model);
   if (node) diagnostics_.add_once(errors::kalman_of_nonlinear(*filter_, model.name, place_of(model.graph, *node)));
 }
 
