@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/session/fit_target.hpp"
+#include "app/session/posterior_trajectories.hpp"
 #include "app/session/stored_draws.hpp"
 #include "diagnostics/bands.hpp"
 #include "likelihood/simulated_parameters.hpp"

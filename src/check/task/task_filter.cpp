@@ -30,7 +30,10 @@ Refusal refusal_of(Problem const& problem, Model const& model) {
       input);
   switch (problem.kind) {
     case Problem::Kind::rate:
-      return {fmt::format("the model reads its derivative `{}'`, which errors of samples do not have", input), cure};
+      return {fmt::format("the model reads its derivative `{}'`, which errors of samples do not have", input),
+              fmt::format("declare what the derivative lacks as a disturbance of the model, `disturbance e ~ white(intensity = q)`, and "
+                          "write `{}' + e`",
+                          input)};
     case Problem::Kind::channel:
       return {fmt::format("channel `{}` reads it directly", model.channels[static_cast<std::size_t>(problem.index)].name), cure};
     case Problem::Kind::nonlinear:
