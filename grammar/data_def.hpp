@@ -36,8 +36,9 @@ auto const data_file_def = located[word("file") > text[to(&ast::DataFile::path)]
 auto const data_time_def = located[word("time") > column[to(&ast::DataTime::column)]];
 auto const data_rate_def =
     located[(word("rate") | word("step")[set(&ast::DataRate::step, true)]) > expression[to(&ast::DataRate::value)]];
-auto const data_input_def = located[word("input") > element[to(&ast::DataInput::input)] > equals >
-                                    column[to(&ast::DataInput::column)] > -(word("hold") > name[to(&ast::DataInput::rule)])];
+auto const data_input_def =
+    located[word("input") > element[to(&ast::DataInput::input)] > equals > column[to(&ast::DataInput::column)] >
+            -(word("hold") > name[to(&ast::DataInput::rule)]) > -(word("error") > distribution[to(&ast::DataInput::error)])];
 auto const data_measure_def =
     located[word("measure") > element[to(&ast::DataMeasure::channel)] > equals > column[to(&ast::DataMeasure::column)]];
 auto const data_constant_def =

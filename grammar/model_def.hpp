@@ -15,6 +15,8 @@ constexpr x3::rule<struct discrete_time_tag, ast::DiscreteTimeDeclaration> discr
 constexpr x3::rule<struct time_declaration_tag, ast::TimeDeclaration> time_declaration = "a declaration of time";
 constexpr x3::rule<struct input_declaration_tag, ast::InputDeclaration> input_declaration = "a declaration of inputs";
 constexpr x3::rule<struct state_declaration_tag, ast::StateDeclaration> state_declaration = "a declaration of states";
+constexpr x3::rule<struct disturbance_declaration_tag, ast::DisturbanceDeclaration> disturbance_declaration =
+    "a declaration of a disturbance";
 constexpr x3::rule<struct initial_declaration_tag, ast::InitialDeclaration> initial_declaration = "initial values";
 constexpr x3::rule<struct initial_value_tag, ast::InitialValue> initial_value = wanted::name;
 constexpr x3::rule<struct parameter_declaration_tag, ast::ParameterDeclaration> parameter_declaration =
@@ -31,9 +33,9 @@ auto const model_def =
             -text[to(&ast::Model::title)] > opening_brace > *(model_line[append(&ast::Model::statements)] | '\n' | ';') > '}'];
 auto const model_line_def = (!(x3::lit('\n') | ';' | '}' | x3::eoi)) > model_statement[take] > end_of_statement;
 auto const model_statement_def = discrete_time[take] | time_declaration[take] | input_declaration[take] | state_declaration[take] |
-                                 initial_declaration[take] | parameter_declaration[take] | definition[take] |
-                                 process_definition[take] | function_definition[take] | observation[take] | part[take] |
-                                 equation[take];
+                                 disturbance_declaration[take] | initial_declaration[take] | parameter_declaration[take] |
+                                 definition[take] | process_definition[take] | function_definition[take] | observation[take] |
+                                 part[take] | equation[take];
 
 auto const model_argument_def =
     located[name[to(&ast::ModelArgument::name)] >> -(equals > expression[to(&ast::ModelArgument::value)])];
@@ -44,10 +46,13 @@ auto const input_declaration_def = located[keyword("input") > declared[append(&a
                                            *(',' > declared[append(&ast::InputDeclaration::names)])];
 auto const state_declaration_def = located[keyword("state") > declared[append(&ast::StateDeclaration::names)] >
                                            *(',' > declared[append(&ast::StateDeclaration::names)])];
+auto const disturbance_declaration_def = located[keyword("disturbance") > declared[to(&ast::DisturbanceDeclaration::name)] > tilde >
+                                                 distribution[to(&ast::DisturbanceDeclaration::law)]];
 auto const initial_declaration_def = located[keyword("initial") > initial_value[append(&ast::InitialDeclaration::values)] >
                                              *(',' > initial_value[append(&ast::InitialDeclaration::values)])];
 auto const initial_value_def =
-    located[reference[to(&ast::InitialValue::state)] > equals > expression[to(&ast::InitialValue::value)]];
+    located[reference[to(&ast::InitialValue::state)] > ((tilde > distribution[to(&ast::InitialValue::law)]) |
+                                                        (x3::expect[equals] > expression[to(&ast::InitialValue::value)]))];
 auto const parameter_declaration_def = located[keyword("parameter") > declared_parameter[to(&ast::ParameterDeclaration::name)] >
                                                -((tilde > distribution[to(&ast::ParameterDeclaration::prior)]) |
                                                  (equals > expression[to(&ast::ParameterDeclaration::value)]))];
@@ -71,7 +76,7 @@ auto const equation_def =
     located[!(x3::lit('+') | '-') >> expression[to(&ast::Equation::left)] > equals > expression[to(&ast::Equation::right)]];
 
 BOOST_SPIRIT_DEFINE(model, model_line, model_statement, model_argument, discrete_time, time_declaration, input_declaration,
-                    state_declaration, initial_declaration, initial_value, parameter_declaration, definition, function_definition,
-                    process_definition, observation, part, equation)
+                    state_declaration, disturbance_declaration, initial_declaration, initial_value, parameter_declaration,
+                    definition, function_definition, process_definition, observation, part, equation)
 
 }  // namespace sysid::grammar

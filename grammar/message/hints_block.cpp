@@ -178,11 +178,9 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
   bool const ends = gap.wanted == wanted::preposition_or_end || gap.wanted == wanted::with_or_end;
   bool const after_fits = gap.wanted == wanted::preposition_or_end && gap.statement[verb].is("predict") && gap.before() != nullptr;
   if (after_fits && (found.is("and") || found.is("&") || found.is("+")) && is_word(gap.next()))
-    return fmt::format("an average over several fits names them with commas: `predict {}, {}`", gap.text(verb + 1, gap.at),
-                       gap.next()->text);
+    return fmt::format("separate the fits of an average by commas: `predict {}, {}`", gap.text(verb + 1, gap.at), gap.next()->text);
   if (after_fits && is_word(gap.found) && gap.next() != nullptr && (gap.next()->is("on") || gap.next()->is(",")))
-    return fmt::format("an average over several fits names them with commas: `predict {}, {}`", gap.text(verb + 1, gap.at),
-                       found.text);
+    return fmt::format("separate the fits of an average by commas: `predict {}, {}`", gap.text(verb + 1, gap.at), found.text);
   if (after_fits && gap.before()->is("on") && gap.before(2) != nullptr && gap.before(2)->is(","))
     return "remove the comma before `on`";
   if (gap.wanted == "the name of a data block" && found.kind == TokenKind::text)

@@ -60,6 +60,22 @@ class Completer : private Offer {
     if (inner.begins && inner.argument.empty() && find_distribution(inner.callee) != nullptr) settings(inner.callee);
     expression();
   }
+  /// Behind the `~` of a disturbance.
+  void law() {
+    if (place().brackets.empty()) {
+      vocabulary(WordKind::law);
+      return add({"normal", CompletionKind::word, find_word(WordKind::distribution, "normal")->signature, "in discrete time"});
+    }
+    OpenBracket const& inner = place().brackets.back();
+    if (inner.begins && inner.argument.empty()) settings(inner.callee);
+    expression();
+  }
+  void normal() {
+    Word const& word = *find_word(WordKind::distribution, "normal");
+    if (place().brackets.empty()) return add({word.name, CompletionKind::word, word.signature, word.summary});
+    OpenBracket const& inner = place().brackets.back();
+    if (inner.begins && inner.argument.empty()) settings("normal");
+  }
   void process() {
     if (place().brackets.empty()) return add({"gp", CompletionKind::word, "gp(covariance)", "a Gaussian process of mean zero"});
     OpenBracket const& inner = place().brackets.back();
@@ -87,6 +103,7 @@ class Completer : private Offer {
     if (first == "part") return part();
     if (place().has("~")) {
       if (first == "function") return process();
+      if (first == "disturbance") return law();
       return distribution(first == "observe");
     }
     if (place().has("=") || (!place().brackets.empty() && first != "function")) return expression();
@@ -105,7 +122,10 @@ class Completer : private Offer {
     if (place().before.size() == 1) return of_kind(first == "input" ? SymbolKind::input : SymbolKind::channel);
     if (place().follows("=")) return columns();
     if (place().follows("hold")) return vocabulary(choices_of("", "hold"), CompletionKind::choice);
-    if (place().has("=") && first == "input") keyword("hold");
+    if (first != "input" || !place().has("=")) return;
+    if (place().has("error")) return normal();
+    if (!place().has("hold")) keyword("hold");
+    keyword("error");
   }
 
   void candidates() {

@@ -17,8 +17,8 @@ constexpr std::size_t most_of_header = 1U << 16U;  // bytes of a data file that 
 
 bool is_quantity(SymbolKind kind) {
   return kind == SymbolKind::model_argument || kind == SymbolKind::part || kind == SymbolKind::time || kind == SymbolKind::input ||
-         kind == SymbolKind::state || kind == SymbolKind::parameter || kind == SymbolKind::constant || kind == SymbolKind::local ||
-         kind == SymbolKind::derived;
+         kind == SymbolKind::state || kind == SymbolKind::disturbance || kind == SymbolKind::parameter ||
+         kind == SymbolKind::constant || kind == SymbolKind::local || kind == SymbolKind::derived;
 }
 
 bool is_function(SymbolKind kind) { return kind == SymbolKind::function || kind == SymbolKind::process; }

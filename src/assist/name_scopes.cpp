@@ -72,6 +72,9 @@ class Declarer {
   void operator()(ast::StateDeclaration const& states) {
     for (ast::Declared const& each : states.names) quantity(SymbolKind::state, each, states.span);
   }
+  void operator()(ast::DisturbanceDeclaration const& disturbance) {
+    quantity(SymbolKind::disturbance, disturbance.name, disturbance.span);
+  }
   void operator()(ast::ParameterDeclaration const& parameter) { quantity(SymbolKind::parameter, parameter.name, parameter.span); }
   void operator()(ast::DictionaryParameter const& parameter) { quantity(SymbolKind::parameter, parameter.name, parameter.span); }
   void operator()(ast::Definition const& definition) {

@@ -218,6 +218,7 @@ class Resolver {
       } else if (auto const* input = std::get_if<ast::DataInput>(&statement)) {
         names_.element(input->input, scopes);
         column(input->column, owner);
+        if (input->error) names_.distribution(*input->error, environments_.main());
       } else if (auto const* measure = std::get_if<ast::DataMeasure>(&statement)) {
         names_.channel(measure->channel, scopes);
         column(measure->column, owner);

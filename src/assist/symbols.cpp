@@ -7,13 +7,14 @@
 namespace sysid::assist {
 
 std::string_view kind_name(SymbolKind kind) {
-  static constexpr std::array<std::string_view, 23> names{"module",
+  static constexpr std::array<std::string_view, 24> names{"module",
                                                           "model",
                                                           "argument of the model",
                                                           "part",
                                                           "time",
                                                           "input",
                                                           "state",
+                                                          "disturbance",
                                                           "parameter",
                                                           "constant",
                                                           "local definition",

@@ -18,6 +18,7 @@ enum class SymbolKind {
   time,
   input,
   state,
+  disturbance,
   parameter,
   constant,
   local,

@@ -200,8 +200,14 @@ void UseResolver::declared(ast::Declared const& tree, Place const& place) {
 void UseResolver::statement(ast::InitialDeclaration const& each, Place const& place) {
   for (ast::InitialValue const& initial : each.values) {
     reference(initial.state, place);
-    expression(initial.value, place);
+    if (initial.value) expression(*initial.value, place);
+    if (initial.law) word_call(*initial.law, WordKind::distribution, place);
   }
+}
+void UseResolver::statement(ast::DisturbanceDeclaration const& each, Place const& place) {
+  declared(each.name, place);
+  bool const law = find_word(WordKind::law, each.law.function.text) != nullptr;
+  word_call(each.law, law ? WordKind::law : WordKind::distribution, place);
 }
 void UseResolver::statement(ast::ParameterDeclaration const& each, Place const& place) {
   declared(each.name, place);
@@ -315,6 +321,11 @@ void UseResolver::walk(ast::FunctionDefinition const& tree, Environment const& h
   function(tree, functions.at(&tree), place);
 }
 
+void UseResolver::distribution(ast::Call const& call, Environment const& home) {
+  Place place;
+  place.home = &home;
+  word_call(call, WordKind::distribution, place);
+}
 void UseResolver::plain(ast::Expression const& tree, Environment const& home) {
   Place place;
   place.home = &home;

@@ -26,6 +26,8 @@ class UseResolver {
   void walk(ast::FunctionDefinition const& function, Environment const& home);
   /// An expression outside of models: units, functions, no quantities.
   void plain(ast::Expression const& expression, Environment const& home);
+  /// A distribution outside of models.
+  void distribution(ast::Call const& call, Environment const& home);
   void options(ast::Task const& task, std::vector<NameScope const*> const& scopes, Environment const& home);
   /// `n = 2` given to models.
   void arguments_of_model(std::vector<ast::Argument> const& arguments, std::vector<NameScope const*> const& scopes);
@@ -76,6 +78,7 @@ class UseResolver {
     for (ast::Declared const& name : each.names) declared(name, place);
   }
   void statement(ast::InitialDeclaration const& each, Place const& place);
+  void statement(ast::DisturbanceDeclaration const& each, Place const& place);
   void statement(ast::ParameterDeclaration const& each, Place const& place);
   void statement(ast::Definition const& each, Place const& place);
   void statement(ast::FunctionDefinition const& each, Place const& place);

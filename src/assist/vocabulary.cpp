@@ -17,6 +17,7 @@
 #include "function/table.hpp"
 #include "gaussian_process/kernel.hpp"
 #include "inference/table.hpp"
+#include "model/disturbance_law.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"
 #include "solver/solver.hpp"
@@ -79,6 +80,13 @@ Words kernel_words() {
     for (auto const& each : row.hyper_parameters) arguments += fmt::format("{}{} = ...", arguments.empty() ? "" : ", ", each.name);
     all.push_back({WordKind::kernel, std::string(row.name), fmt::format("{}({})", row.name, arguments), std::string(row.summary)});
   }
+  return all;
+}
+
+Words law_words() {
+  Words all;
+  for (DisturbanceLawRow const& row : disturbance_laws())
+    all.push_back({WordKind::law, std::string(row.name), std::string(row.usage), std::string(row.summary)});
   return all;
 }
 
@@ -149,6 +157,7 @@ std::vector<Word> const& words_of(WordKind kind) {
       {WordKind::function, function_words()},
       {WordKind::distribution, distribution_words()},
       {WordKind::kernel, kernel_words()},
+      {WordKind::law, law_words()},
       {WordKind::family, family_words()},
       {WordKind::signal, signal_words()},
       {WordKind::fitting, method_words(WordKind::fitting, backends())},
@@ -178,6 +187,10 @@ std::vector<Word> settings_of(std::string_view owner) {
     for (auto const& each : kernel->hyper_parameters)
       all.push_back({WordKind::setting, std::string(each.name), fmt::format("{} = ...", each.name),
                      each.per_input ? "hyper-parameter, one for each input" : "hyper-parameter"});
+  } else if (DisturbanceLawRow const* law = find_disturbance_law(owner)) {
+    for (DisturbanceArgumentRow const& each : law->arguments)
+      all.push_back(
+          {WordKind::setting, std::string(each.name), fmt::format("{} = ...", each.name), fmt::format("argument of {}", owner)});
   } else if (GeneratorRow const* family = find_generator(owner); family != nullptr && !family->option.name.empty()) {
     all.push_back({WordKind::setting, std::string(family->option.name), std::string(family->option.example), {}});
   } else {

@@ -12,6 +12,7 @@ enum class WordKind {
   function,
   distribution,
   kernel,
+  law,     // of a disturbance
   family,  // of terms of a dictionary
   signal,
   fitting,      // a back end of `fit`

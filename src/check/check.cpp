@@ -71,6 +71,7 @@ class FileChecker {
         file_.tasks.push_back(std::move(*checked));
     check_unused_data();
     remove_cascades(tree_, diagnostics_);
+    refuse_unused_disturbances(file_.models, diagnostics_);
     if (diagnostics_.has_errors()) return std::nullopt;
     warn_of_unused(file_.models, diagnostics_);
     return std::move(file_);

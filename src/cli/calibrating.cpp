@@ -43,7 +43,7 @@ Work declare_calibrate(CLI::App& verb) {
   options->run.output = "results/calibrate";
   options->run.checkpoint_interval = 1;
   add_options(verb, *options, options->calibrate.task);
-  verb.add_option("--replications", options->calibrate.replications, "number of records that are made and fitted")
+  verb.add_option("--replications", options->calibrate.replications, "number of records that are simulated and fitted")
       ->type_name("N")
       ->check(CLI::Range(10, 100000))
       ->capture_default_str();

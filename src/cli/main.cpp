@@ -24,7 +24,7 @@ constexpr Command commands[] = {
     {"predict", tasks, "run the predict tasks of a file, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force"},
     {"check", files, "check a file, and report what its data can determine, before any sampling", &declare_check,
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
-    {"calibrate", files, "check whether intervals of fits are right, on records made from the priors", &declare_calibrate,
+    {"calibrate", files, "test the intervals of fits, on records simulated from the priors", &declare_calibrate,
      "sysid calibrate duffing.sysid\nsysid calibrate duffing.sysid --task posterior --replications 500 --seed 1"},
     {"crosscheck", files, "fit with two back ends: differences of the posteriors in standard errors", &declare_crosscheck,
      "sysid crosscheck duffing.sysid\nsysid crosscheck duffing.sysid --task posterior --against tempering"},

@@ -80,6 +80,8 @@ struct Experiment {
   std::vector<InputSignal> inputs;            // one per model input
   std::vector<std::vector<double>> measured;  // one per model channel, each [N]; NaN: missing; empty: channel not in this data
   std::vector<std::uint8_t> scored;           // [N], 1: in the split; simulation runs over all rows from the first one needed
+  /// [N], 1: rows from which predictions learn of states that are random given the parameters; empty: from those that are scored.
+  std::vector<std::uint8_t> corrects;
   int first_row = 1;                          // row of the file that is index 0 (rows count from 1)
   /// What discrete-time models read before index 0, each channel latest first; inputs are views that begin later in their record.
   std::vector<std::vector<double>> history;

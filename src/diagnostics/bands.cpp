@@ -45,7 +45,7 @@ Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajector
     PredictedQuantity predicted;
     predicted.name = quantity.name;
     predicted.unit = quantity.unit;
-    predicted.response = band(result.values[q]);
+    predicted.response = band(result.drawn(q));
     if (quantity.channel >= 0) {
       auto const channel = static_cast<std::size_t>(quantity.channel);
       if (result.noisy[channel].size() > 1) predicted.noisy = band(result.noisy[channel]);  // one trajectory has no width

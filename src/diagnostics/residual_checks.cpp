@@ -235,6 +235,17 @@ void check_size(ScoredChannel const& of, bool with_outliers, int together, FitLi
        help});
 }
 
+std::string memory_help(ScoredChannel const& of) {
+  std::string help =
+      "look for a force or dynamics that the model lacks, or for coloured noise: the errors of the estimates can be "
+      "several times their sds";
+  bool const normal = std::ranges::all_of(of.model().channels, [](Channel const& each) { return each.noise.row->gaussian; });
+  if (of.model().integrated() && !of.model().filtered() && of.model().unknowns.empty() && of.model().processes.empty() && normal)
+    help +=
+        "; to estimate a force that was not measured, declare `disturbance w ~ white(intensity = q)` and add `w` to the equation";
+  return help;
+}
+
 // Of a model that has a past: correlation in time, and with the input's past.
 void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& limits, FitLine& line, Findings& findings) {
   CorrelationTest const& white = *tested.white;
@@ -243,8 +254,7 @@ void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& l
     findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
                         fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
                                     white.outside, white.correlation.size()),
-                        "look for a force or dynamics that the model lacks, or for coloured noise: the errors of the estimates can "
-                        "be several times their sds"});
+                        memory_help(of)});
   std::vector<Quantity> const& inputs = of.model().inputs;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     CorrelationTest const& crossed = tested.with_input[i];

@@ -289,6 +289,20 @@ Findings tolerance_findings(SolverCheck const& check, SolverSettings const& solv
            cure(check, solver, chosen)}};
 }
 
+Findings linearisation_findings(SolverCheck const& check) {
+  constexpr double matters = 1.0 / 3, decides = 1;  // sds
+  bool const moves = check.outcome == SolverCheck::Outcome::mean_moves || check.outcome == SolverCheck::Outcome::mode_moves;
+  if (check.holds() || (moves && std::fabs(check.largest()) < matters)) return {};
+  std::vector<std::string> names;
+  for (Moved const& each : check.moved) names.push_back(each.parameter);
+  bool const severe = check.outcome == SolverCheck::Outcome::fails || (moves && std::fabs(check.largest()) > decides);
+  return {
+      {FindingCode::linearisation_matters, severe ? Severity::error : Severity::warning, std::move(names),
+       fmt::format("the linearisation of the filter changes the result: with `filter = unscented` {}", what_happens(check, false)),
+       "fit with `filter = unscented`, which does not linearise; if the result then still depends on the filter, the "
+       "disturbance is too large for a filter of mean and covariance"}};
+}
+
 SolverSettings fine_enough(SolverSettings const& solver, double move) {
   constexpr double aim = tolerable_move / 2;
   SolverSettings result = solver.finer();

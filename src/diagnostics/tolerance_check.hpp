@@ -73,6 +73,10 @@ SolverCheck check_modes(Target const& fine, ObjectiveKind objective_kind, std::v
 /// declared to be a part of the model is no error: a note states what another would give.
 Findings tolerance_findings(SolverCheck const& check, SolverSettings const& solver, bool chosen);
 
+/// In words, for a fit by a filter that linearises, where `check` is of the same fit by one that does not. What moves by less than a
+/// third of an sd is left alone.
+Findings linearisation_findings(SolverCheck const& check);
+
 /// The solver, no coarser than `solver.finer()`, with which a result that moves by `move` sds should stay: an error of order p
 /// falls by 2^p for each halving. No finer than the finest that is tried.
 SolverSettings fine_enough(SolverSettings const& solver, double move);

@@ -91,13 +91,13 @@ void add_trajectories(NetcdfGroup& group, Model const& model, std::span<Trajecto
     if (quantity.channel >= 0) {
       auto const& noisy = result.noisy[static_cast<std::size_t>(quantity.channel)];
       if (!noisy.empty()) group.add({labelled(quantity.name, label), dimensions, flat(noisy, rows), attributes});
-      group.add({labelled(quantity.name + "_response", label), dimensions, flat(result.values[q], rows), attributes});
+      group.add({labelled(quantity.name + "_response", label), dimensions, flat(result.drawn(q), rows), attributes});
       continue;
     }
     // A state that a channel of its name observes is there as the channel's response.
     bool const there = std::any_of(model.channels.begin(), model.channels.end(),
                                    [&](Channel const& channel) { return channel.name == quantity.name; });
-    if (!there) group.add({labelled(quantity.name, label), dimensions, flat(result.values[q], rows), attributes});
+    if (!there) group.add({labelled(quantity.name, label), dimensions, flat(result.drawn(q), rows), attributes});
   }
 }
 

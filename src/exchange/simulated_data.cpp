@@ -57,8 +57,7 @@ struct StoredFit {
       : session(session),
         what(std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(index)].what)),
         fitted(fitted_model(session, index)),
-        compiled(
-            session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, fitted.solver.method, what.prediction)),
+        compiled(session.compiled(what, fitted.solver.method)),
         space(parameter_space(compiled->model, what.experiments)),
         data(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(what.model)], what.start,
                               what.prediction, fitted.solver)) {}

@@ -39,7 +39,9 @@ StanFit stan_fit(Session& session, Task const& task, SolverSettings const& solve
   FitTask const& what = std::get<FitTask>(task.what);
   Model const& model = session.file.models[static_cast<std::size_t>(what.model)];
   require_carried(task, what, model, solver);
-  auto compiled = session.compiled(what.model, false, solver.method, what.prediction);
+  auto compiled = session.compiled(what, false, solver.method, what.prediction);
+  if (compiled->model.filtered())
+    throw not_carried(task, "its states are random", "write it without disturbances, random initial values and errors of inputs");
   if (!compiled->model.memories.empty())
     throw not_carried(task, "it uses values of previous rows", "write it without `since_last` and similar functions");
   auto space = parameter_space(compiled->model, what.experiments);

@@ -9,6 +9,7 @@
 #include "model/dump.hpp"
 
 #include "likelihood/differentiated.hpp"
+#include "likelihood/model_source.hpp"
 #include "likelihood/parameter_space.hpp"
 #include "program/adjoint.hpp"
 #include "program/tangents.hpp"
@@ -17,149 +18,12 @@
 namespace sysid {
 namespace {
 
-NodeId parameter_leaf(Graph& graph, int index) { return graph.leaf(LeafKind::parameter, index); }
-
-// The graph of a model with parameters that are fixed for all experiments replaced by their values; the replaced roots share it.
-class Folded {
- public:
-  /// unknowns_are_states: leaf unknown(j) is the state that comes j places after the model's own (algebraic states of IDA).
-  explicit Folded(Model const& model, bool unknowns_are_states = false)
-      : model_(model), unknowns_are_states_(unknowns_are_states), graph(model.graph) {}
-
-  NodeId operator()(NodeId root) {
-    NodeId const result = graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
-      Node const node = graph[leaf];
-      auto const state = static_cast<int>(model_.states.size()) + node.index;
-      if (node.leaf_kind == LeafKind::previous)
-        return graph.leaf(LeafKind::state, state);  // a memory: it is kept behind the states
-      if (node.leaf_kind == LeafKind::unknown && unknowns_are_states_)
-        return graph.leaf(LeafKind::state, state + static_cast<int>(model_.memories.size()));
-      if (node.leaf_kind != LeafKind::parameter || static_cast<std::size_t>(node.index) >= model_.parameters.size())
-        return std::nullopt;
-      Parameter const& parameter = model_.parameters[static_cast<std::size_t>(node.index)];
-      return parameter.per_experiment ? std::nullopt : parameter.value;
-    });
-    return result;
-  }
-  Distribution operator()(Distribution use) {
-    for (NodeId& argument : use.arguments) argument = (*this)(argument);
-    if (use.lower) use.lower = (*this)(*use.lower);
-    if (use.upper) use.upper = (*this)(*use.upper);
-    return use;
-  }
-
- private:
-  Model const& model_;
-  bool unknowns_are_states_;
-
- public:
-  Graph graph;
-};
-
-// a - b with equal addends cancelled, so that a residual does not carry the rounding of constants both have.
-class Difference {
- public:
-  explicit Difference(Graph& graph) : graph_(graph) {}
-  NodeId operator()(NodeId a, NodeId b) {
-    collect(a, 1);
-    collect(b, -1);
-    NodeId sum = graph_.constant(0);
-    for (auto const& [node, count] : terms_)
-      if (count != 0) sum = graph_.add(sum, graph_.multiply(graph_.constant(count), node));
-    return sum;
-  }
-
- private:
-  void collect(NodeId id, int sign) {
-    Node const node = graph_[id];
-    if (node.operation == Operation::add || node.operation == Operation::subtract) {
-      collect(node.a, sign);
-      collect(node.b, node.operation == Operation::add ? sign : -sign);
-    } else if (node.operation == Operation::negate) {
-      collect(node.a, -sign);
-    } else {
-      auto const place = std::find_if(terms_.begin(), terms_.end(), [&](auto const& term) { return term.first == id; });
-      if (place == terms_.end())
-        terms_.emplace_back(id, sign);
-      else
-        place->second += sign;
-    }
-  }
-  Graph& graph_;
-  std::vector<std::pair<NodeId, int>> terms_;
-};
-
-// log density of a channel's sample in the declared unit; the largest any location gives it; and where the noise is centred.
-struct ChannelDensity {
-  NodeId sample, saturated, centre;
-};
-ChannelDensity channel_density(Folded& folded, Channel const& channel, int index) {
-  Graph& graph = folded.graph;
-  Distribution const use = folded(channel.noise);
-  NodeId const measured = graph.leaf(LeafKind::measured, index);
-  NodeId const centre = use.row->centre(graph, use.arguments);
-  // A count has a probability, not a density per unit.
-  NodeId const unit = graph.constant(use.row->discrete ? 0.0 : elementary::log(channel.to_si(1)));
-  return {graph.add(log_density(graph, use, measured), unit), graph.add(use.row->saturated(graph, measured, use.arguments), unit),
-          centre};
-}
-
-// sign(y - centre) sqrt(2 (saturated - log p(y)))
-NodeId deviance_residual(Graph& graph, ChannelDensity const& density, int index) {
-  NodeId const measured = graph.leaf(LeafKind::measured, index);
-  NodeId const deviance = Difference(graph)(density.saturated, density.sample);
-  NodeId const size = graph.unary(Operation::square_root,
-                                  graph.binary(Operation::maximum, graph.multiply(graph.constant(2), deviance), graph.constant(0)));
-  return graph.multiply(graph.unary(Operation::sign, graph.subtract(measured, density.centre)), size);
-}
-
-// Whether a program keeps the model's unknowns as algebraic states: not where they could be solved for and the solver wants y' = f.
-bool keeps_unknowns(CompiledModel const& compiled) {
-  return !compiled.model.unknowns.empty() && find_solver(compiled.method)->implicit;
-}
-
-SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
-  Model const& model = compiled.model;
-  bool const free_start = compiled.free_start;
-  SimulationSource source;
-  source.integrator = compiled.method;
-  int const all = static_cast<int>(model.parameters.size());
-  source.parameters = all + (free_start ? static_cast<int>(model.states.size()) : 0);
-  source.inputs = static_cast<int>(model.inputs.size());
-  for (std::size_t i = 0; i < model.states.size(); ++i) {
-    source.initial.push_back(free_start ? parameter_leaf(folded.graph, all + static_cast<int>(i))
-                                        : folded(model.states[i].initial));
-    source.derivative.push_back(folded(model.states[i].derivative));
-  }
-  source.map = model.dynamics == Dynamics::discrete;
-  // What is remembered begins as it is at the first sample.
-  for (NodeId const memory : model.memories) {
-    source.memories.push_back(folded(memory));
-    source.initial.push_back(folded.graph.substitute(source.memories.back(), [&](NodeId leaf) -> std::optional<NodeId> {
-      Node const& node = folded.graph[leaf];
-      if (node.leaf_kind != LeafKind::state) return std::nullopt;
-      return source.initial[static_cast<std::size_t>(node.index)];
-    }));
-    source.derivative.push_back(folded.graph.constant(0));
-  }
-  if (!keeps_unknowns(compiled)) return source;
-  for (std::size_t j = 0; j < model.unknowns.size(); ++j) {
-    Unknown const& unknown = model.unknowns[j];
-    source.initial.push_back(folded(unknown.guess));
-    source.constraints.push_back(folded(model.residuals[j]));
-    if (unknown.component >= 0)
-      source.derivative[static_cast<std::size_t>(unknown.component)] =
-          folded.graph.leaf(LeafKind::state, static_cast<int>(model.states.size() + model.memories.size() + j));
-  }
-  return source;
-}
-
 void compile_kernels(CompiledModel& compiled) {
   Model const& model = compiled.model;
   Folded folded(model);
   Graph& graph = folded.graph;
   std::vector<NodeId> leaves, quantities, initial;
-  for (std::size_t i = 0; i < model.parameters.size(); ++i) leaves.push_back(parameter_leaf(graph, static_cast<int>(i)));
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) leaves.push_back(graph.leaf(LeafKind::parameter, static_cast<int>(i)));
   for (std::size_t i = 0; i < model.derived.size(); ++i) {
     if (model.derived[i].per_sample) continue;
     compiled.derived_index.push_back(static_cast<int>(i));
@@ -179,22 +43,39 @@ std::shared_ptr<SimulationProgram const> finish(Folded& folded, SimulationSource
   return std::make_shared<SimulationProgram const>(compile(std::move(source)));
 }
 
+/// Of what is shown: the sd that random states give it.
+void record_spreads(CompiledModel& compiled, Folded& folded, ModelSource const& source, SimulationSource& trajectory) {
+  using Kind = CompiledModel::Record::Kind;
+  std::size_t const shown = compiled.records.size();
+  for (std::size_t r = 0; r < shown; ++r) {
+    Kind const kind = compiled.records[r].kind;
+    if (kind != Kind::centre && kind != Kind::state && kind != Kind::derived) continue;
+    NodeId const variance = source.variance(folded.graph, trajectory.records[r]);
+    if (folded.graph.is_constant(variance, 0)) continue;
+    NodeId const zero = folded.graph.constant(0);
+    trajectory.records.push_back(
+        folded.graph.unary(Operation::square_root, folded.graph.binary(Operation::maximum, variance, zero)));
+    compiled.records.push_back({Kind::spread, static_cast<int>(r), 0});
+  }
+}
+
 void compile_programs(CompiledModel& compiled) {
   Model const& model = compiled.model;
   Folded folded(model, keeps_unknowns(compiled));
-  std::vector<ChannelDensity> densities;
-  for (std::size_t c = 0; c < model.channels.size(); ++c)
-    densities.push_back(channel_density(folded, model.channels[c], static_cast<int>(c)));
-
-  SimulationSource likelihood = dynamics(folded, compiled), residuals = likelihood, trajectory = likelihood;
+  ModelSource const source = source_of(folded, compiled);
+  SimulationSource likelihood = source.dynamics, residuals = likelihood, trajectory = likelihood;
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
-    likelihood.channels.push_back({{densities[c].sample}});
-    residuals.channels.push_back({{densities[c].saturated}});
-    residuals.records.push_back(deviance_residual(folded.graph, densities[c], static_cast<int>(c)));
-    trajectory.channels.push_back({});
+    int const index = static_cast<int>(c);
+    ChannelDensity const density = channel_density(folded.graph, source.noise[c], model.channels[c], index);
+    likelihood.channels.push_back(source.channel(c, {density.sample}));
+    residuals.channels.push_back(source.channel(c, {density.saturated}));
+    residuals.records.push_back(source.moments ? standardised(folded.graph, source.noise[c], index)
+                                               : deviance_residual(folded.graph, density, index));
+    residuals.recorded_at.push_back(source.recorded_with(c));
+    trajectory.channels.push_back(source.channel(c, {}));
     compiled.records.push_back({CompiledModel::Record::Kind::centre, static_cast<int>(c), 0});
-    trajectory.records.push_back(densities[c].centre);
-    Distribution const use = folded(model.channels[c].noise);
+    trajectory.records.push_back(density.centre);
+    Distribution const& use = source.noise[c];
     for (std::size_t a = 0; a < use.arguments.size(); ++a) {
       compiled.records.push_back({CompiledModel::Record::Kind::noise_argument, static_cast<int>(c), static_cast<int>(a)});
       trajectory.records.push_back(use.arguments[a]);
@@ -216,9 +97,22 @@ void compile_programs(CompiledModel& compiled) {
     compiled.records.push_back({CompiledModel::Record::Kind::constraint_size, static_cast<int>(i), 0});
     trajectory.records.push_back(folded(model.invariants[i].size));
   }
+  if (source.moments) record_spreads(compiled, folded, source, trajectory);
   compiled.likelihood = finish(folded, std::move(likelihood));
   compiled.residuals = finish(folded, std::move(residuals));
   compiled.trajectory = finish(folded, std::move(trajectory));
+}
+
+/// Behind the means come the covariances that there are.
+ProgramNames filtered_names(CompiledModel const& compiled, ProgramNames names) {
+  Folded folded(compiled.model);
+  ModelSource const source = source_of(folded, compiled);
+  for (std::size_t i = 0; i < source.moments->means; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      if (!folded.graph.is_constant(source.moments->of(static_cast<int>(i), static_cast<int>(j)), 0))
+        names.states.push_back(fmt::format("cov({}, {})", names.states[i], names.states[j]));
+  for (Channel const& channel : compiled.model.channels) names.channels.push_back(channel.name);
+  return names;
 }
 
 ProgramNames names_of(CompiledModel const& compiled) {
@@ -228,6 +122,7 @@ ProgramNames names_of(CompiledModel const& compiled) {
     for (State const& state : compiled.model.states) names.parameters.push_back(state.name + "(0)");
   for (Quantity const& input : compiled.model.inputs) names.inputs.push_back(input.name);
   for (State const& state : compiled.model.states) names.states.push_back(state.name);
+  if (compiled.model.filtered()) return filtered_names(compiled, std::move(names));
   for (std::size_t i = 0; i < compiled.model.memories.size(); ++i) names.states.push_back(fmt::format("previous({})", i));
   if (keeps_unknowns(compiled))
     for (Unknown const& unknown : compiled.model.unknowns) names.states.push_back(unknown.name);
@@ -251,8 +146,9 @@ int CompiledModel::parameter_rows() const {
   return static_cast<int>(model.parameters.size()) + (free_start ? static_cast<int>(model.states.size()) : 0);
 }
 
-std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method) {
+std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method, FilterRule filter) {
   auto compiled = std::make_shared<CompiledModel>();
+  compiled->filter = filter;
   compiled->model = std::move(model);
   compiled->free_start = free_start;
   compiled->method = method;
@@ -267,17 +163,20 @@ std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compi
   Model model = compiled.model;
   model.graph = std::move(grown);
   Folded folded(model, keeps_unknowns(compiled));
-  SimulationSource source = dynamics(folded, compiled);
-  for (NodeId const expression : per_channel) source.channels.push_back({{folded(expression)}});
+  ModelSource const of = source_of(folded, compiled);
+  SimulationSource source = of.dynamics;
+  for (NodeId const expression : per_channel) source.channels.push_back(of.channel(source.channels.size(), {folded(expression)}));
   return finish(folded, std::move(source));
 }
 
 std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled) {
   Folded folded(compiled.model, keeps_unknowns(compiled));
-  SimulationSource source = dynamics(folded, compiled);
+  ModelSource const of = source_of(folded, compiled);
+  SimulationSource source = of.dynamics;
   for (std::size_t c = 0; c < compiled.model.channels.size(); ++c) {
-    source.channels.push_back({});
-    source.records.push_back(channel_density(folded, compiled.model.channels[c], static_cast<int>(c)).sample);
+    source.channels.push_back(of.channel(c, {}));
+    source.records.push_back(channel_density(folded.graph, of.noise[c], compiled.model.channels[c], static_cast<int>(c)).sample);
+    source.recorded_at.push_back(of.recorded_with(c));
   }
   return finish(folded, std::move(source));
 }
@@ -286,15 +185,14 @@ std::shared_ptr<SimulationProgram const> CompiledModel::squares() const {
   return squares_.get([&] {
     Folded folded(model, keeps_unknowns(*this));
     Graph& graph = folded.graph;
-    SimulationSource source = dynamics(folded, *this);
+    ModelSource const of = source_of(folded, *this);
+    SimulationSource source = of.dynamics;
     for (std::size_t c = 0; c < model.channels.size(); ++c) {
       int const index = static_cast<int>(c);
-      ChannelDensity const density = channel_density(folded, model.channels[c], index);
-      Distribution const use = folded(model.channels[c].noise);
-      NodeId const measured = graph.leaf(LeafKind::measured, index);
-      source.channels.push_back({{density.saturated}});
-      source.records.push_back(use.row->gaussian ? graph.divide(graph.subtract(measured, use.arguments[0]), use.arguments[1])
-                                                 : deviance_residual(graph, density, index));
+      ChannelDensity const density = channel_density(graph, of.noise[c], model.channels[c], index);
+      Distribution const& use = of.noise[c];
+      source.channels.push_back(of.channel(c, {density.saturated}));
+      source.records.push_back(use.row->gaussian ? standardised(graph, use, index) : deviance_residual(graph, density, index));
     }
     source.graph = graph;
     return std::make_shared<SimulationProgram const>(sysid::compile(with_squares(std::move(source), differentiated)));

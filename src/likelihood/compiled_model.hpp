@@ -8,6 +8,7 @@
 
 #include "core/system/lazily.hpp"
 #include "core/text/source.hpp"
+#include "model/filter_rule.hpp"
 #include "model/model.hpp"
 #include "program/kernel.hpp"
 #include "program/simulation_program.hpp"
@@ -19,7 +20,8 @@ namespace sysid {
 struct CompiledModel {
   Model model;
   bool free_start = false;
-  std::string method;  // of the solver that the simulations are compiled for
+  std::string method;                         // of the solver that the simulations are compiled for
+  FilterRule filter = FilterRule::automatic;  // where states are random
 
   Kernel derived;                  // parameters, SI -> quantities derived from parameters alone, declared units
   Kernel initial;                  // parameters, SI -> the model's own initial state, SI
@@ -29,9 +31,9 @@ struct CompiledModel {
       residuals;  // records: per channel the deviance residual; sums: the saturated log density
   std::shared_ptr<SimulationProgram const> trajectory;  // records: see below
   struct Record {
-    enum class Kind { centre, noise_argument, state, derived, constraint, constraint_size };
+    enum class Kind { centre, noise_argument, state, derived, constraint, constraint_size, spread };
     Kind kind;
-    int index;     // channel, channel, state, model.derived, model.invariants (twice)
+    int index;     // channel, channel, state, model.derived, model.invariants (twice); of a spread the record whose sd it is
     int argument;  // of the noise
   };
   std::vector<Record> records;  // of `trajectory`, SI
@@ -57,7 +59,9 @@ struct CompiledModel {
 };
 
 /// free_start: the initial state is read from extra parameter rows instead of the model's initial values. method: a solver's name.
-std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method);
+/// filter: how moments of random states are found, if there are any.
+std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::string const& method,
+                                             FilterRule filter = FilterRule::automatic);
 
 /// A program that sums, over the scored samples of each channel, an expression of `grown`: the model's graph and what was added to
 /// it.

@@ -19,7 +19,8 @@ std::vector<int> read_by(Model const& model, SimulationSource const& source) {
   std::vector<NodeId> roots;
   for (auto const* nodes : {&source.initial, &source.derivative, &source.memories, &source.records})
     roots.insert(roots.end(), nodes->begin(), nodes->end());
-  for (ChannelSource const& channel : source.channels) roots.insert(roots.end(), channel.sums.begin(), channel.sums.end());
+  for (ChannelSource const& channel : source.channels)
+    for (auto const* nodes : {&channel.sums, &channel.correct}) roots.insert(roots.end(), nodes->begin(), nodes->end());
   std::vector<int> read;
   for (NodeId const id : source.graph.reachable(roots))
     if (is_estimated(model, source.graph[id])) read.push_back(source.graph[id].index);

@@ -177,7 +177,9 @@ std::vector<ParameterRole> parameter_roles(Model const& model) {
   for (State const& state : model.states) {
     response.push_back(state.derivative);
     response.push_back(state.initial);
+    if (state.initial_variance) noise.push_back(*state.initial_variance);
   }
+  for (Disturbance const& disturbance : model.disturbances) noise.push_back(disturbance.intensity);
   for (Channel const& channel : model.channels) {
     response.push_back(channel.noise.row->centre(graph, channel.noise.arguments));
     noise.insert(noise.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());

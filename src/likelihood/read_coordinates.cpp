@@ -20,7 +20,8 @@ void mark(SimulationSource const& source, std::vector<bool>& read) {
   for (auto const* nodes : {&source.initial, &source.derivative, &source.memories, &source.constraints, &source.records})
     roots.insert(roots.end(), nodes->begin(), nodes->end());
   // Also of channels that are not measured: their sums are zero times what they read.
-  for (ChannelSource const& channel : source.channels) roots.insert(roots.end(), channel.sums.begin(), channel.sums.end());
+  for (ChannelSource const& channel : source.channels)
+    for (auto const* nodes : {&channel.sums, &channel.correct}) roots.insert(roots.end(), nodes->begin(), nodes->end());
   mark(source.graph, roots, read);
 }
 

@@ -42,6 +42,9 @@ std::vector<bool> simulated_parameters(Model const& model) {
   Graph graph = model.graph;
   std::vector<NodeId> roots = read_by(model.processes);
   for (State const& state : model.states) roots.insert(roots.end(), {state.derivative, state.initial});
+  for (State const& state : model.states)
+    if (state.initial_variance) roots.push_back(*state.initial_variance);
+  for (Disturbance const& disturbance : model.disturbances) roots.push_back(disturbance.intensity);
   roots.insert(roots.end(), model.memories.begin(), model.memories.end());
   roots.insert(roots.end(), model.residuals.begin(), model.residuals.end());
   for (Unknown const& unknown : model.unknowns) roots.push_back(unknown.guess);

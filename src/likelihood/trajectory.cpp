@@ -21,6 +21,13 @@ constexpr double large = 1e8;  // bytes: of less nobody runs out
 
 using RecordKind = CompiledModel::Record::Kind;
 
+/// Of the states along a trajectory: apart from that of the noise of any channel.
+StreamKey state_key(StreamKey noise_key, int trajectory, int record) {
+  constexpr std::uint64_t behind_channels = 1u << 16;
+  return noise_key.at(noise_key.index + static_cast<std::uint64_t>(trajectory),
+                      behind_channels + static_cast<std::uint64_t>(record));
+}
+
 bool is_shown(CompiledModel::Record const& record) {
   return record.kind == RecordKind::centre || record.kind == RecordKind::state || record.kind == RecordKind::derived;
 }
@@ -32,14 +39,25 @@ Quantity const& quantity_of(Model const& model, CompiledModel::Record const& rec
   return model.channels[index];
 }
 
+/// The rows that states are corrected at take the place of those that are scored, of which a trajectory needs nothing.
+Experiment with_corrections(Model const& model, Experiment experiment) {
+  if (model.filtered() && !experiment.corrects.empty()) experiment.scored = experiment.corrects;
+  return experiment;
+}
+
 }  // namespace
 
 Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, SolverSettings const& solver,
                        int start_rows, ExecutionOptions options, Describe describe)
     : compiled_(std::move(compiled)),
-      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, solver), options),
+      simulator_(compiled_->trajectory, Schedule(*compiled_->trajectory, with_corrections(compiled_->model, experiment), solver),
+                 options),
       describe_(std::move(describe)) {
   if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, solver, options);
+  spreads_.assign(compiled_->records.size(), -1);
+  for (std::size_t r = 0; r < compiled_->records.size(); ++r)
+    if (compiled_->records[r].kind == RecordKind::spread)
+      spreads_[static_cast<std::size_t>(compiled_->records[r].index)] = static_cast<int>(r);
   for (auto const& record : compiled_->records) {
     if (!is_shown(record)) continue;
     Quantity const& quantity = quantity_of(compiled_->model, record);
@@ -75,6 +93,7 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   int const samples = this->samples(), rows = static_cast<int>(compiled_->records.size());
   double const nan = std::nan("");
   result.values.resize(quantities_.size());
+  result.random.resize(quantities_.size());
   result.noisy.resize(model.channels.size());
   result.drift.resize(model.invariants.size());
   for (int w = 0; w < records.width(); ++w) {
@@ -95,8 +114,17 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
       Quantity const& quantity = quantity_of(model, record);
       std::vector<double> values(static_cast<std::size_t>(samples), nan);
       if (good)
-        for (int i = 0; i < samples; ++i) values[static_cast<std::size_t>(i)] = quantity.from_si(records(i * rows + r, w));
-      result.values[q++].push_back(std::move(values));
+        for (int i = 0; i < samples; ++i) values[static_cast<std::size_t>(i)] = records(i * rows + r, w);
+      auto const declared = [&](std::vector<double> si) {
+        for (double& value : si) value = quantity.from_si(value);
+        return si;
+      };
+      result.values[q].push_back(declared(values));
+      if (int const spread = spreads_[static_cast<std::size_t>(r)]; spread >= 0) {
+        add_spread(records, w, spread, state_key(noise_key, first + w, r), values);
+        result.random[q].push_back(declared(std::move(values)));
+      }
+      ++q;
       if (record.kind != RecordKind::centre) continue;
     }
   }
@@ -108,6 +136,13 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
                     noise_key.at(noise_key.index + static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(record.index))))
       result.noisy[static_cast<std::size_t>(record.index)].push_back(std::move(noisy));
   }
+}
+
+/// What random states add to a quantity at each sample.
+void Trajectory::add_spread(ConstLanes records, int lane, int spread, StreamKey key, std::vector<double>& values) const {
+  int const rows = static_cast<int>(compiled_->records.size());
+  Stream stream(key);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] += records(static_cast<int>(i) * rows + spread, lane) * stream.normal();
 }
 
 void Trajectory::collect_moments(LaneArray const& records, std::vector<Outcome> const& outcome, Result& result) const {

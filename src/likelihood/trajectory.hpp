@@ -32,6 +32,12 @@ class Trajectory {
   /// from the stream of (noise_key, index d, step c). A failed vector is NaN throughout.
   struct Result {
     std::vector<std::vector<std::vector<double>>> values, noisy;
+    /// Where states are random given the parameters, `values` are their means and random[q] draws about them, each sample by
+    /// itself: bands of one sample are right, paths along several are not. Empty for quantities that are known.
+    std::vector<std::vector<std::vector<double>>> random;
+    /// What bands are made of.
+    std::vector<std::vector<double>> const& drawn(std::size_t q) const { return random[q].empty() ? values[q] : random[q]; }
+    std::vector<std::vector<double>>& drawn(std::size_t q) { return random[q].empty() ? values[q] : random[q]; }
     /// solved[d]: 1, vector d did not fail, whether or not it is defined everywhere.
     std::vector<char> solved;
     /// Of all vectors; what failed has its place there.
@@ -58,6 +64,7 @@ class Trajectory {
   void record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const;
   void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
   void collect_moments(LaneArray const& records, std::vector<Outcome> const& outcome, Result& result) const;
+  void add_spread(ConstLanes records, int lane, int spread, StreamKey key, std::vector<double>& values) const;
   std::vector<std::vector<double>> with_noise(LaneArray const& records, std::vector<Outcome> const& outcome, int row,
                                               StreamKey key) const;
 
@@ -66,6 +73,7 @@ class Trajectory {
   std::unique_ptr<StartState> start_;
   Describe describe_;
   std::vector<TrajectoryQuantity> quantities_;
+  std::vector<int> spreads_;  // per record the one that is its sd, -1: none
 };
 
 }  // namespace sysid

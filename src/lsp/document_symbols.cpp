@@ -34,6 +34,7 @@ int kind_of(SymbolKind kind) {
     case SymbolKind::time:
     case SymbolKind::input:
     case SymbolKind::state:
+    case SymbolKind::disturbance:
     case SymbolKind::parameter:
     case SymbolKind::local:
       return 13;  // variable

@@ -35,8 +35,9 @@ std::string present_name(Model const& model, Node const& leaf) {
       return fmt::format("previous({})", index);
     case LeafKind::unknown:
       return index < model.unknowns.size() ? model.unknowns[index].name : fmt::format("unknown({})", index);
-    case LeafKind::disturbance:
-      return model.disturbances[index].name;
+    case LeafKind::disturbance:  // of one with a memory what drives it
+      return model.disturbances[index].state < 0 ? model.disturbances[index].name
+                                                 : fmt::format("noise({})", model.disturbances[index].name);
     case LeafKind::step_size:
     case LeafKind::equal_step:
       return "h";
@@ -75,8 +76,16 @@ std::string dump(Model const& model) {
                        parameter.prior   ? " ~ " + call(*parameter.prior)
                        : parameter.value ? " = " + text(*parameter.value)
                                          : "");
+  for (Disturbance const& disturbance : model.disturbances)
+    out += fmt::format("  disturbance {}{}, {} {}\n", declared(disturbance),
+                       disturbance.state >= 0 ? " of state " + model.states[static_cast<std::size_t>(disturbance.state)].name : "",
+                       disturbance.held                       ? "held, variance"
+                       : model.dynamics == Dynamics::discrete ? "variance"
+                                                              : "intensity",
+                       text(disturbance.intensity));
   for (State const& state : model.states) {
-    out += fmt::format("  state {}, initially {}\n", declared(state), text(state.initial));
+    out += fmt::format("  state {}, initially {}{}\n", declared(state), text(state.initial),
+                       state.initial_variance ? ", variance " + text(*state.initial_variance) : "");
     out += fmt::format("    {} {}\n", model.dynamics == Dynamics::discrete ? "next =" : "d/dt =", text(state.derivative));
   }
   for (std::size_t i = 0; i < model.memories.size(); ++i) out += fmt::format("  previous({}) of {}\n", i, text(model.memories[i]));

@@ -1,5 +1,9 @@
 // How the likelihood of a model with random states is computed.
 #pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace sysid {
 
@@ -11,5 +15,10 @@ enum class FilterRule {
   unscented,  // moments over sigma points
   particle,   // by weighted particles: an unbiased estimate, for any noise
 };
+
+/// "auto", "kalman", ...: the word that the user writes.
+std::string_view filter_name(FilterRule rule);
+std::optional<FilterRule> find_filter(std::string_view name);
+std::vector<std::string> filter_names();
 
 }  // namespace sysid

@@ -97,6 +97,16 @@ void drop_unread_states(Model& model) {
     states.push_back(std::move(model.states[static_cast<std::size_t>(index)]));
   }
   model.states = std::move(states);
+  // A disturbance in discrete time is a state, which nothing else reads the leaf of.
+  std::map<int, int> leaves;
+  std::vector<Disturbance> disturbances;
+  for (std::size_t i = 0; i < model.disturbances.size(); ++i) {
+    if (!renumbered.contains(model.disturbances[i].state)) continue;
+    leaves.emplace(static_cast<int>(i), static_cast<int>(disturbances.size()));
+    disturbances.push_back(std::move(model.disturbances[i]));
+    disturbances.back().state = renumbered.at(disturbances.back().state);
+  }
+  model.disturbances = std::move(disturbances);
   // Each register reads the one before it, so what stays of a past are its first ones, in order.
   for (LaggedQuantity& lagged : model.lagged_quantities) {
     std::vector<int> registers;
@@ -106,6 +116,8 @@ void drop_unread_states(Model& model) {
   }
   auto const renumber = [&](NodeId leaf) -> std::optional<NodeId> {
     Node const node = model.graph[leaf];
+    if (node.leaf_kind == LeafKind::disturbance && leaves.contains(node.index))
+      return model.graph.leaf(LeafKind::disturbance, leaves.at(node.index));
     if (node.leaf_kind != LeafKind::state || !renumbered.contains(node.index)) return std::nullopt;
     return model.graph.leaf(LeafKind::state, renumbered.at(node.index));
   };

@@ -48,7 +48,7 @@ std::vector<NodeId> known_early(Graph const& graph, std::span<NodeId const> root
 
 }  // namespace
 
-bool has_adjoint(SimulationSource const& source) { return has_tangents(source) && source.memories.empty(); }
+bool has_adjoint(SimulationSource const& source) { return has_tangents(source) && source.memories.empty() && !source.corrects(); }
 
 bool adjoint_is_cheaper(SimulationSource const& source, std::span<int const> parameters) {
   constexpr std::ptrdiff_t most_tangents = 20;

@@ -59,6 +59,7 @@ class Dump {
       section(fmt::format("observe {}: each scored sample", at(names_.channels, static_cast<int>(c))), program_.observe[c],
               "sample");
     section("record: each sample", program_.record, "sample");
+    if (!program_.record_after.code.empty()) section("record: each sample, after its channels", program_.record_after, "sample");
     if (!program_.source.adjoint_by.empty()) reverse(program_.reverse);
     section("epilogue: once per solve", program_.epilogue, "");
     return std::move(text_);

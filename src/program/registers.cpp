@@ -56,8 +56,9 @@ void touch(Code const& code, std::set<std::uint32_t>& registers) {
 
 void number_registers(SimulationProgram& program, int widest_row) {
   program.uniforms = static_cast<int>(program.constants.size()) + widest_row;
-  std::vector<Section*> sections{&program.prologue, &program.start,    &program.carry,        &program.step,
-                                 &program.record,   &program.epilogue, &program.reverse.step, &program.reverse.start};
+  std::vector<Section*> sections{&program.prologue, &program.start,        &program.carry,
+                                 &program.step,     &program.record,       &program.record_after,
+                                 &program.epilogue, &program.reverse.step, &program.reverse.start};
   for (auto* const observations : {&program.observe, &program.reverse.observe})
     for (Section& observe : *observations) sections.push_back(&observe);
   for (Section* section : sections) {

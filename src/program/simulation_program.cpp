@@ -1,6 +1,7 @@
 // Sorts a system's expressions into sections by binding time and emits each.
 #include "program/simulation_program.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <map>
 #include <tuple>
@@ -162,7 +163,10 @@ class Compilation {
       }
     }
     program_.first_sums.push_back(static_cast<int>(sums_.size()));
-    Algebra algebra(graph_, sums);
+    std::vector<NodeId> const& correct = program_.source.channels[static_cast<std::size_t>(channel)].correct;
+    std::vector<NodeId> roots = sums;
+    roots.insert(roots.end(), correct.begin(), correct.end());
+    Algebra algebra(graph_, roots);
     std::vector<Goal> goals;
     std::vector<NodeId> data_terms;
     std::map<NodeId, NodeId> place_of;  // term -> its place holder: sums of one channel share accumulators
@@ -193,8 +197,19 @@ class Compilation {
       program_.running_sums.push_back(running(terms));
       sums_.push_back(std::move(terms));
     }
-    program_.observe.push_back(section(goals));
+    for (std::size_t i = 0; i < correct.size(); ++i)
+      if (!is_state(correct[i], i)) goals.push_back({algebra.rewrite(correct[i]), state_bank + static_cast<std::uint32_t>(i)});
+    add_records(channel, algebra, goals);
+    program_.observe.push_back(section(goals, correct.empty() ? Order::goal_by_goal : Order::eager));
     program_.data_sums.push_back(table(data_terms));
+  }
+
+  /// Of those that are computed at that time.
+  void add_records(int time, Algebra& algebra, std::vector<Goal>& goals) {
+    SimulationSource const& source = program_.source;
+    for (std::size_t i = 0; i < source.records.size(); ++i)
+      if ((source.recorded_at.empty() ? before_channels : source.recorded_at[i]) == time)
+        goals.push_back({algebra.rewrite(source.records[i]), record_bank + static_cast<std::uint32_t>(i)});
   }
 
   std::optional<RunningSum> running(std::vector<SumTerm> const& terms) const {
@@ -208,11 +223,12 @@ class Compilation {
   void compile_records() {
     std::vector<NodeId> const& records = program_.source.records;
     Algebra algebra(graph_, records);
-    std::vector<Goal> goals;
-    for (std::size_t i = 0; i < records.size(); ++i)
-      goals.push_back({algebra.rewrite(records[i]), record_bank + static_cast<std::uint32_t>(i)});
+    std::vector<Goal> before, after;
+    add_records(before_channels, algebra, before);
+    add_records(after_channels, algebra, after);
     program_.registers.records = static_cast<int>(records.size());
-    program_.record = section(goals);
+    program_.record = section(before);
+    program_.record_after = section(after);
   }
 
   void compile_epilogue() {
@@ -334,6 +350,10 @@ class Compilation {
 };
 
 }  // namespace
+
+bool SimulationSource::corrects() const {
+  return std::ranges::any_of(channels, [](ChannelSource const& channel) { return !channel.correct.empty(); });
+}
 
 int SimulationProgram::sum_count() const { return registers.sums; }
 

@@ -21,7 +21,15 @@ namespace sysid {
 /// the number of samples.
 struct ChannelSource {
   std::vector<NodeId> sums;
+  /// What the states become once the sample has been summed, one expression per state; empty: they stay as they are. The channels
+  /// of a sample follow one another, each reading what the one before has left.
+  std::vector<NodeId> correct = {};
+  bool always = false;  // at every sample, scored or not
 };
+
+/// When a record of a sample is computed, in programs whose samples correct states: before all channels, with one of them (only
+/// where that is summed, else NaN), or after all.
+constexpr int before_channels = -1, after_channels = 1 << 20;
 
 struct SimulationSource {
   Graph graph;
@@ -38,11 +46,14 @@ struct SimulationSource {
   std::vector<NodeId> constraints;  // one per algebraic state, which come last: expressions that are zero
   std::vector<ChannelSource> channels;
   std::vector<NodeId> records;     // written out at every sample: expressions of the same leaves (measured as well)
+  std::vector<int> recorded_at;    // per record: before_channels, a channel, after_channels; empty: all before
   std::string integrator = "rk4";  // a solver's name
   /// Parameters by which an adjoint gives the derivative of all sums together (program/adjoint.hpp); empty: there is none.
   std::vector<int> adjoint_by;
 
   int states() const { return static_cast<int>(derivative.size() + constraints.size()); }
+  /// Whether samples change the states.
+  bool corrects() const;
 };
 
 /// Names of leaves, for the dump.
@@ -114,6 +125,7 @@ struct SimulationProgram {
   std::vector<Section> observe;  // per channel: one scored sample into the accumulators
   ReverseSections reverse;       // of an adjoint
   Section record;                // one sample into the record registers
+  Section record_after;          // the same, of what is recorded after the channels
   Section epilogue;              // accumulators -> sums; its row: the number of summed samples of each channel, then all data sums
   std::vector<UniformTable> data_sums;  // per channel: terms of data alone, summed once per data set over the summed samples
   std::vector<std::optional<RunningSum>> running_sums;  // per row of the sums

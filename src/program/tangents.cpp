@@ -39,6 +39,7 @@ class Tangents {
         for (std::size_t l = 0; l <= k; ++l) sums.push_back(graph_.multiply(slopes[k], slopes[l]));
     }
     source_.records.clear();
+    source_.recorded_at.clear();
     place_states();
     return std::move(source_);
   }
@@ -49,6 +50,7 @@ class Tangents {
     add_states();
     for (ChannelSource& channel : source_.channels) add_derivatives(channel.sums);
     source_.records.clear();
+    source_.recorded_at.clear();
     place_states();
     return std::move(source_);
   }
@@ -92,6 +94,14 @@ class Tangents {
                          : source_.memories[static_cast<std::size_t>(state - kept_)];
   }
 
+  /// All that moves it: between samples, and at those that correct it.
+  std::vector<NodeId> rules(int state) const {
+    std::vector<NodeId> result = {rule(state)};
+    for (ChannelSource const& channel : source_.channels)
+      if (!channel.correct.empty()) result.push_back(channel.correct[static_cast<std::size_t>(state)]);
+    return result;
+  }
+
   bool moves(int k, int state) const { return moves_[static_cast<std::size_t>(k)][static_cast<std::size_t>(state)]; }
 
   /// Which states may depend on which parameter at all.
@@ -99,17 +109,21 @@ class Tangents {
     moves_.assign(parameters_.size(), std::vector<bool>(static_cast<std::size_t>(states_)));
     bool grown = true;
     for (int k = 0; k < count(); ++k)
-      for (int i = 0; i < states_; ++i)
+      for (int i = 0; i < states_; ++i) {
+        std::vector<NodeId> const all = rules(i);
         moves_[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)] =
             slopes_of(source_.initial[static_cast<std::size_t>(i)]).by_parameter.contains(k) ||
-            slopes_of(rule(i)).by_parameter.contains(k);
+            std::ranges::any_of(all, [&](NodeId each) { return slopes_of(each).by_parameter.contains(k); });
+      }
     while (grown) {
       grown = false;
       for (int k = 0; k < count(); ++k)
         for (int i = 0; i < states_; ++i) {
           if (moves(k, i)) continue;
-          std::vector<Slope> const& by = slopes_of(rule(i)).by_state;
-          bool const now = std::any_of(by.begin(), by.end(), [&](Slope const& slope) { return moves(k, slope.state); });
+          std::vector<NodeId> const all = rules(i);
+          bool const now = std::ranges::any_of(all, [&](NodeId each) {
+            return std::ranges::any_of(slopes_of(each).by_state, [&](Slope const& slope) { return moves(k, slope.state); });
+          });
           if (now) moves_[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)] = grown = true;
         }
     }
@@ -162,6 +176,16 @@ class Tangents {
     source_.initial = std::move(initial);
     source_.derivative = std::move(rules);
     source_.memories = std::move(remembered);
+    for (ChannelSource& channel : source_.channels) add_corrections(channel.correct);
+  }
+
+  /// In the order of the states; sources with memories correct nothing.
+  void add_corrections(std::vector<NodeId>& correct) {
+    if (correct.empty()) return;
+    std::vector<NodeId> const given = correct;
+    for (int k = 0; k < count(); ++k)
+      for (int i = 0; i < states_; ++i)
+        if (moves(k, i)) correct.push_back(derivative(given[static_cast<std::size_t>(i)], k));
   }
 
   void add_derivatives(std::vector<NodeId>& values) {
@@ -183,7 +207,10 @@ class Tangents {
     };
     auto const place = [&](std::vector<NodeId>& nodes) { nodes = graph_.substitute(nodes, replacement); };
     for (auto* const nodes : {&source_.initial, &source_.derivative, &source_.memories, &source_.records}) place(*nodes);
-    for (ChannelSource& channel : source_.channels) place(channel.sums);
+    for (ChannelSource& channel : source_.channels) {
+      place(channel.sums);
+      place(channel.correct);
+    }
   }
 
   int count() const { return static_cast<int>(parameters_.size()); }
@@ -202,13 +229,14 @@ class Tangents {
 }  // namespace
 
 bool has_tangents(SimulationSource const& source) {
-  if (!source.constraints.empty() || (source.map && !source.memories.empty())) return false;
+  if (!source.constraints.empty() || ((source.map || source.corrects()) && !source.memories.empty())) return false;
   SolverRow const* const solver = find_solver(source.integrator);
   if (!source.map && (solver == nullptr || solver->step == nullptr)) return false;
   bool known = true;
   for (auto const* nodes : {&source.initial, &source.derivative, &source.memories, &source.records})
     known = known && knows_derivatives(source.graph, *nodes);
-  for (ChannelSource const& channel : source.channels) known = known && knows_derivatives(source.graph, channel.sums);
+  for (ChannelSource const& channel : source.channels)
+    known = known && knows_derivatives(source.graph, channel.sums) && knows_derivatives(source.graph, channel.correct);
   return known;
 }
 

@@ -23,6 +23,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::trajectories_cut, "trajectories_cut", warning},
     {FindingCode::no_diagnostics, "no_diagnostics", error},
     {FindingCode::integration_step, "integration_step", any},
+    {FindingCode::linearisation_matters, "linearisation_matters", error_or_warning},
     {FindingCode::step_not_settled, "step_not_settled", any},
     {FindingCode::stiff_prior, "stiff_prior", warning},
     {FindingCode::slower_solver, "slower_solver", note},

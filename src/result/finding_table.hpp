@@ -22,6 +22,7 @@ enum class FindingCode {
   trajectories_cut,
   no_diagnostics,
   integration_step,
+  linearisation_matters,
   step_not_settled,
   stiff_prior,
   slower_solver,

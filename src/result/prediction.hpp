@@ -27,6 +27,7 @@ struct PredictedQuantity {
   Band noisy;                    // with measurement noise added to each draw; empty for what is not measured
   std::vector<double> measured;  // [N], NaN where missing; empty for what is not measured
   VarianceParts variance = {};   // of an average over models
+  bool average = false;          // at each sample the mean from there to the next
 };
 
 /// What the record drives the model with, declared unit.
@@ -44,6 +45,7 @@ struct Prediction {
   std::vector<std::uint8_t> scored;  // [N]
   std::vector<PredictedQuantity> quantities;
   std::vector<PredictedInput> inputs = {};  // in the model's order
+  bool smoothed = false;                    // bands of what all samples say of random states, not of trajectories
 };
 
 struct Score {

@@ -113,6 +113,7 @@ struct Report {
   std::vector<CheckRecord> checks;      // of a fit
   std::vector<FitLine> fit;             // what the task itself has scored
   std::vector<Prediction> predictions;  // of each experiment: over the fitted rows, or of the predicted ones
+  std::vector<Prediction> states;       // of each experiment: random states and disturbances as the fitted record shows them
   std::vector<Mode> modes;              // by falling share
   /// What the search moved and the back end sampled: names of the values of modes, and of failures that have none. Parameters that
   /// are integrated out have draws and are not among them.

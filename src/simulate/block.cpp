@@ -29,7 +29,7 @@ Block::Block(SimulationProgram const& program, Schedule const& schedule, Executo
   // Where steps are not fixed, records are interpreted: nearly all the time goes into the steps.
   if (loop == native::LoopKind::observe || loop == native::LoopKind::tape)
     observe_loop_ = machine_loop(program, schedule.solver(), executor, loop);
-  else if (fixed_step())
+  else if (fixed_step() && !program.source.corrects())
     record_loop_ = machine_loop(program, schedule.solver(), executor, loop);
   if (loop == native::LoopKind::tape) reverse_loop_ = machine_loop(program, schedule.solver(), executor, native::LoopKind::reverse);
   std::copy(program.constants.begin(), program.constants.end(), file_.file);
@@ -55,7 +55,9 @@ void Block::start() {
 }
 
 void Block::step(int sample) {
-  if (runs_loops()) return step_to(sample, sample + 1);
+  if (runs_loops())
+    return call(observe_loop_ != nullptr ? observe_loop_ : record_loop_,
+                {.from = sample, .to = sample + 1, .look_from = sample + 1, .step_to = sample + 1});
   if (!program_.source.memories.empty()) {
     file_.load_row(schedule_.carry_row(sample), program_.carry.uniforms.kernel.outputs);
     run(*program_.carry.linked, executor_, file_.file);
@@ -72,9 +74,16 @@ void Block::observe(int sample) {
 }
 
 void Block::step_to(int from, int to) {
-  if (runs_loops())
+  if (runs_loops() && !program_.source.corrects())
     return call(observe_loop_ != nullptr ? observe_loop_ : record_loop_, {.from = from, .to = to, .look_from = to, .step_to = to});
-  for (int i = from; i < to; ++i) step(i);
+  for (int i = from; i < to; ++i) {
+    pass(i);
+    step(i);
+  }
+}
+
+void Block::pass(int sample) {
+  if (program_.source.corrects()) observe(sample);
 }
 
 void Block::advance(int from, int to, int step_to) {
@@ -128,10 +137,21 @@ void Block::record_interpreted(int from, int to, Lanes out) {
   for (int i = from; i < to; ++i) {
     file_.load_row(schedule_.record_row(i), program_.record.uniforms.kernel.outputs);
     run(*program_.record.linked, executor_, file_.file);
+    if (program_.source.corrects()) correct_recorded(i);
     ConstLanes const now = rows(program_.registers.first_record(), program_.registers.records);
     for (int r = 0; r < now.rows(); ++r) std::copy_n(now.row(r).begin(), lanes_, out.row(row++).begin());
     if (i + 1 < to) step(i);
   }
+}
+
+void Block::correct_recorded(int sample) {
+  std::vector<int> const& times = program_.source.recorded_at;
+  double* row = file_.registers + program_.registers.first_record() * executor_.stride();
+  for (std::size_t r = 0; r < times.size(); ++r, row += executor_.stride())
+    if (times[r] >= 0 && times[r] < after_channels) std::fill_n(row, executor_.width, std::numeric_limits<double>::quiet_NaN());
+  observe(sample);
+  file_.load_row(schedule_.record_after_row(sample), program_.record_after.uniforms.kernel.outputs);
+  run(*program_.record_after.linked, executor_, file_.file);
 }
 
 void Block::finish() {

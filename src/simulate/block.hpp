@@ -32,8 +32,10 @@ class Block {
   /// Writes the records of samples [from, to) to `out` [(to - from) * records x lanes], a sample after the other, and steps between
   /// them.
   void record(int from, int to, Lanes out);
-  /// From sample `from` to sample `to`.
+  /// From sample `from` to sample `to`, past samples [from, to).
   void step_to(int from, int to);
+  /// What a sample that is neither recorded nor summed does to the states, where samples correct them.
+  void pass(int sample);
   /// Computes the sums from the accumulators; read them with `sums`.
   void finish();
 
@@ -89,6 +91,7 @@ class Block {
   void observe(int sample);
   void reverse_interpreted(int sample, bool step, double const* tape);
   void record_interpreted(int from, int to, Lanes out);
+  void correct_recorded(int sample);
   void call(native::Function function, native::Call call) const;
   SimulationProgram const& program_;
   Schedule const& schedule_;

@@ -52,7 +52,10 @@ class Solve {
     block.set_parameters(parameters);
     block.start();
     for (int sample = 0; sample < schedule_.last_summed() && !simulator_.stopped(); ++sample) {
-      if (sample > 0) block.step(sample - 1);
+      if (sample > 0) {
+        block.pass(sample - 1);
+        block.step(sample - 1);
+      }
       if (auto const failure = block.step_failure(0)) {
         if (!failure->node) return std::nullopt;
         return Diagnosis{*failure->node, schedule_.time(0) + failure->time, sample, failure->kind};
@@ -70,12 +73,16 @@ class Solve {
     return substep < 0 ? schedule_.at_sample(uniform, sample) : schedule_.at_step(uniform, sample, substep);
   }
 
-  std::optional<NodeId> look_at_sums(int sample) const {
+  /// Leaves the states as the samples have corrected them.
+  std::optional<NodeId> look_at_sums(int sample) {
     Graph const& graph = program_.source.graph;
     for (std::size_t c = 0; c < program_.source.channels.size(); ++c) {
       if (!schedule_.summed(static_cast<int>(c), sample)) continue;
+      ChannelSource const& channel = program_.source.channels[c];
       auto const value_of = [&](NodeId id) { return leaf(graph[id], sample, -1, states_); };
-      if (auto const node = first_not_finite(graph, program_.source.channels[c].sums, value_of)) return node;
+      for (auto const* nodes : {&channel.sums, &channel.correct})
+        if (auto const node = first_not_finite(graph, *nodes, value_of)) return node;
+      if (!channel.correct.empty()) states_ = graph.evaluate(channel.correct, value_of);
     }
     return std::nullopt;
   }

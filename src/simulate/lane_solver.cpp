@@ -54,8 +54,9 @@ void LaneSolvers::parameters_changed() {
 }
 
 void LaneSolvers::step(int sample) {
-  // What is remembered jumps at every sample.
-  bool const jump = file_.schedule.jumps(sample) || !file_.program.source.memories.empty();
+  // What is remembered, and what samples correct, jumps at every sample.
+  SimulationSource const& source = file_.program.source;
+  bool const jump = file_.schedule.jumps(sample) || !source.memories.empty() || source.corrects();
   equations_.set_interval(sample);
   for (int w = 0; w < file_.lanes; ++w) {
     Lane& lane = lanes_[static_cast<std::size_t>(w)];

@@ -16,6 +16,10 @@ constexpr int rows_at_once = 4096;
 // Of a part of a record whose steps are equal, no step differs from the part's mean by more than twice as much.
 constexpr double tolerance_of_parts = 2.5e-6;
 
+std::size_t measured_channels(SimulationSource const& source) {
+  return static_cast<std::size_t>(std::ranges::count_if(source.channels, [](ChannelSource const& each) { return !each.always; }));
+}
+
 bool suits_exact_steps(Experiment const& experiment) {
   return unequal_step(experiment.time, tolerance_of_parts) == 0 &&
          std::all_of(experiment.inputs.begin(), experiment.inputs.end(),
@@ -28,15 +32,17 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
     : experiment_(experiment), solver_(solver), map_(program.source.map) {
   std::size_t const channels = program.source.channels.size();
   if (solver.substeps < 1 || (map_ && solver.substeps > 1) || solver.method != program.source.integrator ||
-      static_cast<int>(experiment.inputs.size()) < program.source.inputs || experiment.measured.size() < channels)
+      static_cast<int>(experiment.inputs.size()) < program.source.inputs ||
+      experiment.measured.size() < measured_channels(program.source))
     throw InternalError("the experiment does not fit the program");
 
   for (std::size_t c = 0; c < channels; ++c) {
     std::vector<std::uint8_t> summed(experiment.time.size());
     int count = 0;
     for (std::size_t i = 0; i < summed.size(); ++i) {
-      summed[i] = experiment.is_scored(c, i) ? 1 : 0;
-      if (summed[i] == 0) continue;
+      bool const always = program.source.channels[c].always;
+      summed[i] = always || experiment.is_scored(c, i) ? 1 : 0;
+      if (always || summed[i] == 0) continue;
       ++count;
       last_summed_ = std::max(last_summed_, static_cast<int>(i) + 1);
     }
@@ -52,6 +58,7 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
   // An embedded method finds its own steps: its rows belong to whole intervals.
   if (solver.row().in_program) steps_ = tabulate(program.step.uniforms, (samples() - 1) * solver.substeps, true);
   records_ = tabulate(program.record.uniforms, samples(), false);
+  records_after_ = tabulate(program.record_after.uniforms, samples(), false);
   for (Section const& observe : program.observe) observe_.push_back(tabulate(observe.uniforms, samples(), false));
 
   if (!program.source.adjoint_by.empty()) {

@@ -28,7 +28,7 @@ class Schedule {
   SolverSettings const& solver() const { return solver_; }
   Experiment const& experiment() const { return experiment_; }
   double time(int sample) const { return experiment_.time[static_cast<std::size_t>(sample)]; }
-  /// Whether the sample of the channel is summed: its row is scored and it is not missing.
+  /// Whether the sample of the channel is summed: its row is scored and it is not missing, or the channel is one of all samples.
   bool summed(int channel, int sample) const;
   /// The same for all samples of a channel, as flags.
   std::uint8_t const* summed(int channel) const { return summed_[static_cast<std::size_t>(channel)].data(); }
@@ -47,6 +47,7 @@ class Schedule {
   double const* carry_row(int sample) const { return carry_.row(sample); }
   double const* observe_row(int channel, int sample) const { return observe_[static_cast<std::size_t>(channel)].row(sample); }
   double const* record_row(int sample) const { return records_.row(sample); }
+  double const* record_after_row(int sample) const { return records_after_.row(sample); }
   // The same of an adjoint's sections.
   double const* reverse_step_row(int sample, int substep) const { return reverse_steps_.row(sample * solver_.substeps + substep); }
   double const* reverse_observe_row(int channel, int sample) const {
@@ -70,7 +71,7 @@ class Schedule {
   std::vector<std::vector<std::uint8_t>> summed_;  // [channels][samples]
   std::vector<int> counts_;
   int last_summed_ = 0;
-  UniformRows prologue_, start_, carry_, steps_, records_, reverse_steps_, reverse_start_;
+  UniformRows prologue_, start_, carry_, steps_, records_, records_after_, reverse_steps_, reverse_start_;
   std::vector<UniformRows> observe_, reverse_observe_;
   std::vector<double> epilogue_;
 };

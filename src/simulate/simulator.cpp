@@ -183,10 +183,12 @@ void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int l
     if (from > 0) draw(from);
     int to = redraw != nullptr ? from + 1 : next_look(block, schedule_.solver().substeps, from, last);
     if (from < first) to = std::min(to, first);
-    if (from < first)
+    if (from < first) {
       block.step_to(from, to - 1);
-    else
+      block.pass(to - 1);
+    } else {
       block.record(from, to, {&out((from - first) * records, lane), (to - from) * records, lanes, out.stride()});
+    }
     if (to % burial_interval == 0 || to == last) alive = block.bury(to - 1);
     if (to < last) block.step(to - 1);
     from = to;

@@ -68,10 +68,12 @@ std::vector<Culprit> culprits(Graph const& graph, std::span<NodeId const> roots,
 Kind by_states(Node const& leaf) {
   switch (leaf.leaf_kind) {
     case LeafKind::parameter:
+    case LeafKind::equal_step:
       return Kind::constant;
     case LeafKind::input:
     case LeafKind::input_rate:
     case LeafKind::time:
+    case LeafKind::disturbance:
       return Kind::other;
     case LeafKind::state:
       return Kind::linear;

@@ -162,10 +162,17 @@ struct StateDeclaration : Located {
   std::vector<Declared> names;
   friend bool operator==(StateDeclaration const&, StateDeclaration const&) = default;
 };
-/// `initial y = 0, y' = v0`.
+/// `disturbance w [N] ~ white(intensity = q)`: what moves the states and was not measured.
+struct DisturbanceDeclaration : Located {
+  Declared name;
+  Call law;
+  friend bool operator==(DisturbanceDeclaration const&, DisturbanceDeclaration const&) = default;
+};
+/// `initial y = 0, y' = v0`; at random: `initial y ~ normal(0, sd = 0.1)`. One of both.
 struct InitialValue : Located {
   Reference state;
-  Expression value;
+  std::optional<Expression> value;
+  std::optional<Call> law;
   friend bool operator==(InitialValue const&, InitialValue const&) = default;
 };
 struct InitialDeclaration : Located {
@@ -220,9 +227,9 @@ struct Equation : Located {
   friend bool operator==(Equation const&, Equation const&) = default;
 };
 
-using ModelStatement =
-    std::variant<TimeDeclaration, DiscreteTimeDeclaration, InputDeclaration, StateDeclaration, InitialDeclaration,
-                 ParameterDeclaration, Definition, FunctionDefinition, ProcessDefinition, Observation, Part, Equation>;
+using ModelStatement = std::variant<TimeDeclaration, DiscreteTimeDeclaration, InputDeclaration, StateDeclaration,
+                                    DisturbanceDeclaration, InitialDeclaration, ParameterDeclaration, Definition,
+                                    FunctionDefinition, ProcessDefinition, Observation, Part, Equation>;
 
 /// `n`, `n = 2`: an argument of a model, a whole number known when the model is used.
 struct ModelArgument : Located {
@@ -265,11 +272,13 @@ struct DataRate : Located {
   Expression value;
   friend bool operator==(DataRate const&, DataRate const&) = default;
 };
-/// `input x = force [N] hold zero_order`; the rule must be given (its absence is refused by the checker).
+/// `input x = force [N] hold zero_order error normal(sd = 0.5)`; the rule must be given (its absence is refused by the checker),
+/// the error where the column has one.
 struct DataInput : Located {
   Name input;
   Column column;
   std::optional<Name> rule;
+  std::optional<Call> error;
   friend bool operator==(DataInput const&, DataInput const&) = default;
 };
 /// `measure displacement = y_noisy [mm]`.

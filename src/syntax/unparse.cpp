@@ -11,7 +11,9 @@ namespace {
 
 using sysid::text_of;  // beside those below
 
-std::string text_of(ast::InitialValue const& value) { return fmt::format("{} = {}", text_of(value.state), unparse(value.value)); }
+std::string text_of(ast::InitialValue const& value) {
+  return text_of(value.state) + (value.law ? " ~ " + text_of(*value.law) : value.value ? " = " + unparse(*value.value) : "");
+}
 
 std::string text_of(ast::Option const& option) {
   std::string const key = option.key ? option.key->text + " = " : "";
@@ -58,6 +60,9 @@ struct ModelStatementText {
   }
   std::string operator()(ast::InputDeclaration const& s) const { return "input " + comma_list(s.names); }
   std::string operator()(ast::StateDeclaration const& s) const { return "state " + comma_list(s.names); }
+  std::string operator()(ast::DisturbanceDeclaration const& s) const {
+    return fmt::format("disturbance {} ~ {}", text_of(s.name), text_of(s.law));
+  }
   std::string operator()(ast::InitialDeclaration const& s) const { return "initial " + comma_list(s.values); }
   std::string operator()(ast::ParameterDeclaration const& s) const {
     std::string const prior = s.prior ? " ~ " + text_of(*s.prior) : "";
@@ -85,7 +90,8 @@ struct DataStatementText {
   std::string operator()(ast::DataTime const& s) const { return "time " + text_of(s.column); }
   std::string operator()(ast::DataRate const& s) const { return (s.step ? "step " : "rate ") + unparse(s.value); }
   std::string operator()(ast::DataInput const& s) const {
-    return fmt::format("input {} = {}{}", s.input.text, text_of(s.column), s.rule ? " hold " + s.rule->text : "");
+    return fmt::format("input {} = {}{}{}", s.input.text, text_of(s.column), s.rule ? " hold " + s.rule->text : "",
+                       s.error ? " error " + text_of(*s.error) : "");
   }
   std::string operator()(ast::DataMeasure const& s) const {
     return fmt::format("measure {} = {}", s.channel.text, text_of(s.column));

@@ -31,14 +31,14 @@ inline constexpr std::array<std::string_view, 3> prepositions{"to", "on", "from"
 inline constexpr std::array<std::string_view, 2> task_words{"with", "input"};
 
 /// First words of the statements of a model; anything else there is an equation.
-inline constexpr std::array<std::string_view, 11> model_statements{"time", "input",  "state",    "initial", "parameter", "constant",
-                                                                   "let",  "derive", "function", "observe", "part"};
+inline constexpr std::array<std::string_view, 12> model_statements{
+    "time", "input", "state", "disturbance", "initial", "parameter", "constant", "let", "derive", "function", "observe", "part"};
 /// Words inside them.
 inline constexpr std::array<std::string_view, 3> model_words{"discrete", "per", "experiment"};
 /// First words of the statements of a data block, and the words inside them.
 inline constexpr std::array<std::string_view, 8> data_statements{"file",  "time",    "rate",     "step",
                                                                  "input", "measure", "constant", "split"};
-inline constexpr std::array<std::string_view, 2> data_words{"hold", "rows"};
+inline constexpr std::array<std::string_view, 3> data_words{"hold", "error", "rows"};
 /// Of a set of candidate models: what begins a statement that is no candidate, and what follows a candidate.
 inline constexpr std::array<std::string_view, 2> candidate_words{"shared", "probability"};
 /// First words of the statements of a dictionary.

@@ -45,10 +45,16 @@ class Relations {
   std::vector<Relation> operator()(ast::Part const&) const { return {}; }
   std::vector<Relation> operator()(ast::InitialDeclaration const& declaration) const {
     std::vector<Relation> out;
-    for (ast::InitialValue const& each : declaration.values)
-      out.push_back(
-          {to_.row({formula_(each.state), to_.fenced(Fence::parentheses, to_.digits("0"))}), Sign::equal, formula_(each.value)});
+    for (ast::InitialValue const& each : declaration.values) {
+      std::string const left = to_.row({formula_(each.state), to_.fenced(Fence::parentheses, to_.digits("0"))});
+      if (each.law) out.push_back({left, Sign::distributed, formula_.distribution(*each.law)});
+      if (each.value) out.push_back({left, Sign::equal, formula_(*each.value)});
+    }
     return out;
+  }
+  std::vector<Relation> operator()(ast::DisturbanceDeclaration const& disturbance) const {
+    return {{formula_.name(disturbance.name.name.text), Sign::distributed,
+             with_unit(formula_.distribution(disturbance.law), disturbance.name.unit)}};
   }
   std::vector<Relation> operator()(ast::ParameterDeclaration const& parameter) const {
     std::string const left = formula_.name(parameter.name.name.text);

@@ -152,7 +152,8 @@ struct Planter {
     } else if (auto const* states = std::get_if<ast::StateDeclaration>(&any)) {
       for (ast::Declared const& each : states->names) declared(each, each.span);
     } else if (auto const* initial = std::get_if<ast::InitialDeclaration>(&any)) {
-      for (ast::InitialValue const& each : initial->values) plant(each.value, {each.value.span, "", ""});
+      for (ast::InitialValue const& each : initial->values)
+        if (each.value) plant(*each.value, {each.value->span, "", ""});
     } else if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&any)) {
       declared(parameter->name, parameter->span);
       if (!parameter->name.unit) return;  // unchecked

@@ -93,7 +93,7 @@ TEST_CASE("Stan gives exported programs the log density that we do") {
     // What was recorded is of these programs: after a change of them fixtures/make_stan.py asks Stan again.
     CHECK(sha256(without_head(program.program)) == recorded.at("program_sha256"));
     CHECK(sha256(program.data) == recorded.at("data_sha256"));
-    auto const compiled = opened.session().compiled(fit.model, false, fit.solver.method, fit.prediction);
+    auto const compiled = opened.session().compiled(fit, false, fit.solver.method, fit.prediction);
     auto const space = parameter_space(compiled->model, fit.experiments);
     auto const data = load_experiments(opened.session(), fit.experiments, compiled->model, fit.start, fit.prediction);
     auto const target = make_fit_target(opened.session(), fit, compiled, space, experiments_of(data), fit.solver,

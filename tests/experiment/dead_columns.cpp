@@ -155,5 +155,5 @@ TEST_CASE("simulations that fail without an input are not blamed on the unit of 
       std::find_if(findings.begin(), findings.end(), [](Finding const& each) { return each.code == FindingCode::prior_fails; });
   REQUIRE(failing != findings.end());
   CHECK(failing->help ==
-        "check the named expression (can it be a noise sd of 0?), the priors, and the unit of time in the data block");
+        "check the named expression (for example for a noise sd of 0), the priors, and the unit of time in the data block");
 }

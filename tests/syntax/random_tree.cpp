@@ -65,7 +65,7 @@ ast::Call RandomTree::call(int depth) {
 }
 
 ast::Expression RandomTree::expression(int depth) {
-  switch (depth <= 0 ? random_.below(3) : random_.below(12)) {
+  switch (depth <= 0 ? random_.below(3) : random_.below(13)) {
     case 0:
       return {{}, number(depth)};
     case 1:
@@ -102,6 +102,8 @@ ast::FunctionDefinition RandomTree::function() {
 ast::ModelStatement RandomTree::model_statement() {
   constexpr std::array kinds{ast::DefinitionKind::constant, ast::DefinitionKind::local, ast::DefinitionKind::derived};
   switch (random_.below(12)) {
+    case 12:
+      return ast::DisturbanceDeclaration{{}, declared(), call(2)};
     case 11:
       return ast::ProcessDefinition{{}, name(), several(1, [&] { return name(); }), call(2)};
     case 9:
@@ -115,7 +117,14 @@ ast::ModelStatement RandomTree::model_statement() {
     case 2:
       return ast::StateDeclaration{{}, several(1, [&] { return declared(); })};
     case 3:
-      return ast::InitialDeclaration{{}, several(1, [&] { return ast::InitialValue{{}, reference(), expression(2)}; })};
+      return ast::InitialDeclaration{{}, several(1, [&] {
+                                       ast::InitialValue value{{}, reference(), {}, {}};
+                                       if (random_.chance(3))
+                                         value.law = call(2);
+                                       else
+                                         value.value = expression(2);
+                                       return value;
+                                     })};
     case 4: {
       ast::ParameterDeclaration out{{}, declared(), {}, {}};
       out.name.per_experiment = random_.chance(3);
@@ -147,7 +156,7 @@ ast::DataStatement RandomTree::data_statement() {
     case 2:
       return ast::DataRate{{}, random_.chance(2), expression(2)};
     case 3:
-      return ast::DataInput{{}, name(), column(), perhaps([&] { return name(); })};
+      return ast::DataInput{{}, name(), column(), perhaps([&] { return name(); }), perhaps([&] { return call(2); })};
     case 4:
       return ast::DataMeasure{{}, name(), column()};
     default:

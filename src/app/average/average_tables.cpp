@@ -34,7 +34,7 @@ std::string log_score_caption(AveragedChannel const& channel) {
   std::string caption = "log score: mean over the samples of the log predictive density [nats], higher is better";
   bool impossible = std::isinf(channel.average.log_score);
   for (AverageScores const& each : channel.members) impossible = impossible || std::isinf(each.log_score);
-  if (impossible) caption += "\n-infinity: some sample is impossible by all draws";
+  if (impossible) caption += "\n-infinity: the density of some sample is zero under all draws";
   return caption;
 }
 
@@ -61,7 +61,7 @@ void add_average_tables(AverageReport const& average, std::vector<std::string> c
   }
   if (average.shares.empty()) return;
   ReportTable table{"Where the variance comes from",
-                    "mean over the record; sd: its root, with the noise of channels",
+                    "averages over the record; sd: root of the average variance, with the noise of channels",
                     {"quantity", "sd", "parameter [%]", "model [%]", "noise [%]"},
                     {}};
   bool several = false, without = false;

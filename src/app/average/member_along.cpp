@@ -134,7 +134,7 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
   for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
     TrajectoryQuantity const& from = trajectory.quantities()[q];
     bool const is_channel = from.channel >= 0;
-    MemberQuantity quantity{from.name, from.unit, is_channel, true, std::move(result.values[q]), {}, {}, {}, {}};
+    MemberQuantity quantity{from.name, from.unit, is_channel, true, result.drawn(q), {}, {}, {}, {}};
     Quantity const* const own = quantity_of(member.model(), from.name, is_channel);
     Quantity const* to = quantity_of(units, from.name, is_channel);
     quantity.comparable = to != nullptr && comparable(*own, *to);

@@ -17,12 +17,12 @@ namespace {
 UserError without_weight(std::string const& fit, AverageWeights by, std::string const& reason) {
   return UserError({Severity::error,
                     "E6704",
-                    fmt::format("`{}` cannot be weighed by {}: {}", fit, title(by), reason),
+                    fmt::format("`{}` cannot be given a weight by {}: {}", fit, title(by), reason),
                     std::nullopt,
                     {},
                     by == AverageWeights::evidence
-                        ? "write `weights = stacking`, or `weights = equal`, which needs nothing of the fits"
-                        : "write `weights = evidence`, or `weights = equal`, which needs nothing of the fits"});
+                        ? "write `weights = stacking`, or `weights = equal`, which needs neither evidences nor scores"
+                        : "write `weights = evidence`, or `weights = equal`, which needs neither evidences nor scores"});
 }
 
 /// From the names of results to those of the fits.
@@ -44,9 +44,11 @@ void weigh_by_evidence(Comparison const& comparison, Names const& names, MemberW
         {FindingCode::weights_not_confirmed,
          Severity::warning,
          {member.fit},
-         fmt::format("the evidence of `{}`, by which it is weighed, is not confirmed: {}", member.fit,
-                     fit.rough ? fmt::format("{} give a log evidence that differs by {:.1f}",
-                                             fit.rough_by_draws ? "weighted draws" : "the axes of its modes", *fit.rough)
+         fmt::format("the evidence of `{}`, which determines its weight, is not confirmed: {}", member.fit,
+                     fit.rough ? fmt::format("{} gives a log evidence that differs by {:.1f}",
+                                             fit.rough_by_draws ? "the estimate by weighted draws"
+                                                                : "integration along the axes of its modes",
+                                             *fit.rough)
                                : fit.not_confirmed),
          "compute it by draws in the fit, `evidence = importance`, `bridge` or `smc`; or write `weights = stacking`"});
   }
@@ -71,13 +73,14 @@ void weigh_by_scores(Comparison const& comparison, Names const& names, AverageWe
     }
     member.weight = by == AverageWeights::stacking ? score->stacking : score->pseudo_bma;
     if (score->doubtful == 0 || comparison.scores.future) continue;
-    out.findings.push_back({FindingCode::weights_not_confirmed,
-                            Severity::warning,
-                            {member.fit},
-                            fmt::format("the scores of `{}`, by which it is weighed, are not reliable: {} samples have a Pareto k "
-                                        "above 0.7",
-                                        member.fit, score->doubtful),
-                            "read the verdict of the fit; or write `weights = evidence`"});
+    out.findings.push_back(
+        {FindingCode::weights_not_confirmed,
+         Severity::warning,
+         {member.fit},
+         fmt::format("the scores of `{}`, which determine its weight, are not reliable: {} samples have a Pareto k "
+                     "above 0.7",
+                     member.fit, score->doubtful),
+         "check these samples of the fit in its `pointwise.csv` (often outliers); or write `weights = evidence`"});
   }
 }
 
@@ -85,7 +88,7 @@ void weigh_by_scores(Comparison const& comparison, Names const& names, AverageWe
 void finish(AverageWeights by, MemberWeights& out) {
   double sum = 0;
   for (AveragedMember const& member : out.members) sum += member.weight;
-  if (!(sum > 0)) throw without_weight(out.members.front().fit, by, "every fit gives some sample no density at all");
+  if (!(sum > 0)) throw without_weight(out.members.front().fit, by, "under every fit the density of some sample is zero");
   std::vector<std::string> shares, fits;
   for (AveragedMember& member : out.members) {
     member.weight /= sum;

@@ -146,12 +146,13 @@ class PredictAverage {
   void add_kinds(Report& report) const {
     if (!two_kinds()) return;
     report.prediction_rule = mixed_kinds;
-    report.findings.push_back({FindingCode::averaged_over_models,
-                               Severity::note,
-                               {},
-                               fmt::format("predictions of two kinds are averaged: {} from measured past samples, {} in free run",
-                                           fmt::join(of_kind(true), ", "), fmt::join(of_kind(false), ", ")),
-                               "to compare models, predict all alike, with `prediction = one_step` or `free_run`"});
+    report.findings.push_back(
+        {FindingCode::averaged_over_models,
+         Severity::note,
+         {},
+         fmt::format("predictions of two kinds are averaged: {} from measured past samples, {} in free run",
+                     fmt::join(of_kind(true), ", "), fmt::join(of_kind(false), ", ")),
+         "to compare models, predict with all of them in the same way: `prediction = one_step` or `free_run`"});
   }
 
   void add_optimum(std::size_t k, Report& report) const {
@@ -234,7 +235,7 @@ class PredictAverage {
                      {band.average.name, along.experiment},
                      fmt::format("{}{} is undefined along every trajectory at {} of {} rows; {}", band.average.name,
                                  several() ? " on " + along.experiment : std::string(), undefined, rows,
-                                 weights_[k] < negligible_weight ? "the average there is of the other fits"
+                                 weights_[k] < negligible_weight ? "the average there is that of the other fits"
                                                                  : "the average has no value there"),
                      "check for a root or a logarithm of a negative number, or a division by zero"},
                     report);

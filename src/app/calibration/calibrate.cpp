@@ -232,13 +232,14 @@ std::optional<Diagnostic> too_few_draws(Task const& task, FitTask const& what) {
   std::int64_t const kept = (what.settings.integer("samples") - what.settings.integer("burn_in")) / what.settings.integer("thin") *
                             what.settings.integer("chains");
   if (kept >= CalibrationPlan().draws) return std::nullopt;
-  return Diagnostic{Severity::error,
-                    "E6210",
-                    fmt::format("`{}` cannot be calibrated: it keeps {} draws, and a true value is ranked among {}", task.name,
-                                kept, CalibrationPlan().draws),
-                    Label{task.span, {}},
-                    {},
-                    "take more samples, or a smaller `thin`"};
+  return Diagnostic{
+      Severity::error,
+      "E6210",
+      fmt::format("`{}` cannot be calibrated: it keeps {} draws, fewer than the {} among which a true value is ranked", task.name,
+                  kept, CalibrationPlan().draws),
+      Label{task.span, {}},
+      {},
+      "take more samples, or a smaller `thin`"};
 }
 
 /// Those that can be calibrated: of all of the file the others are skipped with a notice, one that is named alone is refused.

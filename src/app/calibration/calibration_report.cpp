@@ -30,10 +30,10 @@ ReportTable quantity_table(CalibrationReport const& calibration) {
       "calibration",
       fmt::format(
           "Over {} records: how many percent of the true values lie inside the central 50, 90 and 95 % of their posteriors, ± "
-          "what chance leaves of the stated share; mean and sd of z = (posterior mean - true value)/posterior sd, 0 and 1 "
-          "where the posterior is normal; contraction, the part of the prior variance that the data remove; p of the ranks "
-          "being uniform, by the distribution of all ranks (Säilynoja et al. 2022) and by chi-square in {} groups; the last "
-          "is the smaller one for all tests together (Bonferroni).",
+          "the standard error that chance alone gives; mean and sd of z = (posterior mean - true value)/posterior sd, which are 0 "
+          "and 1 where the posterior is normal; contraction, the part of the prior variance that the data remove; p-values of the "
+          "test that the ranks are uniform, by the distribution of all ranks (Säilynoja et al. 2022) and by chi-square in {} "
+          "groups; the last column is the smaller one, corrected for all tests together (Bonferroni).",
           n, calibration.bins),
       {"quantity", "50 %", "90 %", "95 %", "mean z", "sd z", "contraction", "p ECDF", "p chi-square", "p together"},
       {}};
@@ -48,8 +48,8 @@ ReportTable quantity_table(CalibrationReport const& calibration) {
 ReportTable check_table(CalibrationReport const& calibration) {
   ReportTable table{
       "checks of the fits",
-      "In how many of the fits each check of the fit fired. The records are made by the model itself, so that checks of "
-      "the model and of the record fire by chance alone.",
+      "In how many fits each check had a finding. The records are simulated with the model itself, so a finding about the "
+      "model or the record is a false alarm.",
       {"check", "failed in", "warned in", "of"},
       {}};
   for (FiredCheck const& each : calibration.checks)
@@ -77,8 +77,9 @@ std::string headline(CalibrationReport const& calibration, Findings const& findi
                                                       : fmt::format("all {} quantities", calibration.quantities.size()));
   std::string const found = fmt::format("nothing found in {} records: {}", n, words);
   if (!verdict.pass) return fmt::format("not known: {}, but too many records have no fit", words);
-  return n < few_records ? found + "; so few records can reveal only gross errors"
-                         : fmt::format("{}; an sd too small by {} % would probably have shown", found, shown_percent(n));
+  return n < few_records
+             ? found + "; so few records can reveal only gross errors"
+             : fmt::format("{}; an sd that is too small by {} % would probably have been detected", found, shown_percent(n));
 }
 
 }  // namespace

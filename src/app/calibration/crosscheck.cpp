@@ -69,8 +69,8 @@ std::string to_error(double value, double error) {
 ReportTable number_table(std::vector<ComparedNumber> const& numbers, std::string const& first, std::string const& second,
                          bool with_optimum) {
   ReportTable table{"both back ends",
-                    with_optimum ? "z: the difference in fifths of the posterior sd, below which it hardly matters."
-                                 : "z: the difference over its Monte Carlo standard error.",
+                    with_optimum ? "z: the difference divided by a fifth of the posterior sd; below 1 it hardly matters."
+                                 : "z: the difference divided by its Monte Carlo standard error.",
                     {"quantity", "unit", "", first, second, "error", "z"},
                     {}};
   for (ComparedNumber const& each : numbers)
@@ -103,7 +103,7 @@ class Crosscheck {
   ExitCode run() {
     auto const began = std::chrono::steady_clock::now();
     if (!left_out_.empty())
-      session_.notices << fmt::format("{}: `search = {}` is left out: both fits search everywhere\n", task_.name, left_out_);
+      session_.notices << fmt::format("{}: `search = {}` is ignored: both fits search everywhere\n", task_.name, left_out_);
     std::uint64_t const seed = session_.seed(task_, own_.seed);
     std::optional<UnkeptFit> first, second;
     try {

@@ -10,6 +10,7 @@
 #include "app/session/fit_target.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/system/interrupt.hpp"
+#include "likelihood/drawn_disturbances.hpp"
 #include "likelihood/trajectory.hpp"
 #include "model/lags.hpp"
 
@@ -94,13 +95,14 @@ std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task cons
   if (!session.file.models[static_cast<std::size_t>(what.model)].processes.empty())
     return refused(
         task,
-        fmt::format("`{}` cannot be calibrated: records of Gaussian processes that are integrated out cannot be made yet",
-                    task.name),
+        fmt::format(
+            "`{}` cannot be calibrated: records of models with a Gaussian process that is integrated out cannot be simulated yet",
+            task.name),
         "calibrate a fit of the same model without `gp(...)`, or with a function that is estimated as a finite sum");
   if (Parameter const* improper = session.file.models[static_cast<std::size_t>(what.model)].improper())
     return refused(
         task,
-        fmt::format("`{}` cannot be calibrated: records are made from draws of the prior, which needs proper priors, but "
+        fmt::format("`{}` cannot be calibrated: records are simulated from draws of the prior, which needs proper priors, but "
                     "the prior of `{}` is {}",
                     task.name, improper->name, improper->prior->row->name),
         fmt::format("give `{}` a wide but proper prior", improper->name));
@@ -112,9 +114,9 @@ std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task cons
         if (input.column == measured.column)
           return refused(
               task,
-              fmt::format("`{}` cannot be calibrated: `{}` reads the column `{}` both as an input and as what is measured",
+              fmt::format("`{}` cannot be calibrated: `{}` reads the column `{}` both as an input and as a measured channel",
                           task.name, block.name, input.column),
-              "let the model read measured samples by `lag(measured(...), 1)`, so that made ones are read");
+              "write `lag(measured(...), 1)` in the model instead of the input, so that simulated samples are used");
   }
   // A made sample belongs to one experiment.
   std::set<std::pair<int, std::size_t>> taken;
@@ -123,9 +125,9 @@ std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task cons
       std::size_t const row = i + static_cast<std::size_t>(each.experiment.first_row);
       if (each.experiment.scored[i] != 0 && !taken.insert({each.use.data, row}).second)
         return refused(task,
-                       fmt::format("`{}` cannot be calibrated: two of its experiments have row {} of `{}`", task.name, row,
+                       fmt::format("`{}` cannot be calibrated: two of its experiments score row {} of `{}`", task.name, row,
                                    session.file.data[static_cast<std::size_t>(each.use.data)].name),
-                       "fit to parts without common rows");
+                       "fit to ranges without common rows");
     }
   // It would be made in one experiment, and as it was measured in the other.
   Model const& written = session.file.models[static_cast<std::size_t>(what.model)];
@@ -135,10 +137,10 @@ std::optional<Diagnostic> RecordMaker::refusal(Session const& session, Task cons
       if (row > 0 && taken.contains({each.use.data, static_cast<std::size_t>(row)}))
         return refused(
             task,
-            fmt::format("`{}` cannot be calibrated: `{}` reads row {} without scoring it, which another of its experiments "
-                        "scores",
+            fmt::format("`{}` cannot be calibrated: `{}` reads row {} without scoring it, but another of its experiments "
+                        "scores this row",
                         task.name, each.experiment.name, row),
-            "fit to parts that lie further apart, or to one of them alone");
+            "fit to ranges that lie further apart, or to one of them alone");
   return std::nullopt;
 }
 
@@ -146,7 +148,7 @@ RecordMaker::RecordMaker(Session& session, FitTask const& what, std::vector<Expe
     : session_(session),
       what_(what),
       data_(data),
-      compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
+      compiled_(session.compiled(what, what.solver.method)),
       space_(parameter_space(compiled_->model, what.experiments)) {}
 
 std::optional<MadeRecords> RecordMaker::make(std::uint64_t seed) const {
@@ -207,11 +209,18 @@ std::optional<std::vector<std::vector<double>>> RecordMaker::samples(int e, Cons
 
 std::optional<std::vector<std::vector<double>>> RecordMaker::samples(Experiment experiment, ConstLanes parameters, StreamKey noise,
                                                                      bool& settled) const {
-  Model const& model = compiled_->model;
+  std::shared_ptr<CompiledModel const> compiled = compiled_;
+  if (compiled_->model.filtered()) {
+    DrawnDisturbances drawn =
+        draw_disturbances(compiled_->model, parameters, std::move(experiment), {noise.seed, Purpose::disturbance, noise.index, 0});
+    experiment = std::move(drawn.experiment);
+    compiled = compile(std::move(drawn.model), compiled_->free_start, what_.solver.method);
+  }
+  Model const& model = compiled->model;
   SolverSettings solver = what_.solver;
   bool const refine = model.integrated() && !solver.as_model && !solver.row().exact;
   auto const trajectory_of = [&](SolverSettings const& with) {
-    return Trajectory(compiled_, experiment, with, start_rows(what_.start), session_.abandonable());
+    return Trajectory(compiled, experiment, with, start_rows(what_.start), session_.abandonable());
   };
   Trajectory::Result result = trajectory_of(solver).run(parameters, noise);
   bool fine_enough = !refine;

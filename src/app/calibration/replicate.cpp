@@ -66,8 +66,7 @@ std::vector<double> log_likelihoods(Draws const& draws) {
 }  // namespace
 
 std::vector<QuantityName> ranked_quantities(Session& session, CalibrationPlan const& plan) {
-  auto const compiled = session.compiled(plan.what.model, plan.what.start.kind == StartRule::Kind::estimated,
-                                         plan.what.solver.method, plan.what.prediction);
+  auto const compiled = session.compiled(plan.what, plan.what.solver.method);
   std::vector<QuantityName> quantities;
   auto const space = parameter_space(compiled->model, plan.what.experiments);
   for (ParameterInfo const& each : space->infos())
@@ -134,7 +133,7 @@ void Replicator::fit(MadeRecords const& made, Replication& replication) {
   }
   bool const optimum = is_optimum(*plan_.backend);
   if (!optimum && report.draws.total() < static_cast<std::size_t>(plan_.draws)) {
-    replication.failure = "there are fewer draws than ranks";
+    replication.failure = "the fit kept too few draws to rank the true values";
     return;
   }
   // Of no rank, which NaN would have too: it is below nothing.

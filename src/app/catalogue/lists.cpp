@@ -14,6 +14,7 @@
 #include "gaussian_process/kernel.hpp"
 #include "inference/table.hpp"
 #include "load/modules.hpp"
+#include "model/disturbance_law.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"
 #include "solver/solver.hpp"
@@ -60,6 +61,12 @@ std::string list_distributions() {
   return text;
 }
 
+std::string list_disturbances() {
+  std::string text;
+  for (DisturbanceLawRow const& row : disturbance_laws()) text += fmt::format("{:<38} {}\n", row.usage, row.summary);
+  return text + fmt::format("{:<38} {}\n", "normal(0, sd = s)", "in discrete time: samples that are independent of each other");
+}
+
 std::string list_kernels() {
   std::string text;
   for (auto const& row : gaussian_process::kernels()) text += fmt::format("{:<68} {}\n", signature(row), row.summary);
@@ -96,10 +103,10 @@ std::string list_modules() {
   return text;
 }
 
-constexpr ListRow lists_by_topic[] = {{"functions", &list_functions}, {"distributions", &list_distributions},
-                                      {"kernels", &list_kernels},     {"backends", &list_backends},
-                                      {"discovery", &list_discovery}, {"solvers", &list_solvers},
-                                      {"modules", &list_modules}};
+constexpr ListRow lists_by_topic[] = {{"functions", &list_functions},       {"distributions", &list_distributions},
+                                      {"disturbances", &list_disturbances}, {"kernels", &list_kernels},
+                                      {"backends", &list_backends},         {"discovery", &list_discovery},
+                                      {"solvers", &list_solvers},           {"modules", &list_modules}};
 
 }  // namespace
 

@@ -72,6 +72,8 @@ std::vector<Row> rows_of(ast::Model const& model) {
       add(parameter->name, "parameter",
           parameter->prior ? "~ " + unparse(ast::Expression{{}, ast::Box<ast::Call>(*parameter->prior)})
                            : "= " + unparse(*parameter->value));
+    } else if (auto const* disturbance = std::get_if<ast::DisturbanceDeclaration>(&statement)) {
+      add(disturbance->name, "disturbance", "~ " + unparse(ast::Expression{{}, ast::Box<ast::Call>(disturbance->law)}));
     } else if (auto const* definition = std::get_if<ast::Definition>(&statement)) {
       if (definition->kind == ast::DefinitionKind::derived) add(definition->name, "derived");
     } else if (auto const* observation = std::get_if<ast::Observation>(&statement)) {

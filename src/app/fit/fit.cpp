@@ -280,6 +280,8 @@ class Fit {
     }
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);
     for (FittedRows& rows : finished.rows) report.predictions.push_back(std::move(rows.prediction));
+    for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
+      if (auto states = likelihood_->states(report.draws, e)) report.states.push_back(std::move(*states));
     report.modes = result.modes;
     for (ParameterInfo const& each : target.parameters()) report.sampled_names.push_back(each.name);
     add_settings(result.settings, report);

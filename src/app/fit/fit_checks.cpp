@@ -12,6 +12,7 @@
 #include "diagnostics/input_checks.hpp"
 #include "diagnostics/model_checks.hpp"
 #include "diagnostics/prior_checks.hpp"
+#include "model/linear_states.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 
@@ -102,6 +103,22 @@ Findings solver_accuracy(FinishedFit& fit) {
   return tolerance_findings(check, preparation.solver, fit.what.refine_solver);
 }
 
+std::string without_linearisation(FinishedFit const& fit) {
+  Model const& model = fit.likelihood.model();
+  if (fit.what.filter != FilterRule::automatic && fit.what.filter != FilterRule::extended)
+    return fmt::format("the filter is `{}`", filter_name(fit.what.filter));
+  return find_nonlinear_in_states(model) ? "" : "the model is linear in its states, so that the filter is exact";
+}
+
+Findings linearisation(FinishedFit& fit) {
+  auto const other = fit.likelihood.with_filter(FilterRule::unscented, experiments_of(fit.data), fit.preparation.solver,
+                                                fit.session.interruptible());
+  SolverCheck const check = fit.result.draws.total() > 1
+                                ? check_draws(fit.target, *other, fit.result.draws, fit.preparation.modes, fit.seed, fit.extra)
+                                : check_modes(*other, fit.objective_kind, fit.preparation.modes, fit.seed, fit.extra);
+  return linearisation_findings(check);
+}
+
 std::string without_finite_sums(FinishedFit const& fit) {
   return fit.likelihood.model().expansions.empty() ? "the model has no unknown function that is approximated by a finite sum" : "";
 }
@@ -149,6 +166,7 @@ constexpr FitCheckRow rows[] = {
     {"residuals", false, &always, &residuals},
     {"input_timing", false, &without_timing, &input_timing},
     {"solver_accuracy", false, &without_solver, &solver_accuracy},
+    {"linearisation", false, &without_linearisation, &linearisation, true},
     {"finite_sums", false, &without_finite_sums, &functions},
     {"hierarchy", false, &without_hierarchy, &hierarchy},
     {"failed_solves", true, &always, &failed_solves},
@@ -164,6 +182,7 @@ std::span<FitCheckRow const> fit_check_rows() { return rows; }
 
 void run_fit_checks(FinishedFit& fit) {
   for (FitCheckRow const& row : rows) {
+    if (row.of_filters && !fit.likelihood.model().filtered()) continue;
     std::string const skipped = fit.result.interrupted && !row.of_interrupted ? "the fit was interrupted" : row.inapplicable(fit);
     fit.report.checks.push_back({std::string(row.name), skipped});
     if (!skipped.empty() || row.run == nullptr) continue;

@@ -39,6 +39,8 @@ struct FitCheckRow {
   std::string (*inapplicable)(FinishedFit const& fit);
   /// Null: it ran before the search, and its findings are among those of the search.
   Findings (*run)(FinishedFit& fit);
+  /// Of models with random states alone: no other fit mentions it.
+  bool of_filters = false;
 };
 
 /// In the order in which their findings are reported.

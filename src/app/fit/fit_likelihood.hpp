@@ -2,6 +2,7 @@
 // and the checks are the same (fit.cpp, fit_checks.cpp).
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "app/session/session.hpp"
@@ -42,6 +43,11 @@ class FitLikelihood {
   /// solver: of the task's method, or of any other to try.
   virtual std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                               ExecutionOptions const& execution) const = 0;
+  /// The same with another filter of random states; null where none has one.
+  virtual std::unique_ptr<Target> with_filter(FilterRule, std::vector<Experiment>, SolverSettings const&,
+                                              ExecutionOptions const&) const {
+    return nullptr;
+  }
   /// Log densities of the samples of these experiments that are scored, one series for each experiment and channel, with these
   /// values of the sampled parameters, declared; empty where samples are not independent given the trajectory.
   virtual std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,
@@ -65,6 +71,8 @@ class FitLikelihood {
   virtual Findings check_ranges(std::vector<double> const& sampled, SolverSettings const& solver) const = 0;
   /// Bands along an experiment, constraints and values that are undefined there. Restoring forces are added to `forces`.
   virtual FittedRows fitted_rows(Draws const& draws, int experiment, std::vector<RestoringForce>& forces) const = 0;
+  /// Random states and disturbances along an experiment, given all its samples; nothing where states are known.
+  virtual std::optional<Prediction> states(Draws const& draws, int experiment) const = 0;
   /// What the report's settings hold beside those of every fit.
   virtual Facts settings() const = 0;
 };

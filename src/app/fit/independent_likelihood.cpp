@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "app/fit/fit_likelihood.hpp"
+#include "app/fit/smoothed_states.hpp"
 #include "app/process/unknown_functions.hpp"
 #include "app/session/derived_draws.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
+#include "core/system/lazily.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
@@ -25,7 +27,7 @@ class IndependentLikelihood : public FitLikelihood {
         what_(what),
         data_(data),
         seed_(seed),
-        compiled_(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
+        compiled_(session.compiled(what, what.solver.method)),
         declared_(parameter_space(compiled_->model, what.experiments)),
         space_(declared_) {}
 
@@ -57,6 +59,14 @@ class IndependentLikelihood : public FitLikelihood {
   std::unique_ptr<Target> make_target(std::vector<Experiment> experiments, SolverSettings const& solver,
                                       ExecutionOptions const& execution) const override {
     return make_fit_target(session_, what_, compiled_for(solver), space_, std::move(experiments), solver, execution);
+  }
+
+  std::unique_ptr<Target> with_filter(FilterRule filter, std::vector<Experiment> experiments, SolverSettings const& solver,
+                                      ExecutionOptions const& execution) const override {
+    FitTask other = what_;
+    other.filter = filter;
+    return make_fit_target(session_, what_, session_.compiled(other, solver.method), space_, std::move(experiments), solver,
+                           execution);
   }
 
   std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,
@@ -137,12 +147,21 @@ class IndependentLikelihood : public FitLikelihood {
     return rows;
   }
 
+  std::optional<Prediction> states(Draws const& draws, int e) const override {
+    if (!model().filtered()) return std::nullopt;
+    auto const& smoothing = smoothing_.get([&] { return compile_smoothing(compiled_); });
+    LaneArray const columns = spread(draws, 100);
+    LaneArray parameters(static_cast<int>(model().parameters.size()), columns.width());
+    space_->select(space_->values_of_declared(columns), e, parameters);
+    return smoothed_states(smoothing, experiment(e), solver_, start_rows(what_.start), session_.interruptible(), parameters);
+  }
+
   Facts settings() const override { return {}; }
 
  private:
   std::shared_ptr<CompiledModel const> compiled_for(SolverSettings const& solver) const {
     if (solver.method == what_.solver.method) return compiled_;
-    return session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, solver.method, what_.prediction);
+    return session_.compiled(what_, solver.method);
   }
 
   Experiment const& experiment(int e) const { return data_[static_cast<std::size_t>(e)].experiment; }
@@ -167,6 +186,7 @@ class IndependentLikelihood : public FitLikelihood {
   std::shared_ptr<ParameterSpace const> declared_, space_;
   SolverSettings solver_;
   std::unique_ptr<ModelTarget> target_;
+  Lazily<std::shared_ptr<SmoothingProgram const>> smoothing_;
 };
 
 }  // namespace

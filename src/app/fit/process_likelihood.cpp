@@ -118,6 +118,8 @@ class ProcessLikelihood : public FitLikelihood {
     return rows;
   }
 
+  std::optional<Prediction> states(Draws const&, int) const override { return std::nullopt; }
+
   Facts settings() const override {
     auto const marginalised = model_->marginalised();
     if (marginalised.empty()) return {};

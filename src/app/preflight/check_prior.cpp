@@ -101,7 +101,7 @@ void check_failures(Preflight const& preflight) {
   if (page.failed == page.draws)
     preflight.add(FindingCode::prior_fails, Severity::error, {},
                   fmt::format("all {} prior draws fail: the simulation or its likelihood is not finite", page.draws),
-                  fmt::format("check the named expression (can it be a noise sd of 0?), the priors, {}",
+                  fmt::format("check the named expression (for example for a noise sd of 0), the priors, {}",
                               units_that_scale(preflight.model())));
   else if (share > many_failures)
     preflight.add(

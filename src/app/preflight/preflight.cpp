@@ -74,7 +74,7 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
     : session(session),
       what(what),
       page(page),
-      compiled(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, what.solver.method, what.prediction)),
+      compiled(session.compiled(what, what.solver.method)),
       space(parameter_space(compiled->model, what.experiments)),
       sticking(sticking_advice(compiled->model, data)) {
   std::size_t longest = 0;
@@ -110,8 +110,7 @@ Output const* Preflight::output_on_jumps() const {
   if (!jumps_) return nullptr;
   return &on_jumps_.get([&] {
     SolverSettings const adaptive{.method = std::string(adaptive_solver().name), .relative = smooth_enough};
-    return output_of(session.compiled(what.model, what.start.kind == StartRule::Kind::estimated, adaptive.method, what.prediction),
-                     adaptive);
+    return output_of(session.compiled(what, adaptive.method), adaptive);
   });
 }
 

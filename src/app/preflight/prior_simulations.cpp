@@ -46,7 +46,7 @@ class PriorSimulation {
     std::size_t const steps = budget / std::max<std::size_t>(1, samples_);
     if (lanes.empty() || steps < fewest_steps) return 0;
     std::string const method(row.name);
-    auto const compiled = session_.compiled(what_.model, what_.start.kind == StartRule::Kind::estimated, method, what_.prediction);
+    auto const compiled = session_.compiled(what_, method);
     SolverSettings const solver{
         .method = method, .relative = comparable, .steps = static_cast<int>(std::min<std::size_t>(steps, 10'000))};
     LaneArray const theta = gathered(theta_, lanes);

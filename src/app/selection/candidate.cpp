@@ -63,8 +63,7 @@ std::vector<Candidate> prepare_candidates(Session& session, SelectTask const& wh
     Candidate candidate;
     candidate.what = &set.models[k];
     candidate.fit = &fit;
-    candidate.compiled =
-        session.compiled(fit.model, fit.start.kind == StartRule::Kind::estimated, fit.solver.method, fit.prediction);
+    candidate.compiled = session.compiled(fit, fit.solver.method);
     candidate.data = load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
                                       fit.prediction, fit.solver);
     Model const& model = candidate.compiled->model;

@@ -145,10 +145,10 @@ class PredictSelection {
         if (joining.channel < 0 || joining.name != quantities[q].name) continue;
         Channel const& from = other.model().channels[static_cast<std::size_t>(joining.channel)];
         bool const same = from.from_si(1) == to.from_si(1) && from.from_si(0) == to.from_si(0);
-        for (std::vector<double> values : other.result.values[o]) {
+        for (std::vector<double> values : other.result.drawn(o)) {
           if (!same)
             for (double& value : values) value = to.from_si(from.to_si(value));
-          all.values[q].push_back(std::move(values));
+          all.drawn(q).push_back(std::move(values));
         }
       }
     }
@@ -157,7 +157,7 @@ class PredictSelection {
   /// Of each quantity the candidate that each of its trajectories is of.
   using Owners = std::vector<std::vector<std::size_t>>;
   static void own(std::size_t candidate, Trajectory::Result const& all, Owners& owners) {
-    for (std::size_t q = 0; q < owners.size(); ++q) owners[q].resize(all.values[q].size(), candidate);
+    for (std::size_t q = 0; q < owners.size(); ++q) owners[q].resize(all.drawn(q).size(), candidate);
   }
 
   /// Of channels, which several models may have: what parameters and models add to the variance of the band. The noise is unknown.
@@ -168,13 +168,13 @@ class PredictSelection {
       if (quantities[q].channel < 0) continue;
       auto const band = std::ranges::find_if(prediction.quantities,
                                              [&](PredictedQuantity const& each) { return each.name == quantities[q].name; });
-      auto const draws = usable_trajectories(all.values[q]);
+      auto const draws = usable_trajectories(all.drawn(q));
       if (band == prediction.quantities.end() || draws.usable.size() < 2) continue;
       std::vector<std::vector<double>> groups(1 + *std::ranges::max_element(owners[q]));
       for (std::size_t i = 0; i < draws.predictable.size(); ++i) {
         for (auto& group : groups) group.clear();
         for (std::vector<double> const* each : draws.usable)
-          groups[owners[q][static_cast<std::size_t>(each - all.values[q].data())]].push_back((*each)[i]);
+          groups[owners[q][static_cast<std::size_t>(each - all.drawn(q).data())]].push_back((*each)[i]);
         bool const known = draws.predictable[i] != 0;
         VarianceSplit const split = known ? split_pooled(groups) : VarianceSplit();
         band->variance.parameter.push_back(known ? split.parameter : std::nan(""));

@@ -47,7 +47,7 @@ SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate,
   FitTask const& fit = select_.fits[candidate];
   bool const free_start = what_.start.kind == StartRule::Kind::estimated;
   Along out;
-  out.compiled = session_.compiled(fit.model, free_start, fit.solver.method, what_.prediction);
+  out.compiled = session_.compiled(fit, free_start, fit.solver.method, what_.prediction);
   out.start_rows = start_rows(what_.start);
   std::vector<ExperimentData> data =
       load_experiments(session_, what_.candidate_experiments[candidate], session_.file.models[static_cast<std::size_t>(fit.model)],

@@ -8,18 +8,34 @@
 
 namespace sysid {
 
+namespace {
+
+/// States that are random given the parameters are known from the rows before those that are predicted; in a prediction one step
+/// ahead from these too.
+std::vector<std::uint8_t> corrected_rows(Experiment const& experiment, PredictionRule rule) {
+  std::vector<std::uint8_t> rows(experiment.time.size(), 1);
+  auto const first = std::ranges::find(experiment.scored, std::uint8_t{1}) - experiment.scored.begin();
+  if (rule != PredictionRule::one_step) std::fill(rows.begin() + first, rows.end(), std::uint8_t{0});
+  return rows;
+}
+
+}  // namespace
+
 PosteriorTrajectories::PosteriorTrajectories(Session& session, PredictTask const& what, std::uint64_t seed)
     : session_(session),
       what_(what),
       fitted_(fitted_model(session, what.fit)),
       fit_(std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what)),
       free_start_(what.start.kind == StartRule::Kind::estimated),
-      compiled_(session.compiled(fit_.model, free_start_, fitted_.solver.method, what.prediction)),
+      compiled_(session.compiled(fit_, free_start_, fitted_.solver.method, what.prediction)),
       space_(parameter_space(compiled_->model, fit_.experiments)),
       data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(fit_.model)], what.start,
                              what.prediction, fitted_.solver)),
       seed_(seed),
-      wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {}
+      wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {
+  if (model().filtered())
+    for (ExperimentData& each : data_) each.experiment.corrects = corrected_rows(each.experiment, what.prediction);
+}
 
 std::vector<std::string> PosteriorTrajectories::drawn_from_prior(int e) const {
   std::vector<std::string> names;

@@ -91,8 +91,8 @@ std::optional<Diagnostic> improper_spread(Task const& task, ParameterSpace const
       if (!at_low && !at_high) continue;
       return refused(
           task, "E6204",
-          fmt::format("`{}` is the spread of a population, or sets it, and with a `{}` prior its posterior is improper: as "
-                      "the spread goes to zero, the density does not",
+          fmt::format("`{}` is the spread of a population, or sets it, and with a `{}` prior its posterior is improper: the "
+                      "integral of the density is infinite as the spread goes to zero",
                       spread.name, spread.prior->row->name),
           fmt::format("give the spread itself the prior `flat(lower = 0)`, if there are three members or more, or give `{}` "
                       "a proper one such as half_normal",

@@ -9,6 +9,7 @@
 
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
+#include "model/input_errors.hpp"
 #include "model/lags.hpp"
 
 namespace sysid {
@@ -25,15 +26,22 @@ void Session::find_results_in(std::filesystem::path folder, Task const& task) {
   selected.erase(index);
 }
 
-std::shared_ptr<CompiledModel const> Session::compiled(int model, bool free_start, std::string const& method,
+std::shared_ptr<CompiledModel const> Session::compiled(FitTask const& fit, bool free_start, std::string const& method,
                                                        PredictionRule prediction) {
-  auto& place = compiled_[{model, free_start, method, prediction}];
+  auto& place = compiled_[{fit.model, free_start, method, prediction, fit.filter, fit.input_errors}];
   if (!place) {
-    auto ruled = with_prediction(file.models[static_cast<std::size_t>(model)], prediction);
+    auto ruled = with_prediction(file.models[static_cast<std::size_t>(fit.model)], prediction);
     if (!ruled) throw InternalError("a prediction rule was let through that the model has no data for");
-    place = compile(std::move(*ruled), free_start, method);
+    auto whole = with_input_errors(std::move(*ruled), fit.input_errors);
+    if (!std::holds_alternative<Model>(whole))
+      throw InternalError("an error of an input was let through that the model cannot have");
+    place = compile(std::get<Model>(std::move(whole)), free_start, method, fit.filter);
   }
   return place;
+}
+
+std::shared_ptr<CompiledModel const> Session::compiled(FitTask const& fit, std::string const& method) {
+  return compiled(fit, fit.start.kind == StartRule::Kind::estimated, method, fit.prediction);
 }
 
 Record const& Session::record(int data, Model const& model) {

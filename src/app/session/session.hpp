@@ -51,8 +51,12 @@ class Session {
   std::filesystem::path result_folder(Task const& task) const;
   /// The results of a task were found in `folder`, whatever its name. What was read of others before is forgotten.
   void find_results_in(std::filesystem::path folder, Task const& task);
-  /// Compiled on first use.
-  std::shared_ptr<CompiledModel const> compiled(int model, bool free_start, std::string const& method, PredictionRule prediction);
+  /// The model of a fit, compiled on first use for its filter and with the errors of its inputs. A prediction has a start, a solver
+  /// and a rule of its own.
+  std::shared_ptr<CompiledModel const> compiled(FitTask const& fit, bool free_start, std::string const& method,
+                                                PredictionRule prediction);
+  /// As a fit to data of its own has it.
+  std::shared_ptr<CompiledModel const> compiled(FitTask const& fit, std::string const& method);
   /// The record of a data block as a model of the file reads it, read on first use. Throws as `load_record`.
   Record const& record(int data, Model const& model);
   /// From here on `record` is that for this model.
@@ -71,7 +75,8 @@ class Session {
   ExecutionOptions abandonable() const;
 
  private:
-  std::map<std::tuple<int, bool, std::string, PredictionRule>, std::shared_ptr<CompiledModel const>> compiled_;
+  using CompiledKey = std::tuple<int, bool, std::string, PredictionRule, FilterRule, std::vector<double>>;
+  std::map<CompiledKey, std::shared_ptr<CompiledModel const>> compiled_;
   std::map<std::pair<int, Model const*>, Record> records_;
   std::map<std::string, std::filesystem::path> found_in_;  // by name of the task
   std::optional<std::uint64_t> drawn_seed_;

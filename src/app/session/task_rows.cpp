@@ -160,16 +160,16 @@ std::optional<Diagnostic> refused(Session& session, Task const& task) {
     Task const& other = task_at(session.file, member.fit);
     auto const own = samples_of(session, fit::of(other));
     if (!samples || !own || own == samples) continue;
-    return Diagnostic{Severity::error,
-                      "E6705",
-                      fmt::format("`{}` and `{}` are fitted to different samples: {} cannot weigh them", first.name, other.name,
-                                  title(what.weights)),
-                      Label{task.span, {}},
-                      {},
-                      fmt::format("fit both to the same rows, channels and units, such as `to {}`; the rows begin after the "
-                                  "longest lag of all models; or "
-                                  "write `weights = equal`",
-                                  data_names(session.file, fit::of(first).experiments))};
+    return Diagnostic{
+        Severity::error,
+        "E6705",
+        fmt::format("`{}` and `{}` are fitted to different samples: {} cannot give them weights", first.name, other.name,
+                    title(what.weights)),
+        Label{task.span, {}},
+        {},
+        fmt::format("fit both to the same rows, channels and units, such as `to {}`, and let the rows begin after the "
+                    "longest lag of all models; or write `weights = equal`",
+                    data_names(session.file, fit::of(first).experiments))};
   }
   return std::nullopt;
 }

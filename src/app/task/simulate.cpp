@@ -23,6 +23,7 @@
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
 #include "experiment/experiments.hpp"
+#include "likelihood/drawn_disturbances.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/file/simulated_csv.hpp"
 
@@ -122,11 +123,14 @@ class Simulate {
       functions_.emplace(with_prediction(written_, rule).value(), what.solver.method, parameters_, function_key);
     for (Process const& process : written_.processes)
       drawn_.push_back(fmt::format("function {} drawn from its prior", process.name));
-    compiled_ = functions_ ? functions_->compiled() : session.compiled(what.model, false, what.solver.method, rule);
+    FitTask own;
+    own.model = what.model;
+    compiled_ = functions_ ? functions_->compiled() : session.compiled(own, false, what.solver.method, rule);
     history_ = data_lag(model());
     require_memory(fmt::format("the simulation `{}` of {} samples", task_.name, what_.samples),
                    bytes_to_simulate(what_, *compiled_), "use fewer samples");
     prepare();
+    if (written_.filtered()) draw_what_is_random();
   }
 
   ExitCode run() {
@@ -214,6 +218,12 @@ class Simulate {
     for (std::size_t i = what_.inputs.size(); i < model().inputs.size(); ++i)
       experiment_.inputs.push_back(
           InputSignal(InputRule::zero_order, time_, std::vector<double>(time_.size(), 0.0)).view(history_, what_.samples));
+  }
+
+  void draw_what_is_random() {
+    DrawnDisturbances drawn = draw_disturbances(model(), parameters_, experiment_, {seed_, Purpose::disturbance, series_, 0});
+    experiment_ = std::move(drawn.experiment);
+    compiled_ = compile(std::move(drawn.model), false, what_.solver.method);
   }
 
   void require_numbers(Trajectory::Result const& result) const {

@@ -12,6 +12,7 @@
 #include "core/setting/settings.hpp"
 #include "data/experiment.hpp"
 #include "data/start_rule.hpp"
+#include "model/filter_rule.hpp"
 #include "model/lags.hpp"
 #include "regression/column/dictionary.hpp"
 #include "solver/solver.hpp"
@@ -26,11 +27,20 @@ struct ColumnUse {
   Span span;
 };
 
+/// `error normal(sd = 0.5)`: how far samples of an input lie from the truth.
+struct InputErrorUse {
+  double sd = 0;             // SI; of a bare number beside a column without a unit as written: then in the unit of the input
+  bool bare = false;         // it is that
+  std::optional<Unit> unit;  // of a number with one
+  Span span;
+};
+
 struct DataInputUse : ColumnUse {
   std::string input;
   std::optional<InputRule> rule;  // absent: not stated, which only models in continuous time refuse
   Span input_span;
   Span rule_span;  // of the whole statement where there is none
+  std::optional<InputErrorUse> error{};
 };
 
 struct DataMeasureUse : ColumnUse {
@@ -107,6 +117,8 @@ struct FitTask {
   std::optional<int> near;    // index of the fit at whose draws the search for modes begins; absent: it begins everywhere
   EvidenceMethod evidence = EvidenceMethod::automatic;
   std::optional<std::uint64_t> seed;
+  FilterRule filter = FilterRule::automatic;  // of random states
+  std::vector<double> input_errors;           // per model input the sd of its error, SI; empty: none has one
 };
 
 /// One model of a set, expanded: "bouc_wen(n = 2)".

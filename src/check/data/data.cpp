@@ -7,8 +7,10 @@
 #include <cmath>
 #include <map>
 
+#include "check/expression/distributions.hpp"
 #include "check/expression/scope.hpp"
 #include "check/message/errors.hpp"
+#include "check/message/errors_disturbances.hpp"
 #include "check/message/errors_numbers.hpp"
 #include "check/units/units.hpp"
 #include "data/file_errors.hpp"
@@ -94,7 +96,36 @@ class DataChecker {
     } else {
       diagnostics_.add(errors::unknown_rule(*tree.rule, input_rule_names()));
     }
+    if (tree.error) use.error = error(*tree.error, use);
     block_.inputs.push_back(std::move(use));
+  }
+  /// `normal(sd = 0.5)`, or `normal(0, sd = 0.5)`.
+  std::optional<InputErrorUse> error(ast::Call const& written, DataInputUse const& use) {
+    auto const refuse = [&](std::string const& reason) -> std::optional<InputErrorUse> {
+      diagnostics_.add(errors::law_of_input_error(written.span, use.input, reason));
+      return std::nullopt;
+    };
+    if (written.function.text != "normal") return refuse("can only be normal");
+    ast::Call law = written;
+    bool const has_mean = std::any_of(law.arguments.begin(), law.arguments.end(),
+                                      [](ast::Argument const& each) { return !each.name || each.name->text == "mean"; });
+    if (!has_mean) law.arguments.insert(law.arguments.begin(), {{written.span}, {}, {{written.span}, ast::Number{}}});
+    std::optional<Unit> const unit = use.unit ? std::optional(difference(*use.unit)) : std::nullopt;
+    auto const checked = check_distribution(scope_, law, {use.input, unit, use.span});
+    if (!checked) return std::nullopt;
+    if (!graph_.is_constant(checked->arguments[0], 0)) return refuse("has a mean other than 0");
+    if (checked->lower || checked->upper) return refuse("has bounds");
+    auto const sd = graph_.constant_value(checked->arguments[1]);
+    if (!sd || !std::isfinite(*sd)) return refuse("is no number");
+    InputErrorUse result{*sd, false, unit, written.span};
+    if (unit) return result;
+    for (ast::Argument const& argument : law.arguments) {
+      if (!argument.name || argument.name->text == "mean") continue;
+      auto const value = scope_.expression(argument.value);
+      result.bare = value && value->kind != Typed::Kind::known;
+      if (value && !result.bare && argument.name->text == "sd") result.unit = value->unit;
+    }
+    return result;
   }
   void take(ast::DataMeasure const& tree) {
     if (fresh(channels_, tree.channel, "channel"))

@@ -148,20 +148,37 @@ class Flattener {
     else
       add(std::move(flat), states.span);
   }
+  void take(Frame& frame, ast::DisturbanceDeclaration const& disturbance) {
+    Shape const shape = frame.symbols.at(disturbance.name.name.text).shape;
+    auto laws = evaluator_.calls(disturbance.law, shape, frame);
+    if (!laws) return;
+    for (std::size_t i = 0; i < laws->size(); ++i)
+      add(ast::DisturbanceDeclaration{{disturbance.span}, element(frame, disturbance.name, shape, i), std::move((*laws)[i])},
+          disturbance.span);
+  }
   void take(Frame& frame, ast::InitialDeclaration const& initials) {
     ast::InitialDeclaration flat{{initials.span}, {}};
     for (ast::InitialValue const& initial : initials.values) {
       auto states = flat_initial(frame, initial);
-      auto values = evaluator_.evaluate(initial.value, frame);
-      if (!states || !values) continue;
-      values = evaluator_.algebra().fill(std::move(*values), states->shape, true,
-                                         errors::named("the initial value of", initial.state.name.text), initial.value.span);
-      if (!values) continue;
-      for (std::size_t i = 0; i < states->items.size(); ++i)
-        if (auto const owner = initial_owner_.find(primed(states->items[i]));
-            owner == initial_owner_.end() || owner->second == &frame)
-          flat.values.push_back(
-              {{initial.span}, std::get<ast::Reference>(std::move(states->items[i].node)), std::move(values->items[i])});
+      if (!states) continue;
+      std::optional<Array> values;
+      std::optional<std::vector<ast::Call>> laws;
+      if (initial.value) {
+        values = evaluator_.evaluate(*initial.value, frame);
+        if (values)
+          values = evaluator_.algebra().fill(std::move(*values), states->shape, true,
+                                             errors::named("the initial value of", initial.state.name.text), initial.value->span);
+        if (!values) continue;
+      }
+      if (initial.law && !(laws = evaluator_.calls(*initial.law, states->shape, frame))) continue;
+      for (std::size_t i = 0; i < states->items.size(); ++i) {
+        auto const owner = initial_owner_.find(primed(states->items[i]));
+        if (owner != initial_owner_.end() && owner->second != &frame) continue;
+        ast::InitialValue one{{initial.span}, std::get<ast::Reference>(std::move(states->items[i].node)), {}, {}};
+        if (values) one.value = std::move(values->items[i]);
+        if (laws) one.law = std::move((*laws)[i]);
+        flat.values.push_back(std::move(one));
+      }
     }
     if (!flat.values.empty()) add(std::move(flat), initials.span);
   }

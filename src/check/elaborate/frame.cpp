@@ -118,6 +118,8 @@ void FrameBuilder::declare(Frame& frame) {
       for (ast::Declared const& input : inputs->names) declare(frame, input, symbol(Kind::input));
     } else if (auto const* states = std::get_if<ast::StateDeclaration>(&statement)) {
       for (ast::Declared const& state : states->names) declare(frame, state, symbol(Kind::state));
+    } else if (auto const* disturbance = std::get_if<ast::DisturbanceDeclaration>(&statement)) {
+      declare(frame, disturbance->name, symbol(Kind::disturbance));
     } else if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) {
       declare(frame, parameter->name, symbol(Kind::parameter));
     } else if (auto const* definition = std::get_if<ast::Definition>(&statement)) {

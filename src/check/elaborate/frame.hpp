@@ -14,7 +14,7 @@ namespace sysid {
 struct Frame;
 
 struct FrameSymbol {
-  enum class Kind { time, input, state, parameter, definition };
+  enum class Kind { time, input, state, disturbance, parameter, definition };
   Kind kind = Kind::parameter;
   ast::Declared const* declared = nullptr;
   Shape shape;

@@ -36,7 +36,12 @@ void each_top(ast::ModelStatement const& statement, std::function<void(ast::Expr
       [&](auto const& one) {
         using One = std::decay_t<decltype(one)>;
         if constexpr (std::is_same_v<One, ast::InitialDeclaration>) {
-          for (ast::InitialValue const& initial : one.values) visit(initial.value);
+          for (ast::InitialValue const& initial : one.values) {
+            if (initial.value) visit(*initial.value);
+            if (initial.law) call(*initial.law);
+          }
+        } else if constexpr (std::is_same_v<One, ast::DisturbanceDeclaration>) {
+          call(one.law);
         } else if constexpr (std::is_same_v<One, ast::ParameterDeclaration>) {
           if (one.prior) call(*one.prior);
           if (one.value) visit(*one.value);

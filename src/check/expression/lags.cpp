@@ -14,7 +14,7 @@ constexpr double most_lags = 10000;
 
 }  // namespace
 
-NodeId lagged(Graph& graph, NodeId root, int lag) {
+NodeId lagged(Graph& graph, NodeId root, int lag, int disturbances) {
   if (lag == 0) return root;
   return graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
     Node const node = graph[leaf];
@@ -26,6 +26,8 @@ NodeId lagged(Graph& graph, NodeId root, int lag) {
         return graph.leaf(node.leaf_kind, node.index, node.stage, node.lag + lag);
       case LeafKind::unknown:  // a state at the present sample
         return graph.leaf(LeafKind::previous, node.index, Stage::begin, lag);
+      case LeafKind::state:  // a disturbance at the present sample
+        return graph.leaf(LeafKind::previous, disturbances + node.index, Stage::begin, lag);
       default:
         return std::nullopt;
     }
@@ -81,7 +83,7 @@ std::optional<Scope::Lags> Scope::lag_calls(ast::Call const& call) {
   Lags lags{*first, {}};
   for (int k = *first; k <= *last; ++k) {
     lags.values.push_back(with_own_unit(*value));
-    lags.values.back().node = lagged(graph_, value->node, k);
+    lags.values.back().node = lagged(graph_, value->node, k, samples_.states + static_cast<int>(samples_.channels.size()));
     lags.values.back().span = call.span;
   }
   return lags;

@@ -25,6 +25,7 @@ struct SampleNames {
   // Place holders, replaced when the whole model is known:
   //   previous(state i, lag k >= 1)               a state, k samples back
   //   previous(states + channel c, lag k >= 0)    what channel c predicts, k samples back
+  //   previous(states + channels + disturbance d, lag k >= 1)
   //   previous(memory i, lag 1)                   of a continuous-time model: the memory's value at the sample before
   NodeId state(Graph& graph, int index, int lag) const { return graph.leaf(LeafKind::previous, index, Stage::begin, lag); }
   NodeId predicted(Graph& graph, int channel, int lag) const {
@@ -33,7 +34,8 @@ struct SampleNames {
   NodeId memory(Graph& graph, int index) const { return graph.leaf(LeafKind::previous, index, Stage::begin, 1); }
 };
 
-/// `root` as it was `lag` samples back: all that moves in it, parameters and constants stay.
-NodeId lagged(Graph& graph, NodeId root, int lag);
+/// `root` as it was `lag` samples back: all that moves in it, parameters and constants stay. disturbances: index of the first among
+/// what has lags; theirs are the states that stand in an expression of discrete time.
+NodeId lagged(Graph& graph, NodeId root, int lag, int disturbances);
 
 }  // namespace sysid

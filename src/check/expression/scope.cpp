@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "check/message/errors.hpp"
+#include "check/message/errors_disturbances.hpp"
 #include "check/units/units.hpp"
 
 namespace sysid {
@@ -156,6 +157,16 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
     NodeId const node = graph_.leaf(reference.primes == 0 ? LeafKind::input : LeafKind::input_rate, input->index);
     graph_.set_span(node, span);
     return with_unit(node, rate_unit(symbol->unit, reference.primes), span);
+  }
+  if (auto const* disturbance = std::get_if<DisturbanceSymbol>(&symbol->what)) {
+    if (reference.primes > 0) {
+      diagnostics_.add(errors::rate_of_disturbance(reference));
+      return std::nullopt;
+    }
+    NodeId const node = disturbance->state >= 0 ? graph_.leaf(LeafKind::state, disturbance->state)
+                                                : graph_.leaf(LeafKind::disturbance, disturbance->index);
+    graph_.set_span(node, span);
+    return with_unit(node, symbol->unit, span);
   }
   if (auto const* parameter = std::get_if<ParameterSymbol>(&symbol->what))
     return no_primes("a parameter")

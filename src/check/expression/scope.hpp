@@ -30,6 +30,11 @@ struct StateSymbol {
 struct InputSymbol {
   int index = 0;
 };
+/// A disturbance: the state that it is, or where that is -1 the leaf of its white noise.
+struct DisturbanceSymbol {
+  int index = 0;
+  int state = -1;
+};
 struct ParameterSymbol {
   int index = 0;
 };
@@ -40,7 +45,7 @@ struct DefinitionSymbol {
 };
 
 struct Symbol {
-  std::variant<StateSymbol, InputSymbol, ParameterSymbol, TimeSymbol, DefinitionSymbol> what;
+  std::variant<StateSymbol, InputSymbol, DisturbanceSymbol, ParameterSymbol, TimeSymbol, DefinitionSymbol> what;
   std::optional<Unit> unit;
   Span span;
 };

@@ -15,7 +15,7 @@ Diagnostic selection_in_average(ast::Name const& name) {
   return about({name.text},
                error("E6702", name.span, fmt::format("`{}` is a selection and cannot be averaged with fits", name.text),
                      fmt::format("a prediction from a selection averages over its candidates already: `predict {} on "
-                                 "...`; to weigh by evidence, fit each candidate and name these fits",
+                                 "...`; to average by evidence, fit each candidate and name these fits",
                                  name.text)));
 }
 
@@ -27,7 +27,8 @@ Diagnostic weights_of_one_fit(Span option, std::string const& subject) {
 
 Diagnostic fit_without_weight(ast::Name const& fit, std::string const& backend, std::string const& reason,
                               std::string const& help) {
-  return about({fit.text, backend}, error("E6704", fit.span, fmt::format("`{}` cannot be weighed: {}", fit.text, reason), help));
+  return about({fit.text, backend},
+               error("E6704", fit.span, fmt::format("`{}` cannot be given a weight: {}", fit.text, reason), help));
 }
 
 Diagnostic average_without_channel(ast::Name const& fit, std::string const& channel, std::string const& other,
@@ -37,7 +38,7 @@ Diagnostic average_without_channel(ast::Name const& fit, std::string const& chan
       error("E6706", fit.span,
             fmt::format("`{}` does not observe `{}`, which `{}` measures and `{}` predicts", fit.text, channel, data, other),
             fmt::format("an average needs every measured channel from all its fits: add `observe {} ~ ...` to the model, "
-                        "or predict on data without it",
+                        "or predict on data without this channel",
                         channel)));
 }
 

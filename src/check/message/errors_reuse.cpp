@@ -89,7 +89,7 @@ Diagnostic model_too_large(Span span) {
 
 Diagnostic models_too_large(Span span) {
   return error("E2709", span, "the models of this file are too large when their vectors and parts are written out",
-               "move the models from here on to another file, or use fewer models with large arguments");
+               "move this model and those below it to another file, or use fewer models with large arguments");
 }
 
 Diagnostic part_cycle(Span span, Names const& loop) {

@@ -11,7 +11,9 @@
 
 #include "check/expression/leaves.hpp"
 #include "check/expression/scope.hpp"
+#include "check/expression/value_range.hpp"
 #include "core/text/diagnostic.hpp"
+#include "model/disturbance_law.hpp"
 #include "model/model.hpp"
 #include "syntax/ast.hpp"
 
@@ -70,7 +72,28 @@ class ModelChecker {
   // In channels and derived quantities a highest derivative (an acceleration) stands for its solution.
   NodeId solved(NodeId node);
 
+  // --- model_disturbances.cpp
+  // Of those that declare none, from their laws.
+  void infer_disturbance_units();
+  // Those with a memory, and all in discrete time, are states behind the declared ones.
+  void lay_out_disturbances();
+  void disturbances();
+  std::optional<std::vector<NodeId>> law_arguments(ast::DisturbanceDeclaration const& tree, Disturbance const& disturbance,
+                                                   DisturbanceLawRow const& row);
+  std::optional<NodeId> law_argument(ast::DisturbanceDeclaration const& tree, Disturbance const& disturbance,
+                                     DisturbanceArgumentRow const& row, ast::Expression const& value_tree);
+  std::optional<NodeId> sd_of_samples(ast::DisturbanceDeclaration const& tree, Disturbance const& disturbance);
+  void positive_laws(ValueRanges& ranges);
+  // Linear in the derivatives, white noise in no channel, and nothing beside them that no filter takes.
+  void place_disturbances();
+  bool reads_white_noise(NodeId root, int& which) const;
+
   // --- model_initial.cpp
+  // Of `initial y ~ normal(...)`, a mean and a variance; nothing when a diagnostic was added.
+  struct RandomStart {
+    NodeId mean, variance;
+  };
+  std::optional<RandomStart> random_start(ast::Call const& law, Quantity const& state);
   // In discrete time one value stands for all samples before the first; it may be what a channel measured there.
   void initial_lags();
   void initial_values();
@@ -120,6 +143,15 @@ class ModelChecker {
   std::vector<Invariant> constraints_;               // of every differentiation
   bool orders_doubtful_ = false;                     // after a mistake in the units of an equation: a prime may be missing there
   std::vector<std::optional<NodeId>> initial_lags_;  // of each state of a discrete-time model
+  std::vector<std::optional<NodeId>> initial_lag_variances_;
+  std::vector<std::pair<Distribution, Quantity>> initial_laws_;
+  std::vector<ast::DisturbanceDeclaration const*> disturbance_trees_;
+  struct PositiveArgument {
+    NodeId node;
+    std::string argument;
+    std::size_t disturbance;
+  };
+  std::vector<PositiveArgument> positive_;  // of laws of disturbances
 };
 
 }  // namespace sysid

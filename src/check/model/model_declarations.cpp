@@ -39,6 +39,16 @@ void ModelChecker::declare() {
       for (ast::Declared const& state : states->names)
         if (scope_.declare(state.name, {StateSymbol{}, scope_.unit(state.unit), state.name.span}))
           states_.push_back({state.name.text, StateInfo{&state}});
+    } else if (auto const* disturbance = std::get_if<ast::DisturbanceDeclaration>(&statement)) {
+      auto unit = scope_.unit(disturbance->name.unit);
+      if (unit) unit = difference(*unit);  // it departs from 0
+      int const index = static_cast<int>(model_.disturbances.size());
+      if (scope_.declare(disturbance->name.name, {DisturbanceSymbol{index, -1}, unit, disturbance->name.name.span})) {
+        Disturbance declared;
+        static_cast<Quantity&>(declared) = {disturbance->name.name.text, unit, disturbance->name.name.span};
+        model_.disturbances.push_back(std::move(declared));
+        disturbance_trees_.push_back(disturbance);
+      }
     } else if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) {
       auto const unit = scope_.unit(parameter->name.unit);
       int const index = static_cast<int>(model_.parameters.size());

@@ -3,13 +3,36 @@
 
 #include <algorithm>
 
+#include "check/expression/distributions.hpp"
 #include "check/message/errors.hpp"
+#include "check/message/errors_disturbances.hpp"
 #include "model/invariant.hpp"
 
 namespace sysid {
 
+std::optional<ModelChecker::RandomStart> ModelChecker::random_start(ast::Call const& law, Quantity const& state) {
+  if (law.function.text != "normal") {
+    diagnostics_.add(errors::law_of_initial(law, state.name));
+    return std::nullopt;
+  }
+  auto const use = check_distribution(scope_, law, state);
+  if (!use) return std::nullopt;
+  if (use->lower || use->upper) {
+    diagnostics_.add(errors::bounds_of_initial(law, state.name));
+    return std::nullopt;
+  }
+  for (NodeId const argument : use->arguments)
+    if (!moving_part(model_.graph, argument).empty()) {
+      diagnostics_.add(errors::initial_moves(law.span));
+      return std::nullopt;
+    }
+  initial_laws_.emplace_back(*use, state);
+  return RandomStart{use->arguments[0], model_.graph.multiply(use->arguments[1], use->arguments[1])};
+}
+
 void ModelChecker::initial_lags() {
   initial_lags_.resize(states_.size());
+  initial_lag_variances_.resize(states_.size());
   std::map<std::string, Span> given;
   each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) {
     for (ast::InitialValue const& initial : declaration.values) {
@@ -28,17 +51,25 @@ void ModelChecker::initial_lags() {
         continue;
       }
       Symbol const& state = *scope_.find(place->first);
-      auto const value = scope_.expression_in(state.unit, state.span, initial.value, {Occasion::Kind::declared, place->first});
+      auto const index = static_cast<std::size_t>(place - states_.begin());
+      if (initial.law) {
+        if (auto const random = random_start(*initial.law, {place->first, state.unit, state.span})) {
+          initial_lags_[index] = random->mean;
+          initial_lag_variances_[index] = random->variance;
+        }
+        continue;
+      }
+      auto const value = scope_.expression_in(state.unit, state.span, *initial.value, {Occasion::Kind::declared, place->first});
       if (!value) continue;
       bool const moves = model_.graph.depends(value->node, [](Node const& node) {
         return node.operation == Operation::leaf && node.leaf_kind != LeafKind::parameter &&
                !(node.leaf_kind == LeafKind::measured && node.lag == 0);
       });
       if (moves) {
-        diagnostics_.add(errors::initial_moves(initial.value.span));
+        diagnostics_.add(errors::initial_moves(initial.value->span));
         continue;
       }
-      initial_lags_[static_cast<std::size_t>(place - states_.begin())] = adapt(model_.graph, *value, state.unit);
+      initial_lags_[index] = adapt(model_.graph, *value, state.unit);
     }
   });
 }
@@ -73,10 +104,18 @@ void ModelChecker::initial_values() {
         diagnostics_.add(errors::initial_twice(initial.span, place->second, state.name));
         continue;
       }
-      auto const value = scope_.expression_in(state.unit, state.span, initial.value, {Occasion::Kind::declared, state.name});
+      if (initial.law) {
+        auto const random = random_start(*initial.law, state);
+        if (!random) continue;
+        state.initial = random->mean;
+        state.initial_variance = random->variance;
+        state.initial_given = true;
+        continue;
+      }
+      auto const value = scope_.expression_in(state.unit, state.span, *initial.value, {Occasion::Kind::declared, state.name});
       if (!value) continue;
       if (!moving_part(model_.graph, value->node).empty()) {
-        diagnostics_.add(errors::initial_moves(initial.value.span));
+        diagnostics_.add(errors::initial_moves(initial.value->span));
         continue;
       }
       state.initial = adapt(model_.graph, *value, state.unit);
@@ -87,18 +126,22 @@ void ModelChecker::initial_values() {
     Span const declaration = model_.states[i].span;
     std::vector<std::string> missing;
     for (; i < model_.states.size() && model_.states[i].span == declaration; ++i)
-      if (!given.contains(static_cast<int>(i))) missing.push_back(model_.states[i].name);
+      if (!given.contains(static_cast<int>(i)) && !model_.states[i].initial_given) missing.push_back(model_.states[i].name);
     if (!missing.empty() && !misnamed) diagnostics_.add(errors::initial_missing(declaration, missing));
   }
 }
 
 void ModelChecker::guess(ast::InitialValue const& initial, Unknown& unknown) {
-  auto const value = scope_.expression_in(unknown.unit, unknown.span, initial.value, {Occasion::Kind::declared, unknown.name});
+  if (initial.law) {
+    diagnostics_.add(errors::random_guess(initial.span, unknown.name));
+    return;
+  }
+  auto const value = scope_.expression_in(unknown.unit, unknown.span, *initial.value, {Occasion::Kind::declared, unknown.name});
   if (!value) return;
   if (moving_part(model_.graph, value->node).empty())
     unknown.guess = adapt(model_.graph, *value, unknown.unit);
   else
-    diagnostics_.add(errors::initial_moves(initial.value.span));
+    diagnostics_.add(errors::initial_moves(initial.value->span));
 }
 
 void ModelChecker::constraints() {

@@ -99,6 +99,12 @@ void ModelChecker::lay_out_lags(std::vector<NodeId> const& predicted) {
     model_.lagged_quantities.push_back({{channel.name, channel.unit, channel.span}, predicted[c], static_cast<int>(c), {}});
     initial.emplace_back();
   }
+  std::size_t const first_disturbance = model_.lagged_quantities.size();
+  for (Disturbance const& disturbance : model_.disturbances) {
+    model_.lagged_quantities.push_back(
+        {{disturbance.name, disturbance.unit, disturbance.span}, model_.graph.leaf(LeafKind::state, disturbance.state), -1, {}});
+    initial.push_back(model_.graph.constant(0));
+  }
   // What a channel predicts without processes: the parametric part, from which lagged residuals are taken.
   for (std::size_t c = 0; c < model_.channels.size() && !model_.processes.empty(); ++c) {
     Channel const& channel = model_.channels[c];
@@ -109,7 +115,15 @@ void ModelChecker::lay_out_lags(std::vector<NodeId> const& predicted) {
   if (auto const missing = sysid::lay_out_lags(model_, initial)) {
     LaggedQuantity const& lagged = model_.lagged_quantities[static_cast<std::size_t>(*missing)];
     diagnostics_.add(errors::initial_lag_missing(lagged.span, lagged.name));
+    return;
   }
+  // Samples before the first are independent of each other, as far as the text says.
+  auto const vary = [&](std::size_t lagged, std::optional<NodeId> variance) {
+    for (int const index : model_.lagged_quantities[lagged].registers)
+      model_.states[static_cast<std::size_t>(index)].initial_variance = variance;
+  };
+  for (std::size_t i = 0; i < states_.size(); ++i) vary(i, initial_lag_variances_[i]);
+  for (std::size_t i = 0; i < model_.disturbances.size(); ++i) vary(first_disturbance + i, model_.disturbances[i].intensity);
 }
 
 }  // namespace sysid

@@ -38,6 +38,8 @@ void ModelChecker::positive_widths() {
   for (Parameter const& parameter : model_.parameters)
     if (parameter.prior) look_at(*parameter.prior, parameter);
   for (Channel const& channel : model_.channels) look_at(channel.noise, channel);
+  for (auto const& [law, state] : initial_laws_) look_at(law, state);
+  positive_laws(ranges);
   auto const look_into = [&](Process const& process) {
     for (KernelUse const& kernel : process.kernels) {
       std::size_t k = 0;

@@ -28,6 +28,7 @@ void each_declared(ast::Model& model, Visit const& visit) {
       for (ast::Declared& input : inputs->names) visit(input);
     if (auto* states = std::get_if<ast::StateDeclaration>(&statement))
       for (ast::Declared& state : states->names) visit(state);
+    if (auto* disturbance = std::get_if<ast::DisturbanceDeclaration>(&statement)) visit(disturbance->name);
     if (auto* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) visit(parameter->name);
     if (auto* definition = std::get_if<ast::Definition>(&statement)) visit(definition->name);
     if (auto* observation = std::get_if<ast::Observation>(&statement)) visit(observation->channel);

@@ -4,7 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "check/expression/leaves.hpp"
 #include "check/message/errors.hpp"
+#include "check/message/errors_disturbances.hpp"
 
 namespace sysid {
 namespace {
@@ -21,7 +23,11 @@ Roots results(Model const& model) {
   Roots roots = read_by(model.processes);
   roots.insert(roots.end(), model.residuals.begin(), model.residuals.end());
   roots.insert(roots.end(), model.memories.begin(), model.memories.end());
-  for (State const& state : model.states) roots.insert(roots.end(), {state.derivative, state.initial});
+  for (State const& state : model.states) {
+    roots.insert(roots.end(), {state.derivative, state.initial});
+    if (state.initial_variance) roots.push_back(*state.initial_variance);
+  }
+  for (Disturbance const& disturbance : model.disturbances) roots.push_back(disturbance.intensity);
   for (Unknown const& unknown : model.unknowns) roots.push_back(unknown.guess);
   for (Channel const& channel : model.channels) add(roots, channel.noise);
   for (Derived const& derived : model.derived) roots.push_back(derived.value);
@@ -60,6 +66,18 @@ Read read_in(Model const& model) {
   return read;
 }
 
+bool reads_disturbance(Model const& model, Disturbance const& disturbance) {
+  Roots roots = model.residuals;
+  for (std::size_t i = 0; i < model.states.size(); ++i)
+    if (static_cast<int>(i) != disturbance.state) roots.push_back(model.states[i].derivative);
+  for (Channel const& channel : model.channels) add(roots, channel.noise);
+  bool const is_state = disturbance.state >= 0;
+  int const index = is_state ? disturbance.state : static_cast<int>(&disturbance - model.disturbances.data());
+  for (NodeId const id : model.graph.reachable(roots))
+    if (is_leaf(model.graph[id], is_state ? LeafKind::state : LeafKind::disturbance) && model.graph[id].index == index) return true;
+  return false;
+}
+
 /// "law" of "law(n = 2)": models of one text.
 std::string_view text_name(Model const& model) { return std::string_view(model.name).substr(0, model.name.find('(')); }
 
@@ -95,6 +113,20 @@ void warn_of_unused(std::span<Model const> models, Diagnostics& diagnostics) {
       if (!other) diagnostics.add_once(errors::unused_input(model.inputs[i].span, model.inputs[i].name));
     }
   }
+}
+
+void refuse_unused_disturbances(std::span<Model const> models, Diagnostics& diagnostics) {
+  for (Model const& model : models)
+    for (Disturbance const& disturbance : model.disturbances) {
+      if (model.channels.empty()) continue;  // a part, whose whole reads it
+      bool const read = std::any_of(models.begin(), models.end(), [&](Model const& other) {
+        if (text_name(other) != text_name(model)) return false;
+        return std::any_of(other.disturbances.begin(), other.disturbances.end(), [&](Disturbance const& each) {
+          return each.name == disturbance.name && reads_disturbance(other, each);
+        });
+      });
+      if (!read) diagnostics.add_once(errors::unused_disturbance(disturbance.span, disturbance.name));
+    }
 }
 
 }  // namespace sysid

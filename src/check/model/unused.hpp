@@ -12,4 +12,7 @@ namespace sysid {
 /// Of models that differ in arguments alone, one that reads it is enough.
 void warn_of_unused(std::span<Model const> models, Diagnostics& diagnostics);
 
+/// The same of disturbances, as an error (E3308): they make a filter of the likelihood.
+void refuse_unused_disturbances(std::span<Model const> models, Diagnostics& diagnostics);
+
 }  // namespace sysid

@@ -43,6 +43,17 @@ class TaskChecker {
   bool backend_option(ast::Option const& option, std::string const& key, std::span<BackendSettings const> known,
                       std::string& backend, Settings& settings);
 
+  // --- task_filter.cpp
+  // `filter = unscented`.
+  void filter(ast::Option const& option, FilterRule& rule);
+  // Of each input of the model, from the data blocks of the experiments; empty where none has one.
+  std::vector<double> input_errors(std::vector<ExperimentUse> const& experiments, Model const& model);
+  // The model as it is fitted, where its states are random; what no filter takes is refused. Null where they are not.
+  void suit_filter(FitTask& task, Model const& model);
+  void suit_kalman(FitTask const& task, Model const& model);
+  // The option, where it was stated and no model has had a use for it.
+  void report_needless_filter();
+
   // --- task_experiments.cpp
   // One experiment of the task, without its name; nothing when a diagnostic was added.
   std::optional<ExperimentUse> experiment(ast::DataReference const& reference, Model const* model);
@@ -119,7 +130,9 @@ class TaskChecker {
   Diagnostics& diagnostics_;
   std::size_t before_;
   OptionReader options_;
-  bool unresolved_ = false;  // the task refers to something that failed its own check
+  std::optional<Span> filter_;  // where it was stated
+  bool filter_needed_ = false;  // by a model of the task
+  bool unresolved_ = false;     // the task refers to something that failed its own check
 };
 
 std::vector<std::string> names_of(std::span<BackendSettings const> backends);

@@ -32,6 +32,7 @@ FitTask TaskChecker::fit() {
   if (model != nullptr) {
     suit(task, *model);
     suit_processes(task, *model);
+    report_needless_filter();
   }
   if (task.backend.empty() && !diagnostics_.has_errors(before_))
     diagnostics_.add(errors::backend_missing(tree_, names_of(backends_.fitting)));

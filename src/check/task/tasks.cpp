@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "check/checked/task_kinds.hpp"
+#include "check/expression/leaves.hpp"
 #include "check/message/errors.hpp"
 #include "check/task/task_checker.hpp"
 #include "core/setting/table.hpp"
@@ -57,23 +58,6 @@ std::optional<int> TaskChecker::item(ast::Name const& name, std::map<std::string
   return place->second;
 }
 
-namespace {
-
-/// Of a node, else of the smallest expression around it that has a place in the text.
-std::optional<Span> place_of(Graph const& graph, NodeId node) {
-  std::vector<bool> holds(graph.size(), false);
-  for (NodeId id = node; id < graph.size(); ++id) {
-    Node const& each = graph[id];
-    int const operands = operand_count(each);
-    holds[id] = id == node || (operands > 0 && holds[each.a]) || (operands > 1 && holds[each.b]) || (operands > 2 && holds[each.c]);
-    if (!holds[id]) continue;
-    if (auto const span = graph.span(id)) return span;
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
 void TaskChecker::suit_exact(SolverSettings const& solver, Model const& model) {
   if (!model.integrated() || !solver.row().exact) return;
   Span const option = *options_.solver_span();
@@ -85,8 +69,9 @@ void TaskChecker::suit_exact(SolverSettings const& solver, Model const& model) {
   else if (found)
     diagnostics_.add(errors::solver_of_linear_equations(option, solver.method, place_of(model.graph, found->node),
                                                         found->why == NotLinear::Why::varies));
-  else if (static_cast<int>(model.states.size()) > most_exact_states)
-    diagnostics_.add(errors::solver_of_few_states(option, solver.method, model.name, model.states.size(), most_exact_states));
+  else if (model.simulated_states() > most_exact_states)
+    diagnostics_.add(errors::solver_of_few_states(option, solver.method, model.name,
+                                                  static_cast<std::size_t>(model.simulated_states()), most_exact_states));
 }
 
 void TaskChecker::suit(SolverSettings& solver, Model const& model) {
@@ -107,12 +92,15 @@ void TaskChecker::suit(StartRule const& start, Model const& model, std::vector<a
 
 bool TaskChecker::simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task) {
   if (option.input || !option.key) return false;
-  if (key != "start" && key != "substeps" && key != "solver" && key != "prediction" && key != "seed") return false;
+  if (key != "start" && key != "substeps" && key != "solver" && key != "prediction" && key != "filter" && key != "seed")
+    return false;
   if (!options_.fresh(option, key)) return true;
   if (key == "start")
     options_.start(option, task.start);
   else if (key == "prediction")
     prediction(option, models, task.prediction);
+  else if (key == "filter")
+    filter(option, task.filter);
   else if (key == "seed")
     options_.seed(option, task.seed);
   else
@@ -166,6 +154,7 @@ bool TaskChecker::backend_option(ast::Option const& option, std::string const& k
 void TaskChecker::suit(FitTask& task, Model const& model) {
   suit(task.solver, model);
   suit(task.start, model, tree_.options);
+  suit_filter(task, model);
   if (model.integrated()) return;  // else there is nothing to solve
   task.solver = {};
   task.refine_solver = false;

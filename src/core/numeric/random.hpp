@@ -28,6 +28,7 @@ enum class Purpose : std::uint32_t {
   bootstrap = 18,    // weights of samples in a Bayesian bootstrap
   jump = 19,         // moves between models
   average = 20,      // seeds of the members of an averaged prediction
+  disturbance = 21,  // disturbances and random starts of made data
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

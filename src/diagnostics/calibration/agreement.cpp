@@ -91,9 +91,9 @@ Findings agreement_findings(std::vector<ComparedNumber> const& numbers, std::str
                            : with_optimum            ? "more than a fifth of the posterior sd"
                                                      : fmt::format("{:.1f} Monte Carlo standard errors", std::fabs(worst.z()));
   return {{FindingCode::backends_disagree, !with_optimum && p(worst) < wrong_p ? Severity::error : Severity::warning, concerned,
-           fmt::format("{} and {} differ: the {} of {} is {:.4g}{} by one and {:.4g}{} by the other, {} apart{}", first, second,
-                       worst.what, worst.quantity, worst.first, unit, worst.second, unit, size,
-                       wrong.size() > 1 ? fmt::format("; so do {} more numbers", wrong.size() - 1) : std::string()),
+           fmt::format("{0} and {1} differ: the {2} of {3} is {4:.4g}{5} by {0} and {6:.4g}{5} by {1}; the difference is {7}{8}",
+                       first, second, worst.what, worst.quantity, worst.first, unit, worst.second, size,
+                       wrong.size() > 1 ? fmt::format("; {} more numbers differ as well", wrong.size() - 1) : std::string()),
            with_optimum ? "use the back end that samples" : "run longer chains of both, and look at the findings of each"}};
 }
 

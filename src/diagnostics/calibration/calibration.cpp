@@ -88,8 +88,8 @@ Finding not_uniform(std::vector<CalibratedQuantity const*> const& wrong, std::si
                   worst.name, n, shape_words(worst.shape), worst.adjusted_p,
                   tested == 1 ? "1 quantity" : fmt::format("{} quantities", tested),
                   wrong.size() > 1 ? fmt::format("; the same holds for {} more", wrong.size() - 1) : std::string()),
-      "run more replications or another seed to be sure; then look at which checks of the fits fired, and fit with another back "
-      "end, longer chains or a finer solver"};
+      "run more replications or another seed to be sure; then see in the table which checks of the fits had findings, and fit with "
+      "another back end, longer chains or a finer solver"};
 }
 
 }  // namespace
@@ -149,12 +149,13 @@ Findings calibration_findings(CalibrationReport const& calibration) {
         {FindingCode::replications_failed,
          20 * (all - n) > all ? Severity::error : Severity::warning,
          {},
-         fmt::format("{} of {} made records have no fit, first: {}; the ranks of the others may look better than they are", all - n,
-                     all,
-                     std::find_if(calibration.records.begin(), calibration.records.end(),
-                                  [](Replication const& each) { return !each.has_draws(); })
-                         ->failure),
-         "narrow the priors to what is possible, or make the search and the solver of the task fit for all of the prior"});
+         fmt::format(
+             "{} of {} simulated records have no fit (the first: {}); the ranks of the others may look better than they are",
+             all - n, all,
+             std::find_if(calibration.records.begin(), calibration.records.end(),
+                          [](Replication const& each) { return !each.has_draws(); })
+                 ->failure),
+         "narrow the priors to what is possible, or choose a search and a solver that work in the whole prior"});
   std::vector<CalibratedQuantity const*> wrong;
   for (CalibratedQuantity const& each : calibration.quantities)
     if (each.adjusted_p < doubtful_p) wrong.push_back(&each);
@@ -168,23 +169,24 @@ Findings calibration_findings(CalibrationReport const& calibration) {
         {FindingCode::replications_fail_checks,
          20 * failed > all ? Severity::warning : Severity::note,
          {},
-         fmt::format("{} of {} fits failed checks of their own; their ranks are among those that are tested", failed, all),
-         "see which checks in the table; a user who reads findings would not have used these results"});
+         fmt::format("{} of {} fits failed their own checks; their ranks are included in the test", failed, all),
+         "see in the table which checks failed; in a real analysis the verdict of such a fit would have warned you"});
   if (int const few = count([&](Replication const& each) {
         return each.has_draws() && each.independent > 0 && each.independent < calibration.draws;
       });
       few > 0)
-    findings.push_back({FindingCode::ranks_of_dependent_draws,
-                        20 * few > all ? Severity::warning : Severity::note,
-                        {},
-                        fmt::format("{} of {} fits have fewer than {} independent draws, so that ranks among these are too extreme",
-                                    few, all, calibration.draws),
-                        "run longer chains"});
+    findings.push_back(
+        {FindingCode::ranks_of_dependent_draws,
+         20 * few > all ? Severity::warning : Severity::note,
+         {},
+         fmt::format("{} of {} fits have fewer than {} independent draws, so ranks among their draws are too extreme", few, all,
+                     calibration.draws),
+         "run longer chains"});
   if (int const unsettled = count([](Replication const& each) { return !each.settled; }); unsettled > 0)
     findings.push_back({FindingCode::step_not_settled,
                         20 * unsettled > all ? Severity::warning : Severity::note,
                         {},
-                        fmt::format("{} of {} records were made with a solver whose error may show in them", unsettled, all),
+                        fmt::format("{} of {} records were simulated with a solver whose error may affect them", unsettled, all),
                         "narrow the priors, or state an adaptive or exact solver"});
   int redrawn = 0;
   for (Replication const& each : calibration.records) redrawn += each.redrawn;
@@ -192,8 +194,8 @@ Findings calibration_findings(CalibrationReport const& calibration) {
     findings.push_back({FindingCode::prior_redrawn,
                         redrawn > all ? Severity::warning : Severity::note,
                         {},
-                        fmt::format("{} of {} prior draws could not be simulated and were drawn again: the calibration is of the "
-                                    "prior without them",
+                        fmt::format("{} of {} prior draws could not be simulated and were drawn again: the calibration holds for "
+                                    "the prior without them",
                                     redrawn, redrawn + all),
                         "narrow the priors if such values are not possible (`sysid check` shows where they fail)"});
   return findings;

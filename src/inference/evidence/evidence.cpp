@@ -48,20 +48,20 @@ struct Estimates {
   }
   /// Why the mean weight may miss mass; empty: it does not.
   std::string ill_weights() const {
-    if (!std::isfinite(importance.log_evidence)) return "no draw of the mixture has a density";
+    if (!std::isfinite(importance.log_evidence)) return "the density is zero at all draws of the mixture";
     if (bridge.posterior_effective < enough / 2)  // q follows the posterior's draws, and the error is taken from them too
-      return fmt::format("the posterior's draws are worth only {:.0f} independent ones", bridge.posterior_effective);
+      return fmt::format("the posterior's draws are equivalent to only {:.0f} independent ones", bridge.posterior_effective);
     if (importance.effective < enough)
-      return fmt::format("{} weighted draws are worth only {:.0f} independent ones", draws, importance.effective);
+      return fmt::format("{} weighted draws are equivalent to only {:.0f} independent ones", draws, importance.effective);
     if (bridge.unseen > std::max(0.01, 2 * importance.plain_error))
-      return fmt::format("{:.0f} % of the posterior's draws have weights that no draw of the mixture has", 100 * bridge.unseen);
+      return fmt::format("{:.0f} % of the posterior's draws have larger weights than any draw of the mixture", 100 * bridge.unseen);
     if (surplus() < 0) return fmt::format("bridge sampling gives {:.2f}", bridge.log_evidence);
     return too_large(importance.error);
   }
   std::string ill_bridge() const {
     if (!std::isfinite(bridge.log_evidence)) return "the mixture and the posterior do not overlap";
     if (bridge.posterior_effective < enough / 2)
-      return fmt::format("the posterior's draws are worth only {:.0f} independent ones", bridge.posterior_effective);
+      return fmt::format("the posterior's draws are equivalent to only {:.0f} independent ones", bridge.posterior_effective);
     // The mean of weights may miss mass but does not invent it.
     if (surplus() > 0)
       return fmt::format("the draws miss a part of the posterior: importance sampling gives {:.2f}", importance.log_evidence);

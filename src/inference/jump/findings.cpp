@@ -39,7 +39,7 @@ void add_not_visited(SelectionResult const& result, std::vector<std::string> con
       findings.push_back({FindingCode::model_not_visited,
                           Severity::warning,
                           {name},
-                          fmt::format("`{}` takes no part, and its probability is given as 0: {}", name, excluded[m]),
+                          fmt::format("`{}` is left out, and its probability is given as 0: {}", name, excluded[m]),
                           "check its equations and priors, or fit it on its own to see where simulations fail"});
     else if (!std::isfinite(result.jumps->models[m].log_bayes_factor))
       findings.push_back({FindingCode::model_not_visited,
@@ -81,9 +81,9 @@ void add_not_covered(SelectionResult const& result, Findings& findings) {
     least = std::min(least, model.worth);
   }
   if (names.empty()) return;
-  std::string const message =
-      fmt::format("the proposals of {} are worth only {:.1g} of their number: a part of its posterior is hardly ever reached",
-                  quoted(names), least);
+  std::string const message = fmt::format(
+      "each proposal of {} counts as only {:.1g} draws of its posterior: a part of the posterior is hardly ever reached",
+      quoted(names), least);
   findings.push_back({FindingCode::posterior_not_covered, Severity::error, std::move(names), message,
                       "use a `pilot` ten times as long; if that does not help, the posterior has narrow or curved parts: remove "
                       "parameters that the data do not determine, or compare evidences of `fit`"});

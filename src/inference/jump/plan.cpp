@@ -13,7 +13,7 @@ namespace {
 constexpr SettingRow rows[] = {
     {"samples", SettingKind::integer, "5000", 1, 1e9, "", "iterations of each chain, burn-in included"},
     {"burn_in", SettingKind::integer, "1000", 0, 1e9, "",
-     "first iterations, discarded; the weights that make visits even adapt during them"},
+     "first iterations, discarded; weights adapt during them so that all models are visited equally often"},
     {"thin", SettingKind::integer, "4", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "8", 1, 65536, "", "number of independent chains"},
     {"pilot", SettingKind::integer, "2000", 100, 1e8, "",

@@ -43,7 +43,8 @@ Named named(ast::ModelStatement const& statement) {
           for (ast::InitialValue const& value : each.values)
             result.slots.push_back(slot("initial " + text_of(value.state), value.span));
           return result;
-        } else if constexpr (std::is_same_v<Each, ast::ParameterDeclaration> || std::is_same_v<Each, ast::Definition>) {
+        } else if constexpr (std::is_same_v<Each, ast::ParameterDeclaration> || std::is_same_v<Each, ast::Definition> ||
+                             std::is_same_v<Each, ast::DisturbanceDeclaration>) {
           return {{slot("name " + each.name.name.text, each.span)}};
         } else if constexpr (std::is_same_v<Each, ast::FunctionDefinition> || std::is_same_v<Each, ast::ProcessDefinition>) {
           return {{slot("function " + each.name.text, each.span)}};

@@ -84,9 +84,9 @@ std::string multiples(CalibrationReport const& calibration, std::string const& n
 
 Figure true_ranks_figure(CalibrationReport const& calibration) {
   Figure out{"true_ranks", "Ranks of the true values", "",
-             multiples(calibration, "true_ranks", "95 % of uniform ranks, each group alone", histogram_plot)};
+             multiples(calibration, "true_ranks", "95 % band of uniform ranks, for each group by itself", histogram_plot)};
   out.caption = fmt::format(
-      "Of each record the rank of the true value among {} posterior draws, as a fraction, in {} equal groups. Ranks are uniform "
+      "For each record the rank of the true value among {} posterior draws, as a fraction, in {} equal groups. Ranks are uniform "
       "where posteriors are right. Raised ends show posteriors that are too narrow, a hump posteriors that are too wide, a slope "
       "posteriors that lie too low or too high.",
       calibration.draws, calibration.bins);
@@ -96,11 +96,11 @@ Figure true_ranks_figure(CalibrationReport const& calibration) {
 
 Figure rank_difference_figure(CalibrationReport const& calibration) {
   Figure out{"rank_differences", "Distribution of the ranks minus the uniform one", "",
-             multiples(calibration, "rank_differences", "95 % of uniform ranks, all along the curve", ecdf_plot)};
+             multiples(calibration, "rank_differences", "95 % band of uniform ranks, for the whole curve", ecdf_plot)};
   out.caption =
       "The share of records with at most this rank minus the share that is expected. The band contains the whole curve with "
-      "probability 0.95 where ranks are uniform (Säilynoja et al. 2022), of this quantity alone: one of twenty right curves leaves "
-      "it. The curve has another colour where p together, of both tests and all quantities, is below 0.01." +
+      "probability 0.95 where ranks are uniform (Säilynoja et al. 2022). It is for this quantity alone: one correct curve in "
+      "twenty leaves it. The curve has another colour if `p together` (both tests, all quantities) is below 0.01." +
       multiples_excluded(calibration.quantities.size());
   return out;
 }

@@ -59,7 +59,7 @@ struct Excerpt {
         measured(cut(quantity.measured, w)),
         has_noise(!noisy_lower.empty()),
         has_data(!measured.empty()),
-        has_band(has_noise || quantity.response.draws != 1) {  // an optimum is one trajectory
+        has_band(has_noise || prediction.smoothed || quantity.response.draws != 1) {  // an optimum is one trajectory
     if (!prediction.rows)
       for (double& t : time) t /= prediction.time_scale;
   }
@@ -130,6 +130,11 @@ Plot residual_plot(Excerpt const& of, std::string const& unit, Panel panel) {
            points("residual", 2, of.point_size(), data)}};
 }
 
+std::string caption_of_smoothed(PredictedQuantity const& quantity) {
+  return fmt::format("{} given all samples of the record, with the band that holds it with 95 %, parameters and states together{}.",
+                     quantity.name, quantity.average ? "; at each sample the mean from there to the next" : "");
+}
+
 std::string caption_of(Excerpt const& of, std::string const& name) {
   if (!of.has_data)
     return fmt::format("The prediction of {}, which is not measured{}.", name, of.has_band ? ", with its 95 % band" : "");
@@ -156,8 +161,9 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   Legend legend{keys_of(of)};
   legend.after_first_panel = true;
   int const left = 70, right = column_width - 14, legend_rows = legend.height();
-  Drawing drawing{figure_name(of.has_data ? "fit" : "state", prediction, quantity), column_width,
-                  (of.has_data ? 330 : 200) + legend_rows, std::move(legend)};
+  std::string_view const kind = prediction.smoothed ? "smoothed" : of.has_data ? "fit" : "state";
+  Drawing drawing{figure_name(kind, prediction, quantity), column_width, (of.has_data ? 330 : 200) + legend_rows,
+                  std::move(legend)};
   Axis x = axis(of.time.front(), of.time.back(), 6);
   x.reach_ticks();
 
@@ -171,8 +177,9 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
     below.x_label = time_label(prediction, x);
     drawing.plots.push_back(residual_plot(of, quantity.unit, std::move(below)));
   }
-  return {drawing.name, fmt::format("{} on {}", quantity.name, prediction.experiment),
-          caption_of(of, quantity.name) + samples_excluded(prediction, w), script(drawing), Topic::fit};
+  std::string const caption = prediction.smoothed ? caption_of_smoothed(quantity) : caption_of(of, quantity.name);
+  return {drawing.name, fmt::format("{}{} on {}", quantity.name, prediction.smoothed ? ", smoothed," : "", prediction.experiment),
+          caption + samples_excluded(prediction, w), script(drawing), prediction.smoothed ? Topic::states : Topic::fit};
 }
 
 }  // namespace sysid

@@ -63,6 +63,9 @@ std::vector<Figure> figures(Report const& report) {
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (shows_something(quantity) && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
         out.push_back(fit_figure(prediction, quantity));
+  for (Prediction const& states : report.states)
+    for (PredictedQuantity const& quantity : states.quantities)
+      if (shows_something(quantity) && states.time.size() > 1) out.push_back(fit_figure(states, quantity));
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (over_inputs(prediction, quantity)) out.push_back(input_figure(prediction, quantity));

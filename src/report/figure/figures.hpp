@@ -12,7 +12,7 @@ std::vector<plot::Figure> figures(Report const& report);
 
 // One each; `figures` calls them.
 
-/// Mean, bands and data of a quantity along the record, with its residuals below when it was measured.
+/// Mean, bands and data of a quantity along the record, with its residuals below when it was measured; of smoothed states, too.
 plot::Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity);
 /// Whether a measured quantity has residuals, and so many that their correlations mean something.
 bool has_residuals(Prediction const& prediction, PredictedQuantity const& quantity);

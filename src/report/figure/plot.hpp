@@ -10,7 +10,7 @@
 namespace sysid::plot {
 
 /// The part of a page that a figure stands in: what was found, how it fits the record, whether the chains agree.
-enum class Topic { result, fit, chains };
+enum class Topic { result, fit, states, chains };
 
 /// A figure before it is drawn: the script alone, data included, is what gnuplot needs.
 struct Figure {

@@ -184,9 +184,11 @@ void to_json(json& out, PredictedQuantity const& quantity) {
   quantity_members(Writer(out), quantity);
   if (VarianceParts const& parts = quantity.variance; !parts.parameter.empty())
     out["variance"] = {parts.parameter.size(), parts.model.size(), parts.noise.size()};
+  if (quantity.average) out["average"] = true;
 }
 void from_json(json const& stored, PredictedQuantity& quantity) {
   quantity_members(Reader(stored), quantity);
+  quantity.average = stored.value("average", false);
   if (!stored.contains("variance")) return;
   quantity.variance.parameter = column_of(stored.at("variance").at(0));
   quantity.variance.model = column_of(stored.at("variance").at(1));
@@ -300,7 +302,11 @@ std::string headline_alone(std::string const& stored) { return stored.substr(0, 
 
 }  // namespace
 
-std::string record_bytes(Report const& report) { return sealed_cbor(report, form); }
+std::string record_bytes(Report const& report) {
+  json content = report;
+  if (!report.states.empty()) content["states"] = report.states;  // those of before have none
+  return sealed_cbor(content, form);
+}
 
 Report read_record(std::string const& bytes, std::filesystem::path const& path) {
   UserError const other = unusable_result(fmt::format("`{}` was written by another version of sysid", path.string()));
@@ -316,6 +322,8 @@ Report read_record(std::string const& bytes, std::filesystem::path const& path) 
   try {
     Report report = stored.get<Report>();
     report.verdict = headline_alone(report.verdict);
+    if (stored.contains("states")) stored.at("states").get_to(report.states);
+    for (Prediction& each : report.states) each.smoothed = true;
     return report;
   } catch (json::exception const&) {
     throw other;

@@ -61,7 +61,8 @@ ReportTable jump_table(SelectionReport const& selection) {
   JumpRecord const& jumps = *selection.result.jumps;
   ReportTable table{
       "models",
-      "Probability: from how likely jumps are accepted; errors are one standard error. log BF: log Bayes factor against the most "
+      "Probability: from the acceptance probabilities of the jumps; errors are one standard error. log BF: log Bayes factor "
+      "against the most "
       "probable model. log evidence: by importance sampling, from the same proposals. Jumps: accepted fraction, to "
       "and from the model.",
       {"model", "prior", "probability", "error", "log BF", "error", "log evidence", "error", "jumps to", "jumps from"},

@@ -147,6 +147,8 @@ Report read_result(fs::path const& folder) {
     read_chain(folder / draws_file(c), report.draws, report.draws.chains[c]);
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p) read_prediction(folder / prediction_names[p], report.predictions[p]);
+  std::vector<std::string> const states_names = states_files(report);
+  for (std::size_t e = 0; e < report.states.size(); ++e) read_prediction(folder / states_names[e], report.states[e]);
   for (FunctionReport& function : report.functions) read_function(folder / function_file(function), function);
   if (!report.selection) return report;
   SelectionReport& selection = *report.selection;

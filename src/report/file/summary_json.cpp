@@ -6,7 +6,9 @@
 #include "report/file/calibration.hpp"
 #include "report/file/discovery.hpp"
 #include "report/file/selection.hpp"
+#include "report/file/task_folder.hpp"
 #include "report/text/report_text.hpp"
+#include "report/text/states_text.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -208,6 +210,23 @@ Json average(AverageReport const& average) {
   return out;
 }
 
+/// Random states and disturbances along each record, as large as they are and as surely as they are known.
+Json states(Report const& report) {
+  Json out = Json::object();
+  std::vector<std::string> const files = states_files(report);
+  for (std::size_t e = 0; e < report.states.size(); ++e) {
+    Json& along = out[report.states[e].experiment];
+    along = {{"file", files[e]}, {"draws", 0}, {"quantities", Json::object()}};
+    for (PredictedQuantity const& each : report.states[e].quantities) {
+      StateSize const size = size_of(each);
+      along["draws"] = each.response.draws - each.response.excluded;
+      along["quantities"][each.name] = {
+          {"unit", each.unit}, {"mean_between_samples", each.average}, {"rms", size.rms}, {"sd", size.sd}};
+    }
+  }
+  return out;
+}
+
 /// Those that do not apply say why.
 Json checks(std::vector<CheckRecord> const& records) {
   Json out = Json::array();
@@ -265,6 +284,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
     out["noise"] = report.noise;
   }
   if (report.criteria) out["criteria"] = criteria(*report.criteria);
+  if (!report.states.empty()) out["states"] = states(report);
   for (ReportTable const& table : report.tables) out["tables"][table.title] = {{"header", table.header}, {"rows", table.rows}};
   out["ledger"] = ledger(report.ledger, report.sampled_names);
   out["seed"] = report.seed;

@@ -40,8 +40,9 @@ bool is_result_file(std::string const& name, std::string const& task) {
   return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "report.cbor" ||
          name == "resolved.sysid" || name == "predict.csv" || name == "terms.csv" || name == "found.sysid" ||
          name == "structures.csv" || name == "pointwise.csv" || name == "refit.csv" || name == "ranks.csv" ||
-         name == "populations.csv" || between("draws_", ".csv") || between("function_", ".csv") || between("predict_", ".csv") ||
-         between("particles_", ".csv") || between("polished_", ".csv") || between("resolved_", ".sysid");
+         name == "populations.csv" || name == "states.csv" || between("states_", ".csv") || between("draws_", ".csv") ||
+         between("function_", ".csv") || between("predict_", ".csv") || between("particles_", ".csv") ||
+         between("polished_", ".csv") || between("resolved_", ".sysid");
 }
 
 bool is_figure_file(std::string const& name) {
@@ -130,6 +131,8 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p)
     write(prediction_names[p], predict_csv(report, report.predictions[p]));
+  std::vector<std::string> const states_names = states_files(report);
+  for (std::size_t e = 0; e < report.states.size(); ++e) write(states_names[e], predict_csv(report, report.states[e]));
   if (report.criteria && !report.criteria->pointwise.empty()) write("pointwise.csv", pointwise_csv(report));
   // What an interrupted run left may have more tables than its end: chains of models that died later.
   for (fs::path const& file : earlier_tables)
@@ -177,16 +180,24 @@ std::string undrawn_words(std::vector<std::string> const& undrawn) {
 
 std::string draws_file(std::size_t chain) { return fmt::format("draws_{}.csv", chain + 1); }
 
-std::vector<std::string> prediction_files(Report const& report) {
+namespace {
+
+std::vector<std::string> files_along(std::vector<Prediction> const& predictions, char const* begin) {
   std::vector<std::string> names;
   std::set<std::string> taken;
-  for (Prediction const& prediction : report.predictions) {
-    std::string suffix = report.predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);
+  for (Prediction const& prediction : predictions) {
+    std::string suffix = predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);
     while (!taken.insert(suffix).second) suffix += "_";  // two names may differ only in letters that file names do not have
-    names.push_back(fmt::format("predict{}.csv", suffix));
+    names.push_back(fmt::format("{}{}.csv", begin, suffix));
   }
   return names;
 }
+
+}  // namespace
+
+std::vector<std::string> prediction_files(Report const& report) { return files_along(report.predictions, "predict"); }
+
+std::vector<std::string> states_files(Report const& report) { return files_along(report.states, "states"); }
 
 std::string function_file(FunctionReport const& function) {
   return fmt::format("function_{}.csv", plot::identifier(function.name));

@@ -24,10 +24,10 @@ void remove_result(std::filesystem::path const& folder);
 /// called by whoever holds the folder's lock.
 void remove_partial(std::filesystem::path const& folder);
 
-/// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), pointwise.csv, figures/, report.html, report.cbor, resolved.sysid,
-/// timing.json and, last of all, summary.json: where it stands, the result is whole. `pictures`: what figures are drawn as, beside
-/// their scripts; with none the page has none either. Returns what `write_figures` does; IoError names the file that could not be
-/// written.
+/// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), states.csv (the same), pointwise.csv, figures/,
+/// report.html, report.cbor, resolved.sysid, timing.json and, last of all, summary.json: where it stands, the result is whole.
+/// `pictures`: what figures are drawn as, beside their scripts; with none the page has none either. Returns what `write_figures`
+/// does; IoError names the file that could not be written.
 std::vector<std::string> write_result(Report const& report, std::filesystem::path const& folder,
                                       std::vector<FigureFormat> const& pictures = {FigureFormat::svg});
 
@@ -48,6 +48,8 @@ std::string undrawn_words(std::vector<std::string> const& undrawn);
 std::string draws_file(std::size_t chain);
 /// Of each prediction, in order.
 std::vector<std::string> prediction_files(Report const& report);
+/// Of the smoothed states of each experiment, in order.
+std::vector<std::string> states_files(Report const& report);
 std::string function_file(FunctionReport const& function);
 /// Of a candidate model.
 std::string particles_file(std::string const& model);

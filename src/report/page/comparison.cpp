@@ -32,7 +32,8 @@ std::string with_error(double value, std::optional<double> error, int decimals) 
 ReportTable fits_table(Comparison const& comparison) {
   ReportTable table;
   table.title = fmt::format("fitted to {}; probabilities of the models for equal prior probabilities", comparison.data);
-  table.header = {"fit", "model", "noise", "parameters", "log evidence", "log Bayes factor", "evidence against", "probability", "checks"};
+  table.header = {"fit",         "model", "noise", "parameters", "log evidence", "log Bayes factor", "evidence against",
+                  "probability", "checks"};
   for (ComparedFit const& fit : comparison.fits) {
     table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
                           fit.log_evidence ? evidence_number(*fit.log_evidence, fit.error) : "-",
@@ -70,15 +71,17 @@ ReportTable scores_table(ComparedScores const& scores) {
       table.caption += fmt::format("{}{}: Pareto's k is above 0.7 for {}, so its elpd is too high",
                                    table.caption.empty() ? "" : "\n", fit.name, counted(fit.doubtful, "sample"));
     if (fit.impossible > 0)
-      table.caption += fmt::format("{}{}: no draw gives {} any density, so it has no weight", table.caption.empty() ? "" : "\n",
-                                   fit.name, counted(fit.impossible, "sample"));
+      table.caption += fmt::format("{}{}: the density of {} is zero under all draws, so this fit has no weight",
+                                   table.caption.empty() ? "" : "\n", fit.name, counted(fit.impossible, "sample"));
   }
   std::vector<std::string> one_step;
   for (ComparedScore const& fit : scores.fits)
     if (fit.one_step) one_step.push_back(fit.name);
   if (scores.future && !one_step.empty())
-    table.caption += fmt::format("{}{}: only parameters are from the rows before its tenth, each sample is one step ahead",
-                                 table.caption.empty() ? "" : "\n", listed(one_step));
+    table.caption += fmt::format(
+        "{}{}: only the parameters come from the rows before the tenth; each sample is predicted one step ahead, from measured "
+        "ones",
+        table.caption.empty() ? "" : "\n", listed(one_step));
   if (scores.in_time && !scores.future)
     table.caption += fmt::format(
         "{}the rows follow one another in time: leave-one-out shows how well a model interpolates, not how "

@@ -10,6 +10,7 @@
 #include "report/page/html_parts.hpp"
 #include "report/page/html_words.hpp"
 #include "report/text/report_text.hpp"
+#include "report/text/states_text.hpp"
 
 namespace sysid {
 
@@ -94,6 +95,11 @@ class Pictures {
   int number_ = 0;
 };
 
+std::string states_html(Report const& report) {
+  ReportTable const table = states_table(report);
+  return table.rows.empty() ? "" : table_html(table, report.states.size() > 1 ? 3 : 2);
+}
+
 }  // namespace
 
 std::string_view verdict_kind(Report const& report) {
@@ -114,6 +120,7 @@ std::vector<HtmlSection> task_sections(Report const& report, std::vector<DrawnFi
   add("result", result_title(report), result_html(report) + pictures.of(plot::Topic::result));
   add("fit", report.draws.total() == 0 && !report.selection ? "Prediction" : "Fit",
       scores_html(report) + pictures.of(plot::Topic::fit));
+  add("states", "States and disturbances", states_html(report) + pictures.of(plot::Topic::states));
   add("criteria", "Predictive scores and information criteria", criteria_html(report));
   add("diagnostics", "Diagnostics of the chains", chains_html(report) + pictures.of(plot::Topic::chains));
   add("modes", "Modes", modes_html(report));

@@ -100,13 +100,14 @@ namespace {
 std::string calibration_meaning(Report const& report) {
   switch (grade(report)) {
     case Severity::error:
-      return "Until this is fixed, intervals and probabilities of such fits are not what they state, for records like those "
-             "that the priors make.";
+      return "Until this is fixed, do not rely on intervals and probabilities of such fits, for records like those simulated "
+             "from the priors.";
     case Severity::warning:
       return "Check the points below before you rely on intervals of such fits.";
     default:
-      return "For records that the model itself makes, with values from its priors, nothing contradicts that intervals of these "
-             "fits contain the true values as often as they state. This does not prove the model: real records are not made by it.";
+      return "For records that are simulated with the model itself, with true values from its priors, no difference was found "
+             "between how often the intervals of these fits contain the true values and how often they should. This does not prove "
+             "the model: a real record does not come from it.";
   }
 }
 

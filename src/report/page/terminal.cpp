@@ -11,6 +11,7 @@
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
 #include "report/text/report_text.hpp"
+#include "report/text/states_text.hpp"
 #include "report/text/summary_text.hpp"
 
 namespace sysid {
@@ -87,6 +88,11 @@ std::string terminal_summary(Report const& report, Surface read_at) {
     std::vector<std::vector<std::string>> rows = {table.header};
     rows.insert(rows.end(), table.rows.begin(), table.rows.end());
     out += fmt::format("\n{}\n{}", table.title, align_columns(rows, 1));
+  }
+  if (ReportTable const states = states_table(report); !states.rows.empty()) {
+    std::vector<std::vector<std::string>> rows = {states.header};
+    rows.insert(rows.end(), states.rows.begin(), states.rows.end());
+    out += fmt::format("\n{}\n{}", states.title, align_columns(rows, report.states.size() > 1 ? 3 : 2));
   }
   std::string facts;
   for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what(), scores_line(line));

@@ -273,7 +273,7 @@ Finding improper_tail(Target const& target, Ray const& ray) {
 }
 
 Finding undecided_tail(Target const& target, Ray const& ray) {
-  std::string const what = ray.failed ? "the model cannot be solved" : "its density falls too slowly to decide it";
+  std::string const what = ray.failed ? "the model cannot be solved" : "its density falls too slowly to decide this";
   return {FindingCode::propriety_not_checked,
           Severity::warning,
           {target.parameters()[static_cast<std::size_t>(ray.coordinate)].name},

@@ -68,7 +68,7 @@ std::vector<double> as_high_as(Objective const& objective, Coordinate const& alo
 Finding repeated(Target const& target, Eigen::Index p, std::size_t places, bool certain) {
   std::string const& name = target.parameters()[static_cast<std::size_t>(p)].name;
   std::string const why =
-      fmt::format("{} local searches from further off ended at other values of `{}` that fit as well", places, name);
+      fmt::format("{} local searches that started further away ended at other values of `{}` that fit equally well", places, name);
   std::string const help = fmt::format("bound `{}` by `lower` and `upper` to one period, or give it a proper prior", name);
   if (certain) return {FindingCode::improper_posterior, Severity::error, {name}, "the posterior is improper: " + why, help};
   return {

@@ -92,12 +92,12 @@ TEST_CASE("a fit without an evidence or without scores is refused by name, with 
   comparison.fits[1].probability.reset();
   comparison.fits[1].without = "the prior of `k` is improper";
   CHECK(refusal(comparison, {"a", "b"}, AverageWeights::evidence) ==
-        "E6704 `b` cannot be weighed by evidence: the prior of `k` is improper");
+        "E6704 `b` cannot be given a weight by evidence: the prior of `k` is improper");
   CHECK(refusal(comparison, {"a", "b"}, AverageWeights::stacking) ==
-        "E6704 `a` cannot be weighed by stacking: no two of the fits have predictive scores on the same samples");
+        "E6704 `a` cannot be given a weight by stacking: no two of the fits have predictive scores on the same samples");
   comparison.scores.fits = {score("a", 0.5, 0.5), score("c", 0.5, 0.5)};
   CHECK(refusal(comparison, {"a", "b"}, AverageWeights::pseudo_bma) ==
-        "E6704 `b` cannot be weighed by pseudo-BMA+: it has no predictive scores");
+        "E6704 `b` cannot be given a weight by pseudo-BMA+: it has no predictive scores");
 }
 
 TEST_CASE("evidences that are not confirmed and unreliable scores are warned of") {

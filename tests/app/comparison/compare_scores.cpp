@@ -45,7 +45,7 @@ TEST_CASE("a fit that gives a sample no density has no weight, and the sample co
   comparison.scores = found;
   std::string const text = comparison_text(comparison);
   CAPTURE(text);
-  CHECK(text.find("never: no draw gives 1 sample any density, so it has no weight") != std::string::npos);
+  CHECK(text.find("never: the density of 1 sample is zero under all draws, so this fit has no weight") != std::string::npos);
   CHECK(text.find("nan") == std::string::npos);
 }
 

@@ -1,0 +1,192 @@
+// The checker's wording about what was not measured.
+#include "check/message/errors_disturbances.hpp"
+
+#include <fmt/format.h>
+
+#include "check/message/error_words.hpp"
+
+namespace sysid::errors {
+namespace {
+
+constexpr Synonym law_synonyms[] = {
+    {"white_noise", "white"},
+    {"whitenoise", "white"},
+    {"noise", "white"},
+    {"wiener", "white"},
+    {"brownian", "white"},
+    {"gaussian", "white"},
+    {"ou", "ornstein_uhlenbeck"},
+    {"ornstein", "ornstein_uhlenbeck"},
+    {"coloured", "ornstein_uhlenbeck"},
+    {"colored", "ornstein_uhlenbeck"},
+    {"exponential", "ornstein_uhlenbeck"},
+    {"normal", "white"},
+};
+
+Diagnostic with_place(Diagnostic diagnostic, std::optional<Span> const& place, std::string text) {
+  if (place) diagnostic.secondary.push_back({*place, std::move(text)});
+  return diagnostic;
+}
+
+}  // namespace
+
+Diagnostic unknown_law(ast::Call const& law, ast::Name const& name, bool discrete, Names const& known) {
+  std::string const& given = law.function.text;
+  if (discrete)
+    return about({given, name.text},
+                 error("E3301", law.function.span, fmt::format("in discrete time `{}` is no law of a disturbance", given),
+                       fmt::format("write `disturbance {} ~ normal(0, sd = s)`: its samples are independent; a model of the past "
+                                   "makes it correlated, as in `y = a*lag(y, 1) + {}`",
+                                   name.text, name.text)));
+  std::string help = guess_or(law_synonyms, given, known, choose(known, "laws"));
+  if (given == "normal")
+    help =
+        "samples are drawn in discrete time; in continuous time write `white(intensity = q)`, or `ornstein_uhlenbeck(sd = s, "
+        "time = T)` for a disturbance of a standard deviation";
+  return about({given, name.text},
+               error("E3301", law.function.span, fmt::format("in continuous time `{}` is no law of a disturbance", given), help));
+}
+
+Diagnostic sd_of_white_noise(Span argument, std::string const& name) {
+  return about({name},
+               error("E3302", argument, "white noise has no standard deviation: that of its samples is infinite",
+                     "state its intensity, `white(intensity = q)`; a disturbance of standard deviation s that is correlated "
+                     "over a time T is `ornstein_uhlenbeck(sd = s, time = T)`, or about white noise of intensity `2*s^2*T`"));
+}
+
+Diagnostic unit_of_intensity(Span argument, std::string const& name, std::string const& given, std::string const& wanted) {
+  return about(
+      {name},
+      error("E3302", argument, fmt::format("the intensity of `{}` must be in [{}], but this is in [{}]", name, wanted, given),
+            "an intensity is the variance times twice the time of correlation; a disturbance of standard deviation s "
+            "that is correlated over a time T is `ornstein_uhlenbeck(sd = s, time = T)`"));
+}
+
+Diagnostic law_reads(Span law, std::string const& name, std::string const& what) {
+  return about({name}, error("E3303", law, fmt::format("the law of `{}` reads {}", name, what),
+                             "its arguments are expressions of constants and parameters; a factor that changes stands in the "
+                             "equation, as in `abs(y')*w`"));
+}
+
+Diagnostic law_never_positive(Span declaration, std::string const& name, std::string const& argument, Names const& parameters) {
+  return about({name}, error("E3304", declaration, fmt::format("the {} of `{}` must be positive, but it never is", argument, name),
+                             positive_prior(parameters)));
+}
+
+Diagnostic mean_of_disturbance(Span law, std::string const& name) {
+  return about({name}, error("E3305", law, fmt::format("the mean of disturbance `{}` must be 0", name),
+                             fmt::format("write `normal(0, sd = s)` and the mean as a parameter of its own: `{} + m`", name)));
+}
+
+Diagnostic bounds_of_disturbance(Span law, std::string const& name) {
+  return about({name}, error("E3305", law, fmt::format("disturbance `{}` cannot have bounds", name), "write `normal(0, sd = s)`"));
+}
+
+Diagnostic rate_of_disturbance(ast::Reference const& reference) {
+  return about({reference.name.text, primed(reference)},
+               error("E2007", reference.span, fmt::format("`{}` is a disturbance: it has no time derivative", reference.name.text),
+                     "a smoother disturbance is a state that another one drives, as `state f` in `T*f' + f = w`"));
+}
+
+Diagnostic white_noise_observed(Span reader, Subject const& what, Span declaration, std::string const& disturbance) {
+  Diagnostic diagnostic =
+      error("E3306", reader, fmt::format("{} reads white noise, which has no finite variance", what.words),
+            fmt::format("give `{}` a memory, `ornstein_uhlenbeck(sd = s, time = T)`, or use what it reaches only through a state",
+                        disturbance));
+  diagnostic.secondary.push_back({declaration, "white noise"});
+  Names names = what.names;
+  names.push_back(disturbance);
+  return about(names, std::move(diagnostic));
+}
+
+Diagnostic not_linear_in_disturbance(Span declaration, std::string const& disturbance, std::optional<Span> const& part) {
+  std::string const help = fmt::format(
+      "white noise may be multiplied by anything but itself; for other functions give it a memory: `{} ~ ornstein_uhlenbeck(sd = "
+      "s, "
+      "time = T)`",
+      disturbance);
+  std::string const message = fmt::format("the equations are not linear in disturbance `{}`", disturbance);
+  if (!part) return about({disturbance}, error("E3307", declaration, message, help));
+  return about({disturbance}, with_place(error("E3307", *part, message, help), declaration, "white noise"));
+}
+
+Diagnostic unused_disturbance(Span declaration, std::string const& disturbance) {
+  return about(
+      {disturbance},
+      error("E3308", declaration, fmt::format("no equation and no channel reads disturbance `{}`", disturbance),
+            fmt::format("add it to the equation that it disturbs, as in `m*y'' + k*y = x + {}`, or remove it", disturbance)));
+}
+
+Diagnostic disturbance_beside(Span place, Subject const& disturbance, std::string const& what, std::string const& help) {
+  return about(disturbance.names, error("E3309", place, fmt::format("{} cannot stand beside {}", disturbance.words, what), help));
+}
+
+Diagnostic law_of_initial(ast::Call const& law, std::string const& state) {
+  return about(
+      {law.function.text, state},
+      error("E3310", law.function.span, fmt::format("the initial value of `{}` can only be normal", state),
+            fmt::format("write `initial {0} ~ normal(0, sd = s)`; for another distribution estimate it: `parameter start ~ "
+                        "{1}(...)` and `initial {0} = start`",
+                        state, law.function.text)));
+}
+
+Diagnostic bounds_of_initial(ast::Call const& law, std::string const& state) {
+  return about({state},
+               error("E3310", law.span, fmt::format("a random initial value cannot have bounds: that of `{}` has", state),
+                     fmt::format("remove them, or estimate the value: `parameter start ~ {}(...)` and `initial {} = start`",
+                                 law.function.text, state)));
+}
+
+Diagnostic random_guess(Span initial, std::string const& unknown) {
+  return about({unknown}, error("E3310", initial, fmt::format("the first value of `{}` follows from the equations", unknown),
+                                fmt::format("write a value near it, `initial {} = 0`, at which its search begins", unknown)));
+}
+
+Diagnostic estimated_and_random_start(Span option, Span initial, std::string const& state) {
+  return about({"start", state}, conflict("E3311", option, "estimated", initial, "random",
+                                          fmt::format("the initial value of `{}` is random: it is not estimated besides", state),
+                                          "remove the option, or write a value in place of the distribution"));
+}
+
+Diagnostic filter_of_nothing(Span option, std::string const& model) {
+  return about({"filter", model},
+               error("E3312", option, fmt::format("model `{}` has nothing random in its states: it needs no filter", model),
+                     "remove the option, or declare what was not measured: `disturbance w [N] ~ white(intensity = q)`"));
+}
+
+Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optional<Span> const& part) {
+  return about(
+      {"filter", model},
+      with_place(error("E3313", option, fmt::format("`kalman` needs linear equations and channels, which `{}` has not", model),
+                       "write `filter = extended`, `unscented` or `particle`, or leave the choice to the program"),
+                 part, "not linear"));
+}
+
+Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task) {
+  Diagnostic diagnostic =
+      error("E3314", channel, fmt::format("with random states the noise of channel `{}` must be normal: it is `{}`", name, noise),
+            "write `with filter = particle` in the task, which takes noise of any kind, or `normal(..., sd = s)` here");
+  diagnostic.secondary.push_back({task, "fitted here"});
+  return about({name, noise}, std::move(diagnostic));
+}
+
+Diagnostic law_of_input_error(Span law, std::string const& input, std::string const& reason) {
+  return about({input}, error("E3315", law, fmt::format("the error of input `{}` {}", input, reason),
+                              "write its standard deviation as a number: `error normal(sd = 0.5)`"));
+}
+
+Diagnostic input_error_refused(Span error_place, std::string const& input, std::string const& reason,
+                               std::optional<Label> const& place, std::string const& help) {
+  Diagnostic diagnostic = error("E3316", error_place, fmt::format("input `{}` cannot have an error: {}", input, reason), help);
+  if (place) diagnostic.secondary.push_back(*place);
+  return about({input}, std::move(diagnostic));
+}
+
+Diagnostic input_errors_differ(Span second, Span first, std::string const& input, std::string const& one,
+                               std::string const& other) {
+  return about({input}, conflict("E3317", second, one, first, other,
+                                 fmt::format("the experiments of one task state different errors of input `{}`", input),
+                                 "state the same error in both data blocks, or none"));
+}
+
+}  // namespace sysid::errors

@@ -1,0 +1,61 @@
+// Leaves of disturbances become leaves of inputs.
+#include "likelihood/drawn_disturbances.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace sysid {
+
+DrawnDisturbances draw_disturbances(Model model, ConstLanes parameters, Experiment experiment, StreamKey key) {
+  constexpr std::uint64_t starts = 1u << 20;
+  Graph& graph = model.graph;
+  auto const value = [&](NodeId id) {
+    return graph.evaluate(id, [&](NodeId leaf) {
+      Node const& node = graph[leaf];
+      auto const p = static_cast<std::size_t>(node.index);
+      if (node.leaf_kind != LeafKind::parameter || p >= model.parameters.size()) return std::nan("");
+      Parameter const& parameter = model.parameters[p];
+      return std::isnan(parameters(node.index, 0)) && parameter.value
+                 ? graph.constant_value(*parameter.value).value_or(std::nan(""))
+                 : parameters(node.index, 0);
+    });
+  };
+  bool const continuous = model.dynamics == Dynamics::continuous;
+  int const first = static_cast<int>(model.inputs.size());
+  experiment.inputs.erase(experiment.inputs.begin() + first, experiment.inputs.end());
+  for (std::size_t d = 0; d < model.disturbances.size(); ++d) {
+    Disturbance const& disturbance = model.disturbances[d];
+    double const intensity = value(disturbance.intensity);
+    Stream stream(key.with_step(d));
+    std::vector<double> samples;
+    for (std::size_t i = 0; i < experiment.time.size(); ++i) {
+      bool const white = continuous && !disturbance.held && i + 1 < experiment.time.size();
+      double const variance = white ? intensity / (experiment.time[i + 1] - experiment.time[i]) : intensity;
+      samples.push_back(std::sqrt(variance) * stream.normal());
+    }
+    experiment.inputs.emplace_back(InputRule::zero_order, experiment.time, std::move(samples));
+    Quantity input = disturbance;
+    input.name += " (drawn)";
+    model.inputs.push_back(std::move(input));
+  }
+  auto const as_inputs = [&](NodeId root) {
+    return graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
+      Node const node = graph[leaf];
+      if (node.leaf_kind != LeafKind::disturbance) return std::nullopt;
+      return graph.leaf(LeafKind::input, first + node.index);
+    });
+  };
+  Stream stream(key.with_step(starts));
+  for (State& state : model.states) {
+    state.derivative = as_inputs(state.derivative);
+    if (!state.initial_variance) continue;
+    double const sd = std::sqrt(value(*state.initial_variance));
+    state.initial = graph.add(state.initial, graph.constant(sd * stream.normal()));
+    state.initial_variance.reset();
+  }
+  model.disturbances.clear();
+  return {std::move(model), std::move(experiment)};
+}
+
+}  // namespace sysid

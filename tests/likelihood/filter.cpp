@@ -1,0 +1,132 @@
+// The likelihood of models with disturbances against the joint normal density of all samples at once.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "likelihood/linear_system.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+TEST_CASE("the likelihood of a linear model with a disturbance is the joint normal density of its samples") {
+  std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
+  LinearSystem const system = oscillator_system(1.3, 4, 130, 0.02, 0.004);
+  Model const model = with_disturbance(filtered_file(filtered_text).models.front(), "w", "q");
+  SUBCASE("exact steps") {
+    FilterRecord const of = record(60, 2, true);
+    ModelTarget const target(compile(model, false, "exponential"), of.experiment, filter_options("exponential", 1));
+    CHECK(value_at(target, values) == doctest::Approx(joint_density(system, of.experiment.time, of.u, of.y)).epsilon(1e-11));
+  }
+  SUBCASE("rk4, unequal steps") {
+    FilterRecord const of = record(60, 2, false);
+    ModelTarget const target(compile(model, false, "rk4"), of.experiment, filter_options("rk4", 40));
+    CHECK(value_at(target, values) == doctest::Approx(joint_density(system, of.experiment.time, of.u, of.y)).epsilon(1e-10));
+  }
+  SUBCASE("adaptive steps") {
+    FilterRecord const of = record(60, 2, false);
+    TargetOptions options = filter_options("dopri5", 1);
+    options.solver.relative = 1e-11;
+    ModelTarget const target(compile(model, false, "dopri5"), of.experiment, options);
+    CHECK(value_at(target, values) == doctest::Approx(joint_density(system, of.experiment.time, of.u, of.y)).epsilon(1e-9));
+  }
+  SUBCASE("a stiff solver") {
+    FilterRecord const of = record(60, 2, false);
+    TargetOptions options = filter_options("cvode", 1);
+    options.solver.relative = 1e-9;
+    ModelTarget const target(compile(model, false, "cvode"), of.experiment, options);
+    CHECK(value_at(target, values) == doctest::Approx(joint_density(system, of.experiment.time, of.u, of.y)).epsilon(1e-6));
+  }
+  SUBCASE("sigma points") {
+    FilterRecord const of = record(60, 2, false);
+    ModelTarget const target(compile(model, false, "rk4", FilterRule::unscented), of.experiment, filter_options("rk4", 40));
+    CHECK(value_at(target, values) == doctest::Approx(joint_density(system, of.experiment.time, of.u, of.y)).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("residuals and densities of samples are those of the filter") {
+  std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
+  Model const model = with_disturbance(filtered_file(filtered_text).models.front(), "w", "q");
+  FilterRecord const of = record(60, 2, false);
+  ModelTarget const target(compile(model, false, "rk4"), of.experiment, filter_options("rk4", 4));
+  int const dimension = target.dimension();
+  LaneArray theta(dimension, 3), declared(dimension, 3);
+  for (int w = 0; w < 3; ++w)
+    for (int p = 0; p < dimension; ++p) declared(p, w) = values[static_cast<std::size_t>(p)] * (1 + 0.1 * w * (p + 1));
+  target.unconstrain(declared, theta);
+  std::vector<double> value(3);
+  Ledger ledger;
+  target.log_likelihood(theta, value, ledger);
+  LaneArray residuals(target.residual_count(), 3);
+  target.residuals(theta, residuals, ledger);
+  std::vector<double> sums(3);
+  for (int r = 0; r < residuals.rows(); ++r)
+    for (int w = 0; w < 3; ++w) sums[static_cast<std::size_t>(w)] += 0.5 * residuals(r, w) * residuals(r, w);
+  CHECK(value[0] + sums[0] == doctest::Approx(value[1] + sums[1]).epsilon(1e-10));
+  CHECK(value[0] + sums[0] == doctest::Approx(value[2] + sums[2]).epsilon(1e-10));
+  CHECK(value[0] != doctest::Approx(value[1]).epsilon(1e-3));
+}
+
+TEST_CASE("derivatives of the likelihood of a filter are exact") {
+  std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
+  Model model = with_disturbance(filtered_file(filtered_text).models.front(), "w", "q");
+  FilterRule rule = FilterRule::extended;
+  SUBCASE("linear") {}
+  SUBCASE("a hardening spring, extended") {
+    std::string text = filtered_text;
+    text.replace(text.find("k*y = x"), 7, "k*y + 4e5 [N/m^3]*y^3 = x");
+    model = with_disturbance(filtered_file(text).models.front(), "w", "q");
+  }
+  SUBCASE("a hardening spring, unscented") {
+    std::string text = filtered_text;
+    text.replace(text.find("k*y = x"), 7, "k*y + 4e5 [N/m^3]*y^3 = x");
+    model = with_disturbance(filtered_file(text).models.front(), "w", "q");
+    rule = FilterRule::unscented;
+  }
+  FilterRecord const of = record(60, 2, false);
+  ModelTarget const target(compile(model, false, "rk4", rule), of.experiment, filter_options("rk4", 4));
+  CHECK(target.derivatives() == DerivativeSource::exact);
+  int const dimension = target.dimension();
+  LaneArray theta(dimension, 1), declared(dimension, 1);
+  for (int p = 0; p < dimension; ++p) declared(p, 0) = values[static_cast<std::size_t>(p)];
+  target.unconstrain(declared, theta);
+  double value = 0;
+  LaneArray gradient(dimension, 1);
+  Ledger ledger;
+  target.log_likelihood_gradient(theta, {&value, 1}, gradient, ledger);
+  for (int p = 0; p < dimension; ++p) {
+    // Richardson: the error of the fourth order is 1e-9 of the slope here.
+    double const step = 2e-4;
+    LaneArray moved(dimension, 4);
+    double const by[] = {step, -step, 2 * step, -2 * step};
+    for (int w = 0; w < 4; ++w)
+      for (int i = 0; i < dimension; ++i) moved(i, w) = theta(i, 0) + (i == p ? by[w] : 0);
+    std::vector<double> out(4);
+    target.log_likelihood(moved, out, ledger);
+    double const slope = (8 * (out[0] - out[1]) - (out[2] - out[3])) / (12 * step);
+    CHECK(gradient(p, 0) == doctest::Approx(slope).epsilon(1e-7));
+  }
+}
+
+TEST_CASE("widths of lanes, threads and machine code do not change a filter") {
+  Model const model = with_disturbance(filtered_file(filtered_text).models.front(), "w", "q");
+  FilterRecord const of = record(60, 2, false);
+  std::vector<std::vector<double>> results;
+  for (ExecutionOptions const& execution : {ExecutionOptions{.lanes = 1}, ExecutionOptions{.lanes = 16, .threads = 2},
+                                            ExecutionOptions{.lanes = 8, .executor = ExecutorKind::native}}) {
+    TargetOptions options = filter_options("rk4", 2);
+    options.execution = execution;
+    ModelTarget const target(compile(model, false, "rk4"), of.experiment, options);
+    LaneArray theta(target.dimension(), 20);
+    target.sample_prior({7}, theta);
+    std::vector<double> out(20);
+    Ledger ledger;
+    target.log_likelihood(theta, out, ledger);
+    results.push_back(out);
+  }
+  CHECK(results[0] == results[1]);
+  CHECK(results[0] == results[2]);
+}
+
+}  // namespace
