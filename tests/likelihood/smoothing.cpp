@@ -152,6 +152,59 @@ TEST_CASE("a state that other states determine is smoothed with them") {
   check_equal(path, expected_of(system, of.experiment.time, of.u, of.y), 1e-7);
 }
 
+TEST_CASE("a disturbance in discrete time is smoothed as the joint normal distribution has it") {
+  std::string const text = R"(
+model ar {
+  time discrete 0.02 [s]
+  input x [N]
+  state y [m]
+  initial y = 0
+  parameter a ~ uniform(0, 1)
+  parameter s [m] ~ log_uniform(1e-5, 1)
+  disturbance w [m] ~ normal(0, sd = s)
+  y = a*lag(y, 1) + 0.001 [m/N]*x + w
+  observe displacement ~ normal(y, sd = 2 [mm])
+  derive present [mm] = y
+}
+)";
+  constexpr int samples = 40;
+  constexpr double a = 0.8, s = 0.004, r = 0.002;
+  Model const model = filtered_file(text).models.front();
+  FilterRecord const of = record(samples, 1, true);
+  Eigen::MatrixXd responses = Eigen::MatrixXd::Zero(samples, samples);  // of y to w
+  for (int k = 0; k < samples; ++k)
+    for (int j = 0; j <= k; ++j) responses(k, j) = std::pow(a, k - j);
+  JointNormal joint;
+  joint.mean = Eigen::VectorXd::Zero(samples);
+  joint.covariance = s * s * Eigen::MatrixXd::Identity(samples, samples);
+  Eigen::VectorXd const known = responses * (0.001 * of.u.row(0).transpose());
+  std::vector<int> seen;
+  for (int k = 0; k < samples; ++k)
+    if (!std::isnan(of.y(0, k))) seen.push_back(k);
+  joint.observation = responses(seen, Eigen::all);
+  joint.left = of.y.row(0).transpose()(seen) - known(seen);
+  joint.of_samples = joint.observation * joint.covariance * joint.observation.transpose();
+  joint.of_samples.diagonal().array() += r * r;
+  Eigen::MatrixXd functions(2 * samples, samples);
+  functions << Eigen::MatrixXd::Identity(samples, samples), responses;
+  auto const [mean, sd] = posterior_of(joint, functions);
+
+  auto const smoothing = compile_smoothing(compile(model, false, "rk4", FilterRule::automatic));
+  Smoother const smoother(smoothing, of.experiment, smoothing_solver("rk4", 1), 0, {});
+  std::vector<std::string> names;
+  for (SmoothedName const& each : smoother.quantities()) names.push_back(each.name);
+  REQUIRE(names == std::vector<std::string>{"w", "present", "y"});
+  CHECK_FALSE(smoother.quantities()[0].average);
+  Smoother::Path const path = smoother.run(column_of({a, s})).front();
+  for (Eigen::Index i = 0; i < samples; ++i) {
+    auto const at = static_cast<std::size_t>(i);
+    CHECK(std::abs(path.mean[at] - mean(i)) < 1e-9 * s);
+    CHECK(std::abs(path.sd[at] - sd(i)) < 1e-9 * s);
+    CHECK(path.mean[samples + at] == doctest::Approx(1e3 * (mean(samples + i) + known(i))).epsilon(1e-9));
+    CHECK(path.sd[samples + at] == doctest::Approx(1e3 * sd(samples + i)).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("quantities derived from smoothed states have their sds to first order") {
   std::string text = filtered_text;
   text.replace(text.find("  observe displacement"), 22, "  derive spring [N] = k*y + x\n  observe displacement");
