@@ -20,15 +20,15 @@ bool was_found(json const& summary, std::string const& code) {
   return false;
 }
 
-/// x' = -a x^3 + w, white noise of intensity q, sampled at 4 Hz with noise of sd 0.3.
-std::string sampled_well(double a, double q, std::uint64_t seed) {
+/// x' = -a x^3 + w, white noise of intensity q, sampled at 4 Hz.
+std::string sampled_well(double a, double q, std::uint64_t seed, double noise = 0.3) {
   Stream stream({seed, Purpose::test});
   constexpr int fine = 100;
   double const step = 0.25 / fine;
   double x = stream.normal();
   std::string text = "t,m\n";
   for (int i = 0; i < 400; ++i) {
-    text += fmt::format("{},{}\n", 0.25 * i, x + 0.3 * stream.normal());
+    text += fmt::format("{},{}\n", 0.25 * i, x + noise * stream.normal());
     for (int k = 0; k < fine; ++k) x += -a * x * x * x * step + std::sqrt(q * step) * stream.normal();
   }
   return text;
@@ -92,7 +92,8 @@ TEST_CASE("a fit says where the linearisation of its filter decides the result, 
   CaseRun const mended(unscented, {{"d.csv", sampled_well(1, 1, 3)}});
   CHECK_FALSE(was_found(mended.summary("post"), "linearisation_matters"));
   // Within the spread of the states the cubic is a straight line.
-  CaseRun const weak(with(extended, "sd = 0.3)", "sd = 0.003)"), {{"d.csv", sampled_well(0.5, 0.0001, 3)}});
+  CaseRun const weak(with(extended, "normal(x, sd = 0.3)", "normal(x, sd = 0.003)"),
+                     {{"d.csv", sampled_well(0.5, 0.02, 3, 0.003)}});
   CHECK_FALSE(was_found(weak.summary("post"), "linearisation_matters"));
 }
 
