@@ -179,8 +179,7 @@ class Failure {
     if ((found().is("+") || found().is("-")) && wanted_ == wanted::model_statement) return errors::begins_with_sign(found());
     if (!is_word(found())) return std::nullopt;
     if (wanted_ == wanted::data_statement) return unknown_data_statement();
-    if (wanted_ == wanted::dictionary_statement)
-      return errors::unknown_statement(found(), "a dictionary", words::dictionary_statements);
+    if (wanted_ == wanted::dictionary_statement) return unknown_dictionary_statement();
     if (wanted_ == wanted::item && words::contains(words::items, found().text) && next() != nullptr)
       return errors::expected(next()->span, wanted::name, fmt::format("`{}`", next()->text), hint(name_missing()));
     if (wanted_ == wanted::item) return unknown_item();
@@ -192,6 +191,13 @@ class Failure {
     Diagnostic diagnostic = errors::unknown_statement(word, "a model", words::model_statements);
     bool const typed = words::translated(words::foreign_model_statements(), word.text) == "let";
     if (typed && has("~")) diagnostic.help = "did you mean `parameter`?";
+    return diagnostic;
+  }
+
+  Diagnostic unknown_dictionary_statement() const {
+    Diagnostic diagnostic = errors::unknown_statement(found(), "a dictionary", words::dictionary_statements);
+    if (found().is("disturbance"))
+      diagnostic.help = "a discovery knows no disturbances: remove it, and declare it in the model that is fitted afterwards";
     return diagnostic;
   }
 

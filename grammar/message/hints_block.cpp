@@ -37,6 +37,23 @@ std::string in_head(Gap const& gap) {
   return {};
 }
 
+/// `error 0.5`, `error = 0.5`, `error sd = 0.5`, and a rule behind the error.
+std::string in_error(Gap const& gap) {
+  std::size_t const error = gap.find("error");
+  if (!gap.begins_with("input") || error >= gap.at || error < 3) return {};
+  std::size_t const hold = gap.find("hold", error);
+  if (gap.found->is("hold") && gap.wanted == wanted::end_of_statement && hold == gap.at)
+    return fmt::format("the rule between samples comes before the error: `{} {} {}`", gap.text(0, error), gap.rest(),
+                       gap.text(error, gap.at));
+  if (!gap.wanted.starts_with("a distribution")) return {};
+  std::size_t const sign = gap.find("=", error);
+  std::size_t const number = sign < gap.statement.size() ? sign + 1 : gap.at;
+  std::size_t const end = std::min(hold, gap.statement.size());
+  bool const given = number < end && gap.statement[number].kind == TokenKind::number;
+  return fmt::format("the error of an input is a distribution around its samples: `error normal(sd = {})`",
+                     given ? gap.text(number, end) : "0.5");
+}
+
 /// `, hold linear`, `hold zero-order`, `hold(linear)`, `zoh`: the rule of an input in other words.
 std::string in_rule(Gap const& gap, std::string_view column) {
   std::size_t const hold = gap.find("hold");
@@ -69,6 +86,7 @@ std::string in_rule(Gap const& gap, std::string_view column) {
 std::string in_column(Gap const& gap) {
   bool const input = gap.begins_with("input");
   if (!(input || gap.begins_with("measure")) || gap.found == nullptr || gap.at < 2) return {};
+  if (std::string help = in_error(gap); !help.empty()) return help;
   std::size_t const equals = gap.find("=");
   std::string_view const word = gap.statement[0].text, name = gap.statement[1].text;
   if (gap.wanted == wanted::equals) {

@@ -50,9 +50,9 @@ std::string truncation(Gap const& gap, std::size_t tilde) {
 /// Behind the distribution of a prior or of a channel.
 std::string behind_distribution(Gap const& gap) {
   std::size_t const tilde = gap.find("~");
-  bool const parameter = gap.begins_with("parameter");
+  bool const parameter = gap.begins_with("parameter"), disturbance = gap.begins_with("disturbance");
   if (gap.wanted != wanted::end_of_statement || gap.found == nullptr || tilde + 2 >= gap.at || tilde < 2) return {};
-  if (!parameter && !gap.begins_with("observe")) return {};
+  if (!parameter && !disturbance && !gap.begins_with("observe")) return {};
   std::string_view const head = gap.text(0, tilde), prior = gap.text(tilde + 1, gap.at);
   std::size_t const unit = gap.find("[");
   if (gap.found->is("[") && gap.closing(gap.at) < gap.statement.size()) {
@@ -115,8 +115,9 @@ std::string behind_declared(Gap const& gap) {
     return fmt::format("what measures a state is an observation: remove `{}` and write `observe {} ~ normal({}, sd = 1)`", rest,
                        gap.next() == nullptr ? "channel" : gap.next()->text, name);
   if (state && gap.found->is("~"))
-    return fmt::format("an initial value that is to be estimated is a parameter: `parameter {0}0 ~ ...` and `initial {0} = {0}0`",
-                       name);
+    return fmt::format("a random initial value is a statement of its own: remove `{0}` and write `initial {1} ~ normal(0, sd = 1)`; "
+                       "one that is to be estimated is a parameter: `parameter {1}0 ~ ...` and `initial {1} = {1}0`",
+                       rest, name);
   if (input && gap.found->is("="))
     return fmt::format("the column of an input is written in the data block: remove `{}` here", rest);
   if (input && gap.found->is("hold"))
@@ -205,13 +206,26 @@ std::string in_initial(Gap const& gap) {
   if (!gap.begins_with("initial") || gap.found == nullptr) return {};
   if (std::size_t const both = gap.find("and"); gap.found->is("=") && both < gap.at)
     return fmt::format("separate initial values by commas: `{}, {}`", gap.text(0, both), gap.text(both + 1, gap.statement.size()));
-  if (gap.found->is("~") && gap.before() != nullptr && gap.before()->kind == TokenKind::word) {
-    std::string const state(gap.before()->text);
-    return fmt::format("an initial value to be found is a parameter: `parameter {0}0 ~ ...` and `initial {1} = {0}0`",
-                       state.substr(0, state.find('\'')), state);
-  }
+  if (gap.wanted.starts_with("a distribution") && gap.before() != nullptr && gap.before()->is("~"))
+    return fmt::format("a random initial value is written `{} normal(0, sd = 1)`, a known one with `=`", gap.text(0, gap.at));
   if (gap.wanted == wanted::name && gap.found->kind == TokenKind::number)
     return "an initial value names its state: `initial y = 0`";
+  return {};
+}
+
+/// `disturbance w [N] = ...`, `disturbance w, v ~ ...`, `disturbance w [N]`, `disturbance w ~ white`.
+std::string in_disturbance(Gap const& gap) {
+  if (!gap.begins_with("disturbance") || gap.at < 2) return {};
+  std::string_view const head = gap.text(0, std::min({gap.at, gap.find("~"), gap.find(",")}));
+  std::string const law = fmt::format("`{} ~ white(intensity = 1)`, in discrete time `~ normal(0, sd = 1)`", head);
+  if (gap.wanted.starts_with("a distribution")) return fmt::format("a disturbance has a law with its arguments: {}", law);
+  if (gap.wanted != wanted::tilde) return {};
+  if (gap.found == nullptr) return fmt::format("write its law: {}", law);
+  if (gap.found->is(","))
+    return fmt::format("declare each disturbance in a statement of its own: {}; equal ones are a vector, `disturbance {}(2) ~ ...`", law,
+                       gap.statement[1].text);
+  if (gap.found->is("="))
+    return fmt::format("what is known is a definition or an input; a disturbance has a law in place of `{}`: {}", gap.rest(), law);
   return {};
 }
 
@@ -263,7 +277,7 @@ std::string in_expression(Gap const& gap) {
 std::string hint_in_model(Gap const& gap) {
   if (gap.statement.empty()) return {};
   for (auto const look : {&behind_distribution, &at_distribution, &behind_declared, &in_unit, &at_bracket, &in_definition,
-                          &in_initial, &in_expression})
+                          &in_initial, &in_disturbance, &in_expression})
     if (std::string help = look(gap); !help.empty()) return help;
   return {};
 }

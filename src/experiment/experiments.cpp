@@ -106,6 +106,16 @@ std::string prediction_text(Model const& model, PredictionRule rule) {
                                              : "the model's own past samples, a free run");
 }
 
+std::string predicted_text(Model const& model, PredictionRule rule) {
+  std::string const lags = model.dynamics == Dynamics::discrete ? prediction_text(model, rule) : std::string();
+  if (!model.filtered()) return lags;
+  bool const one_step = rule == PredictionRule::one_step;
+  std::string const corrected =
+      one_step ? "states corrected by all samples before each row" : "states corrected by the samples before the predicted rows only";
+  if (!lags.empty()) return fmt::format("{}; {}", lags, corrected);
+  return fmt::format("{}: {}", prediction_name(one_step ? rule : PredictionRule::free_run), corrected);
+}
+
 std::string data_name(DataBlock const& block, int part) {
   return part < 0 ? block.name : block.name + "." + block.parts[static_cast<std::size_t>(part)].name;
 }

@@ -27,6 +27,13 @@ std::vector<BackendSettings> fitting_backends() {
   return rows;
 }
 
+std::vector<BackendSettings> selecting_backends() {
+  std::vector<BackendSettings> rows;
+  for (SelectorRow const& row : selectors())
+    rows.push_back({.name = row.name, .settings = row.settings, .distance = row.run_by_likelihood == nullptr});
+  return rows;
+}
+
 }  // namespace
 
 std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved) {
@@ -35,7 +42,7 @@ std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, Unsave
   bool const complete = !diagnostics.has_errors();
   Diagnostics found;  // behind the syntax
   auto const modules = load_modules(*read.tree, source, found, unsaved);
-  auto const fitting = fitting_backends(), selecting = settings_of(selectors());
+  auto const fitting = fitting_backends(), selecting = selecting_backends();
   auto const discovering = settings_of(regression::selectors()), derivatives = settings_of(regression::forms());
   std::optional<CheckedFile> file;
   if (!found.has_errors())

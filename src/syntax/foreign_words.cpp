@@ -42,6 +42,13 @@ constexpr ForeignWord for_model_statements[] = {
     {"der", "state"},
     {"variables", "state"},
     {"component", "part"},
+    {"noise", "disturbance"},
+    {"process", "disturbance"},
+    {"process_noise", "disturbance"},
+    {"perturbation", "disturbance"},
+    {"wiener", "disturbance"},
+    {"white", "disturbance"},
+    {"disturbances", "disturbance"},
 };
 
 constexpr ForeignWord for_data_statements[] = {

@@ -29,7 +29,8 @@ inline CheckedFile checked(std::string const& text) {
 /// The only model of a file that holds these statements.
 inline Model model_of(std::string const& statements) { return checked("model m {\n" + statements + "\n}\n").models.at(0); }
 
-/// Values of leaves in SI by their names: states "y" and "y'", inputs "x", their rates "x'", parameters, time "t".
+/// Values of leaves in SI by their names: states "y" and "y'", inputs "x", their rates "x'", parameters, white noise "noise(w)", time
+/// "t".
 using Values = std::map<std::string, double>;
 
 inline double at(Model const& model, NodeId node, Values const& values) {
@@ -45,6 +46,8 @@ inline double at(Model const& model, NodeId node, Values const& values) {
         return values.at(model.inputs[index].name + "'");
       case LeafKind::parameter:
         return values.at(model.parameters[index].name);
+      case LeafKind::disturbance:
+        return values.at("noise(" + model.disturbances[index].name + ")");
       default:
         return values.at("t");
     }

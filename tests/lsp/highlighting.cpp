@@ -152,7 +152,7 @@ std::vector<std::string> expected(grammar::Token const& token, std::string const
   assist::Occurrence const* occurrence = reading.names.at(token.span.begin);
   bool const called = token.span.end < text.size() && text[token.span.end] == '(';
   if (occurrence == nullptr || occurrence->span.begin != token.span.begin) {
-    static std::set<std::string> const within = {"with", "to",         "on",       "from",        "hold",   "rows",
+    static std::set<std::string> const within = {"with", "to",         "on",       "from",        "hold",   "error", "rows",
                                                  "per",  "experiment", "discrete", "probability", "shared", "input"};
     if (called) return {"support.function"};  // gp, values
     if (first || words::contains(words::verbs, token.text)) return {"keyword."};
@@ -188,6 +188,7 @@ TEST_CASE("the words of the TextMate grammar are those of the language") {
   auto const words_in = [&](char const* rule) { return alternatives(rules.at(rule).at("match")); };
   CHECK(words_in("functions") == names_of({WordKind::function}));
   CHECK(words_in("distributions") == names_of({WordKind::distribution}));
+  CHECK(words_in("laws") == names_of({WordKind::law}));
   CHECK(words_in("kernels") == names_of({WordKind::kernel}));
   CHECK(words_in("families") == names_of({WordKind::family}));
   CHECK(words_in("methods") == names_of({WordKind::fitting, WordKind::selecting, WordKind::discovering, WordKind::derivative,

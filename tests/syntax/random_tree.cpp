@@ -65,7 +65,7 @@ ast::Call RandomTree::call(int depth) {
 }
 
 ast::Expression RandomTree::expression(int depth) {
-  switch (depth <= 0 ? random_.below(3) : random_.below(13)) {
+  switch (depth <= 0 ? random_.below(3) : random_.below(12)) {
     case 0:
       return {{}, number(depth)};
     case 1:
@@ -101,7 +101,7 @@ ast::FunctionDefinition RandomTree::function() {
 
 ast::ModelStatement RandomTree::model_statement() {
   constexpr std::array kinds{ast::DefinitionKind::constant, ast::DefinitionKind::local, ast::DefinitionKind::derived};
-  switch (random_.below(12)) {
+  switch (random_.below(13)) {
     case 12:
       return ast::DisturbanceDeclaration{{}, declared(), call(2)};
     case 11:

@@ -79,7 +79,7 @@ class PredictAverage {
   ExitCode run() {
     Model const& model = members_[lead_]->model();
     Report report = begin_report(session_, task_, fit(lead_).model, what_text(), seed_);
-    add_prediction_rule(model, what_.prediction, report);
+    add_predicted_rule(model, what_.prediction, report);
     report.findings = weighed_.findings;
     add_kinds(report);
     report.average = AverageReport{what_.weights, weighed_.members, {}, {}};
@@ -99,8 +99,8 @@ class PredictAverage {
                        {"weights", std::string(word(what_.weights))},
                        {"start", start_text(what_.start)}};
     if (model.integrated()) add_solver(members_[lead_]->fitted().solver, report.settings);
-    if (model.dynamics == Dynamics::discrete)
-      report.settings.emplace_back("prediction", two_kinds() ? "of each model" : prediction_text(model, what_.prediction));
+    if (std::string const predicted = predicted_text(model, what_.prediction); !predicted.empty())
+      report.settings.emplace_back("prediction", two_kinds() ? "of each model" : predicted);
     add_average_tables(*report.average, weighed_.notes, report.tables);
     bool const missed = add_coverage(report, model.dynamics == Dynamics::discrete && !model.states.empty());
     report.verdict = prediction_verdict(report, missed);
@@ -115,12 +115,10 @@ class PredictAverage {
   std::string const& name(std::size_t k) const { return weighed_.members[k].fit; }
 
   std::string what_text() const {
-    Model const& model = members_[lead_]->model();
+    std::string const predicted = two_kinds() ? std::string() : predicted_text(members_[lead_]->model(), what_.prediction);
     return fmt::format("predict {} on {} with draws({}), weights = {}{}", predicted_names(session_.file, what_),
                        data_names(session_.file, what_.experiments), what_.draws, word(what_.weights),
-                       model.dynamics == Dynamics::discrete && !two_kinds()
-                           ? fmt::format(" ({})", prediction_text(model, what_.prediction))
-                           : std::string());
+                       predicted.empty() ? std::string() : fmt::format(" ({})", predicted));
   }
 
   /// The severity of what is wrong with the trajectories of a member, by its part in the average.

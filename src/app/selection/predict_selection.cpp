@@ -68,7 +68,7 @@ class PredictSelection {
     SelectionTrajectories::Along leading = trajectories_.along(lead, e);
     add_restoring_forces(leading.model(), leading.trajectory->quantities(), leading.result, leading.parameters,
                          leading.data->experiment, report.forces);
-    add_prediction_rule(leading.model(), what_.prediction, report);
+    add_predicted_rule(leading.model(), what_.prediction, report);
     add_data(session_.file, *leading.data, leading.model(), report);
     for (Finding& finding : find_fitted_rows(session_.file, *leading.data, select_.fits[lead].experiments, select_task_.name))
       report.findings.push_back(std::move(finding));

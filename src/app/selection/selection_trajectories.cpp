@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/session/fit_target.hpp"
+#include "app/session/posterior_trajectories.hpp"
 #include "app/session/stored_draws.hpp"
 #include "diagnostics/bands.hpp"
 #include "likelihood/simulated_parameters.hpp"
@@ -44,7 +45,8 @@ std::size_t SelectionTrajectories::lead() const {
 }
 
 SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate, std::size_t experiment) const {
-  FitTask const& fit = select_.fits[candidate];
+  FitTask fit = select_.fits[candidate];
+  fit.input_errors = what_.candidate_input_errors[candidate];
   bool const free_start = what_.start.kind == StartRule::Kind::estimated;
   Along out;
   out.compiled = session_.compiled(fit, free_start, fit.solver.method, what_.prediction);
@@ -52,6 +54,7 @@ SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate,
   std::vector<ExperimentData> data =
       load_experiments(session_, what_.candidate_experiments[candidate], session_.file.models[static_cast<std::size_t>(fit.model)],
                        what_.start, what_.prediction, fit.solver);
+  if (out.model().filtered()) data[experiment].experiment.corrects = corrected_rows(data[experiment].experiment, what_.prediction);
   out.data = std::make_unique<ExperimentData const>(std::move(data[experiment]));
   auto const space = parameter_space(without_noise_parameters(out.model()), fit.experiments);
   LaneArray const declared = spread_with_repeats(candidates_[candidate].draws, counts_[candidate]);

@@ -10,8 +10,15 @@ namespace sysid {
 
 namespace {
 
-/// States that are random given the parameters are known from the rows before those that are predicted; in a prediction one step
-/// ahead from these too.
+/// The fit, with the errors that inputs have in the records that it predicts.
+FitTask fit_of(Session const& session, PredictTask const& what) {
+  FitTask fit = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what);
+  fit.input_errors = what.input_errors;
+  return fit;
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> corrected_rows(Experiment const& experiment, PredictionRule rule) {
   std::vector<std::uint8_t> rows(experiment.time.size(), 1);
   auto const first = std::ranges::find(experiment.scored, std::uint8_t{1}) - experiment.scored.begin();
@@ -19,13 +26,11 @@ std::vector<std::uint8_t> corrected_rows(Experiment const& experiment, Predictio
   return rows;
 }
 
-}  // namespace
-
 PosteriorTrajectories::PosteriorTrajectories(Session& session, PredictTask const& what, std::uint64_t seed)
     : session_(session),
       what_(what),
       fitted_(fitted_model(session, what.fit)),
-      fit_(std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what)),
+      fit_(fit_of(session, what)),
       free_start_(what.start.kind == StartRule::Kind::estimated),
       compiled_(session.compiled(fit_, free_start_, fitted_.solver.method, what.prediction)),
       space_(parameter_space(compiled_->model, fit_.experiments)),

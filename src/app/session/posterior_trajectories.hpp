@@ -12,6 +12,10 @@
 
 namespace sysid {
 
+/// States that are random given the parameters are known from the rows before those that are predicted; in a prediction one step
+/// ahead from these too.
+std::vector<std::uint8_t> corrected_rows(Experiment const& experiment, PredictionRule rule);
+
 class PosteriorTrajectories {
  public:
   /// Of a fit without processes, whose draws are those of this run or of its result folder; UserError as `fitted_model`.
@@ -40,7 +44,7 @@ class PosteriorTrajectories {
   Session& session_;
   PredictTask const& what_;
   FittedModel const& fitted_;
-  FitTask const& fit_;
+  FitTask fit_;
   bool free_start_;
   std::shared_ptr<CompiledModel const> compiled_;
   std::shared_ptr<ParameterSpace const> space_;

@@ -201,7 +201,7 @@ Preconditions check_preconditions(Session& session, std::function<bool(Task cons
   for (Task const& task : session.file.tasks) {
     bool complete = true;
     for (TaskData const& data : wanted(task) ? task_row(task).data(session.file, task) : std::vector<TaskData>()) {
-      auto const as_predicted = with_prediction(*data.model, data.prediction);
+      Model const as_predicted = with_prediction(*data.model, data.prediction).value_or(*data.model);
       for (ExperimentUse const& use : *data.experiments) {
         DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
         Task const* made = maker(session, block);
@@ -214,7 +214,7 @@ Preconditions check_preconditions(Session& session, std::function<bool(Task cons
           for (DataPart const& part : block.parts)  // no task need read them for them to be wrong
             if (auto const wrong = check_rows(record, "range `" + part.name + "`", {part.first, part.last}, part.span))
               add_one(*wrong);
-          cut(record, block, *as_predicted, use.part, data.start);
+          cut(record, block, as_predicted, use.part, data.start);
           continue;
         } catch (UnusableData const& error) {
           reported.insert({use.data, data.model});

@@ -156,6 +156,12 @@ void add_prediction_rule(Model const& model, PredictionRule rule, Report& report
   report.measured_past = predicts_from_data(model);
 }
 
+void add_predicted_rule(Model const& model, PredictionRule rule, Report& report) {
+  add_prediction_rule(model, rule, report);
+  if (model.dynamics != Dynamics::discrete && model.filtered())
+    report.prediction_rule = prediction_name(rule == PredictionRule::one_step ? rule : PredictionRule::free_run);
+}
+
 std::vector<PriorInfo> declared_priors(Session const& session, int model_index) {
   Model const& model = session.file.models[static_cast<std::size_t>(model_index)];
   std::vector<PriorInfo> priors;

@@ -14,6 +14,8 @@ Report begin_report(Session const& session, Task const& task, int model, std::st
 /// The rule of a discrete-time model, whether it predicts from measured past samples, and how many samples it looks back. model:
 /// as it is compiled under the rule.
 void add_prediction_rule(Model const& model, PredictionRule rule, Report& report);
+/// Likewise of a prediction, where random states are corrected by samples or run freely in continuous time, too.
+void add_predicted_rule(Model const& model, PredictionRule rule, Report& report);
 
 /// The verb that makes a result again, and its options besides those of a run.
 struct Repetition {

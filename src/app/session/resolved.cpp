@@ -63,10 +63,11 @@ std::string without_accuracy(SolverSettings const& solver) {
 
 // What a fit says of its simulations.
 std::string simulation_text(Model const& model, FitTask const& what, std::string const& solver) {
-  return fmt::format("start = {}{}{}", start_text(what.start), model.integrated() ? ", solver = " + solver : std::string(),
+  return fmt::format("start = {}{}{}{}", start_text(what.start), model.integrated() ? ", solver = " + solver : std::string(),
                      what.prediction == PredictionRule::as_written
                          ? std::string()
-                         : fmt::format(", prediction = {}", prediction_name(what.prediction)));
+                         : fmt::format(", prediction = {}", prediction_name(what.prediction)),
+                     what.filter == FilterRule::automatic ? std::string() : fmt::format(", filter = {}", filter_name(what.filter)));
 }
 
 }  // namespace

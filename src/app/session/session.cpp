@@ -28,6 +28,9 @@ void Session::find_results_in(std::filesystem::path folder, Task const& task) {
 
 std::shared_ptr<CompiledModel const> Session::compiled(FitTask const& fit, bool free_start, std::string const& method,
                                                        PredictionRule prediction) {
+  // Before each sample the states are what the filter makes of those before it: lags stay as they were fitted.
+  bool const random = file.models[static_cast<std::size_t>(fit.model)].filtered() || !fit.input_errors.empty();
+  if (random && prediction == PredictionRule::one_step) prediction = fit.prediction;
   auto& place = compiled_[{fit.model, free_start, method, prediction, fit.filter, fit.input_errors}];
   if (!place) {
     auto ruled = with_prediction(file.models[static_cast<std::size_t>(fit.model)], prediction);
@@ -95,13 +98,13 @@ ExecutionOptions Session::abandonable() const {
 
 std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,
                                              StartRule start, PredictionRule prediction, SolverSettings const& solver) {
-  auto const as_predicted = with_prediction(model, prediction);
+  Model const as_predicted = with_prediction(model, prediction).value_or(model);
   std::vector<ExperimentData> all;
   for (ExperimentUse const& use : uses) {
     Record const& record = session.record(use.data, model);
     DataBlock const& block = session.file.data[static_cast<std::size_t>(use.data)];
-    all.push_back({use, record, cut(record, block, *as_predicted, use.part, start)});
-    require_exact_steps(all.back().experiment, block, *as_predicted, solver);
+    all.push_back({use, record, cut(record, block, as_predicted, use.part, start)});
+    require_exact_steps(all.back().experiment, block, as_predicted, solver);
   }
   return all;
 }

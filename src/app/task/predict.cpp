@@ -45,10 +45,9 @@ class Predict {
         session_, task_, fit_.model,
         fmt::format("predict {} on {} with draws({}){}", fit_task_.name, data_names(session_.file, what_.experiments),
                     trajectories_.wanted(),
-                    model_.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model_, what_.prediction))
-                                                          : std::string()),
+                    predicted_.empty() ? std::string() : fmt::format(" ({})", predicted_)),
         seed_);
-    add_prediction_rule(model_, what_.prediction, report);
+    add_predicted_rule(model_, what_.prediction, report);
     if (trajectories_.fitted().draws.total() == 1)
       report.findings.push_back(
           {FindingCode::optimum_alone,
@@ -68,8 +67,7 @@ class Predict {
                        {"redraw", std::string(what_.redraw_each_step ? "step" : "trajectory")},
                        {"start", start_text(what_.start)}};
     if (model_.integrated()) add_solver(trajectories_.fitted().solver, report.settings);
-    if (model_.dynamics == Dynamics::discrete)
-      report.settings.emplace_back("prediction", prediction_text(model_, what_.prediction));
+    if (!predicted_.empty()) report.settings.emplace_back("prediction", predicted_);
     bool const missed = add_coverage(report, model_.dynamics == Dynamics::discrete && !model_.states.empty());
     report.verdict = prediction_verdict(report, missed);
     keep_result(session_, task_, report);
@@ -127,6 +125,7 @@ class Predict {
   std::uint64_t seed_;
   PosteriorTrajectories trajectories_;
   Model const& model_;
+  std::string predicted_ = predicted_text(model_, what_.prediction);
   std::vector<ExperimentData> const& data_;
 };
 

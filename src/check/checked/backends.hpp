@@ -13,6 +13,7 @@ struct BackendSettings {
   std::span<SettingRow const> settings;
   bool optimum = false;  // its result is the largest density, no draws
   bool prior = true;     // that density contains the prior
+  bool distance = false;  // it compares simulations with the data, and has no likelihood
 };
 
 /// Those that a file's tasks may name.

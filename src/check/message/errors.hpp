@@ -162,7 +162,8 @@ Diagnostic fixed_parameter(ast::Name const& name, Span declaration);
 Diagnostic value_missing(Span span, Names const& parameters);
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate);
 Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution);
-Diagnostic prediction_without_lags(Span span, std::string const& model);
+/// random: its states are.
+Diagnostic prediction_without_lags(Span span, std::string const& model, bool random);
 Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model);
 Diagnostic other_step(Span span, double given, double declared, std::string const& model);
 Diagnostic task_too_late(ast::Name const& name);

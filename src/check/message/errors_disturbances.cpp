@@ -158,16 +158,27 @@ Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optio
   return about(
       {"filter", model},
       with_place(error("E3313", option, fmt::format("`kalman` needs linear equations and channels, which `{}` has not", model),
-                       "write `filter = extended`, `unscented` or `particle`, or leave the choice to the program"),
+                       "write `filter = extended` or `unscented`, or remove the option: the program then chooses"),
                  part, "not linear"));
 }
 
 Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task) {
   Diagnostic diagnostic =
       error("E3314", channel, fmt::format("with random states the noise of channel `{}` must be normal: it is `{}`", name, noise),
-            "write `with filter = particle` in the task, which takes noise of any kind, or `normal(..., sd = s)` here");
+            "write `normal(..., sd = s)`, without bounds");
   diagnostic.secondary.push_back({task, "fitted here"});
   return about({name, noise}, std::move(diagnostic));
+}
+
+Diagnostic random_states_by_distance(Span option, std::string const& backend, std::string const& model) {
+  return about({backend, model},
+               error("E3318", option, fmt::format("`{}` does not simulate what is random in the states of `{}`", backend, model),
+                     "select with `reversible_jump`, or fit each candidate and compare the results by `sysid compare`"));
+}
+
+Diagnostic particle_filter_missing(Span option) {
+  return about({"filter", "particle"}, error("E3319", option, "particle filters are not available yet",
+                                             "write `filter = unscented`, or remove the option: the program then chooses"));
 }
 
 Diagnostic law_of_input_error(Span law, std::string const& input, std::string const& reason) {

@@ -31,8 +31,9 @@ class TaskChecker {
   void suit_exact(SolverSettings const& solver, Model const& model);
   void suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options);
   void suit(FitTask& task, Model const& model);
-  // `prediction = one_step`, for models that have lags to read.
-  void prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule);
+  // `prediction = one_step`, for models that have lags to read. corrected: fits whose random states samples correct in a prediction,
+  // which the rule is of, too.
+  void prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule, std::span<int const> corrected = {});
   // Whether the option says how a fit simulates; read into `task` then.
   bool simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task);
   // Each argument of `values(m = 1, ...)`, `noise(displacement = 0.1 [mm])` with the index of its name among `known`, once.
@@ -48,9 +49,21 @@ class TaskChecker {
   void filter(ast::Option const& option, FilterRule& rule);
   // Of each input of the model, from the data blocks of the experiments; empty where none has one.
   std::vector<double> input_errors(std::vector<ExperimentUse> const& experiments, Model const& model);
-  // The model as it is fitted, where its states are random; what no filter takes is refused. Null where they are not.
+  // What no filter takes is refused, where the states of the model are random as it is fitted.
   void suit_filter(FitTask& task, Model const& model);
+  // The model as it is fitted, errors of inputs included; nothing when they were refused. Without random states it is not filtered.
+  std::optional<Model> as_fitted(FitTask const& task, Model const& model);
+  // The errors of the inputs of the experiments that a fit predicts.
+  std::vector<double> predicted_input_errors(FitTask const& fit, std::vector<ExperimentUse> const& experiments);
+  // `filter = particle`: no back end has it yet.
+  void refuse_particle(ast::Option const& option, FilterRule& rule);
+  // Of a back end that compares simulations.
+  void suit_distance(SelectTask const& task);
+  // Errors of inputs, of which a regression of terms knows nothing.
+  void refuse_input_errors(std::vector<ExperimentUse> const& experiments);
   void suit_kalman(FitTask const& task, Model const& model);
+  // Noise that the filter takes.
+  void suit_noise(FilterRule rule, Model const& fitted);
   // The option, where it was stated and no model has had a use for it.
   void report_needless_filter();
 
@@ -90,7 +103,9 @@ class TaskChecker {
 
   // --- task_predict.cpp
   PredictTask predict();
-  void predict_option(ast::Option const& option, std::string const& key, std::span<int const> models, PredictTask& task);
+  // corrected: the models of the fits whose states are random.
+  void predict_option(ast::Option const& option, std::string const& key, std::span<int const> models, std::span<int const> corrected,
+                      PredictTask& task);
   void draws(ast::Option const& option, int& count);
   // The fits whose draws are used: of a selection one per candidate; none when an error was added.
   std::vector<FitTask const*> predicted_fits(PredictTask& task);

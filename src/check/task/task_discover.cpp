@@ -78,6 +78,7 @@ DiscoverTask TaskChecker::discover() {
   if (found) task.dictionary = *found;
   task.experiments = experiments(dictionary == nullptr ? nullptr : &dictionary->measured, "from");
   if (dictionary != nullptr && !diagnostics_.has_errors(before_)) require_channels(*dictionary, task);
+  if (!diagnostics_.has_errors(before_)) refuse_input_errors(task.experiments);
   for (ast::Option const& option : tree_.options) {
     std::string const key = key_of(option);
     if (!option.input && option.key && (key == "top" || key == "candidates" || key == "refit" || key == "seed")) {

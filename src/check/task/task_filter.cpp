@@ -7,7 +7,9 @@
 #include "check/message/errors.hpp"
 #include "check/message/errors_disturbances.hpp"
 #include "check/task/task_checker.hpp"
+#include "check/task/task_options.hpp"
 #include "check/units/units.hpp"
+#include "core/setting/table.hpp"
 #include "model/input_errors.hpp"
 #include "model/linear_states.hpp"
 
@@ -28,7 +30,10 @@ Refusal refusal_of(Problem const& problem, Model const& model) {
       input);
   switch (problem.kind) {
     case Problem::Kind::rate:
-      return {fmt::format("the model reads its derivative `{}'`, which errors of samples do not have", input), cure};
+      return {fmt::format("the model reads its derivative `{}'`, which errors of samples do not have", input),
+              fmt::format("declare what the derivative lacks as a disturbance of the model, `disturbance e ~ white(intensity = q)`, and "
+                          "write `{}' + e`",
+                          input)};
     case Problem::Kind::channel:
       return {fmt::format("channel `{}` reads it directly", model.channels[static_cast<std::size_t>(problem.index)].name), cure};
     case Problem::Kind::nonlinear:
@@ -55,6 +60,14 @@ void TaskChecker::filter(ast::Option const& option, FilterRule& rule) {
   else
     diagnostics_.add(errors::option_choice(option.value.span, "filter", given, filter_names()));
   filter_needed_ = !find_filter(given);  // nothing more is said of a word that is none
+  refuse_particle(option, rule);
+}
+
+void TaskChecker::refuse_particle(ast::Option const& option, FilterRule& rule) {
+  if (rule != FilterRule::particle) return;
+  diagnostics_.add(errors::particle_filter_missing(option.value.span));
+  rule = FilterRule::automatic;
+  filter_needed_ = true;
 }
 
 void TaskChecker::report_needless_filter() {
@@ -96,35 +109,75 @@ std::vector<double> TaskChecker::input_errors(std::vector<ExperimentUse> const& 
   return any ? sd : std::vector<double>();
 }
 
+std::optional<Model> TaskChecker::as_fitted(FitTask const& task, Model const& model) {
+  Model ruled = with_prediction(model, task.prediction).value_or(model);
+  if (task.input_errors.empty()) return ruled;
+  auto with_errors = with_input_errors(ruled, task.input_errors);
+  if (Model* const fitted = std::get_if<Model>(&with_errors)) return std::move(*fitted);
+  auto const& problem = std::get<Problem>(with_errors);
+  std::string const& input = model.inputs[static_cast<std::size_t>(problem.input)].name;
+  std::optional<Label> place;
+  if (problem.kind == Problem::Kind::channel)
+    place = Label{model.channels[static_cast<std::size_t>(problem.index)].span, "reads it"};
+  else if (auto const span = problem.kind == Problem::Kind::nonlinear ? place_of(ruled.graph, problem.node) : std::nullopt)
+    place = Label{*span, "not linear in it"};
+  Refusal const refusal = refusal_of(problem, model);
+  for (ExperimentUse const& use : task.experiments)
+    for (DataInputUse const& bound : file_.data[static_cast<std::size_t>(use.data)].inputs)
+      if (bound.input == input && bound.error) {
+        diagnostics_.add_once(errors::input_error_refused(bound.error->span, input, refusal.reason, place, refusal.help));
+        return std::nullopt;
+      }
+  return std::nullopt;
+}
+
+void TaskChecker::suit_noise(FilterRule rule, Model const& fitted) {
+  for (Channel const& channel : fitted.channels)
+    if (rule != FilterRule::particle && !channel.noise.row->gaussian)
+      diagnostics_.add_once(
+          errors::noise_of_filter(channel.span, channel.name, std::string(channel.noise.row->name), tree_.subject.span));
+}
+
+std::vector<double> TaskChecker::predicted_input_errors(FitTask const& fit, std::vector<ExperimentUse> const& experiments) {
+  Model const& model = file_.models[static_cast<std::size_t>(fit.model)];
+  FitTask predicted = fit;
+  predicted.experiments = experiments;
+  predicted.input_errors = input_errors(experiments, model);
+  if (predicted.input_errors.empty() || diagnostics_.has_errors(before_)) return {};
+  if (auto const fitted = as_fitted(predicted, model)) suit_noise(fit.filter, *fitted);
+  return predicted.input_errors;
+}
+
+void TaskChecker::suit_distance(SelectTask const& task) {
+  BackendSettings const* const backend = row_named(backends_.selecting, task.backend);
+  if (backend == nullptr || !backend->distance) return;
+  Span place = tree_.verb.span;
+  for (ast::Option const& option : tree_.options)
+    if (!option.key && key_of(option) == task.backend) place = head_span(option.value);
+  for (FitTask const& fit : task.fits) {
+    Model const& model = file_.models[static_cast<std::size_t>(fit.model)];
+    if (!model.filtered() && fit.input_errors.empty()) continue;
+    return diagnostics_.add(errors::random_states_by_distance(place, task.backend, model.name));
+  }
+}
+
+void TaskChecker::refuse_input_errors(std::vector<ExperimentUse> const& experiments) {
+  for (ExperimentUse const& use : experiments)
+    for (DataInputUse const& bound : file_.data[static_cast<std::size_t>(use.data)].inputs)
+      if (bound.error)
+        return diagnostics_.add(errors::input_error_refused(
+            bound.error->span, bound.input, "a discovery takes samples of inputs as exact", Label{tree_.subject.span, "discovered here"},
+            "discover from a data block without `error`, then fit the model that was found to this one"));
+}
+
 void TaskChecker::suit_filter(FitTask& task, Model const& model) {
   if (diagnostics_.has_errors(before_)) return;
   task.input_errors = input_errors(task.experiments, model);
-  Model fitted = with_prediction(model, task.prediction).value_or(model);
-  if (!task.input_errors.empty()) {
-    auto with_errors = with_input_errors(fitted, task.input_errors);
-    if (auto const* problem = std::get_if<Problem>(&with_errors)) {
-      std::string const& input = model.inputs[static_cast<std::size_t>(problem->input)].name;
-      std::optional<Label> place;
-      if (problem->kind == Problem::Kind::channel)
-        place = Label{model.channels[static_cast<std::size_t>(problem->index)].span, "reads it"};
-      else if (auto const span = problem->kind == Problem::Kind::nonlinear ? place_of(fitted.graph, problem->node) : std::nullopt)
-        place = Label{*span, "not linear in it"};
-      DataBlock const& block = file_.data[static_cast<std::size_t>(task.experiments.front().data)];
-      for (DataInputUse const& bound : block.inputs)
-        if (bound.input == input && bound.error) {
-          Refusal const refusal = refusal_of(*problem, model);
-          diagnostics_.add_once(errors::input_error_refused(bound.error->span, input, refusal.reason, place, refusal.help));
-        }
-      return;
-    }
-    fitted = std::get<Model>(std::move(with_errors));
-  }
-  if (!fitted.filtered()) return;
+  std::optional<Model> const as_whole = as_fitted(task, model);
+  if (!as_whole || !as_whole->filtered()) return;
+  Model const& fitted = *as_whole;
   filter_needed_ = true;
-  for (Channel const& channel : fitted.channels)
-    if (task.filter != FilterRule::particle && !channel.noise.row->gaussian)
-      diagnostics_.add_once(
-          errors::noise_of_filter(channel.span, channel.name, std::string(channel.noise.row->name), tree_.subject.span));
+  suit_noise(task.filter, fitted);
   suit_kalman(task, fitted);
   if (task.start.kind != StartRule::Kind::estimated) return;
   for (State const& state : fitted.states) {

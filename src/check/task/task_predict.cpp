@@ -96,10 +96,17 @@ PredictTask TaskChecker::predict() {
     uses.push_back(experiments(&file_.models[static_cast<std::size_t>(models[c])], "on"));
   if (!uses.empty()) task.experiments = uses.front();
   if (!fits.empty()) task.fitted = fitted_parts(task.experiments, fits.front()->experiments);
+  std::vector<int> corrected;
+  for (std::size_t c = 0; c < uses.size() && !diagnostics_.has_errors(before_); ++c) {
+    std::vector<double> errors = predicted_input_errors(*fits[c], uses[c]);
+    if (!errors.empty() || file_.models[static_cast<std::size_t>(models[c])].filtered()) corrected.push_back(models[c]);
+    if (c == 0) task.input_errors = errors;
+    task.candidate_input_errors.push_back(std::move(errors));
+  }
   for (ast::Option const& option : tree_.options) {
     std::string const key = key_of(option);
     if (!option.input && options_.fresh(option, key))
-      predict_option(option, key, models, task);
+      predict_option(option, key, models, corrected, task);
     else if (option.input)
       options_.unknown(option, task_option_names("predict"));
   }
@@ -133,7 +140,7 @@ void TaskChecker::draws(ast::Option const& option, int& count) {
 }
 
 void TaskChecker::predict_option(ast::Option const& option, std::string const& key, std::span<int const> models,
-                                 PredictTask& task) {
+                                 std::span<int const> corrected, PredictTask& task) {
   std::string const word = as_word(option.value).value_or("");
   if (key == "draws") {
     draws(option, task.draws);
@@ -154,7 +161,7 @@ void TaskChecker::predict_option(ast::Option const& option, std::string const& k
   } else if (option.key && key == "start") {
     options_.start(option, task.start);
   } else if (option.key && key == "prediction") {
-    prediction(option, models, task.prediction);
+    prediction(option, models, task.prediction, corrected);
   } else if (option.key && key == "seed") {
     options_.seed(option, task.seed);
   } else {
@@ -172,6 +179,7 @@ void TaskChecker::average(std::vector<FitTask const*> const& fits, std::vector<s
     member.fit = task.members[k].fit;
     member.experiments = uses[k];
     member.fitted = fitted_parts(uses[k], fits[k]->experiments);
+    member.input_errors = task.candidate_input_errors[k];
     task.members[k] = std::move(member);
   }
 }

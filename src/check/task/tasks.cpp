@@ -160,7 +160,8 @@ void TaskChecker::suit(FitTask& task, Model const& model) {
   task.refine_solver = false;
 }
 
-void TaskChecker::prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule) {
+void TaskChecker::prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule,
+                             std::span<int const> corrected) {
   std::vector<std::string> names;
   std::optional<PredictionRule> chosen;
   for (PredictionRule const each : {PredictionRule::as_written, PredictionRule::one_step, PredictionRule::free_run}) {
@@ -174,8 +175,10 @@ void TaskChecker::prediction(ast::Option const& option, std::span<int const> mod
   rule = *chosen;
   if (rule == PredictionRule::as_written) return;
   for (int const index : models) {
+    if (std::find(corrected.begin(), corrected.end(), index) != corrected.end()) continue;
     Model const& model = file_.models[static_cast<std::size_t>(index)];
-    if (model.dynamics != Dynamics::discrete) return diagnostics_.add(errors::prediction_without_lags(option.span, model.name));
+    if (model.dynamics != Dynamics::discrete)
+      return diagnostics_.add(errors::prediction_without_lags(option.span, model.name, model.filtered()));
     if (!with_prediction(model, rule)) return diagnostics_.add(errors::nothing_measured_to_predict_from(option.span, model.name));
   }
 }

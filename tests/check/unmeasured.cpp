@@ -1,0 +1,182 @@
+// What was not measured: disturbances, random initial values, errors of inputs, as leaves, states and numbers of the model.
+#include "checking.hpp"
+
+#include "model/input_errors.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+std::string const disturbed_oscillator =
+    "input x [N]\nstate y [mm]\ninitial y = 0, y' = 0\nparameter k [N/m] ~ log_uniform(1e3, 1e5)\n"
+    "1 [kg]*y'' + 20 [N s/m]*y' + k*y = x + w\nobserve displacement ~ normal(y, sd = 1e-4)\n";
+
+std::string const noisy_data =
+    "data bench {\nfile \"bench.csv\"\ntime t\ninput x = force [kN] hold linear error normal(sd = 0.5)\n"
+    "measure displacement = y\n}\n"
+    "data exact {\nfile \"bench.csv\"\ntime t\ninput x = force [kN] hold linear\nmeasure displacement = y\n}\n";
+
+State const& component_of(Model const& model, std::string const& name) {
+  for (State const& each : model.states)
+    if (each.name == name) return each;
+  FAIL("no state " << name);
+  return model.states.front();
+}
+
+/// A file with the oscillator, disturbed or not, and tasks.
+std::string with_tasks(std::string const& disturbance, std::string const& tasks) {
+  std::string text = disturbed_oscillator;
+  if (disturbance.empty()) text.replace(text.find(" + w"), 4, "");
+  return "model m {\n" + disturbance + text + "}\n" + noisy_data + tasks + "\n";
+}
+FitTask fit_of(std::string const& disturbance, std::string const& task) {
+  return std::get<FitTask>(checked(with_tasks(disturbance, task)).tasks.at(0).what);
+}
+
+}  // namespace
+
+TEST_CASE("white noise is a leaf of the equations, its intensity is in units of SI") {
+  Model const model = model_of("disturbance w [kN] ~ white(intensity = 4)\n" + disturbed_oscillator);
+  REQUIRE(model.disturbances.size() == 1);
+  Disturbance const& w = model.disturbances[0];
+  CHECK(w.name == "w");
+  CHECK(w.state == -1);
+  CHECK_FALSE(w.held);
+  CHECK(at(model, w.intensity, {}) == near(4e6));
+  CHECK(model.states.size() == 2);
+  CHECK(rate_of(model, "y'", {{"x", 0}, {"k", 1e3}, {"y", 0}, {"y'", 0}, {"noise(w)", 3}}) == near(3));
+  CHECK(model.filtered());
+  CHECK(at(model_of("parameter q [mN^2 s] ~ log_uniform(1, 10)\ndisturbance w [N] ~ white(intensity = q)\n" + disturbed_oscillator)
+               .disturbances[0]
+               .intensity,
+           {{"q", 5e-6}}) == near(5e-6));
+}
+
+TEST_CASE("a disturbance without a unit takes it from its law") {
+  Model const white = model_of("parameter q [N^2 s] ~ log_uniform(1, 10)\ndisturbance w ~ white(intensity = q)\n" + disturbed_oscillator);
+  CHECK(white.disturbances[0].unit_text() == "N");
+  CHECK(messages("model m {\ndisturbance w ~ ornstein_uhlenbeck(sd = 2 [V], time = 1 [s])\n" + disturbed_oscillator + "}\n").find("[V]") !=
+        std::string::npos);
+}
+
+TEST_CASE("a disturbance with a memory is a stationary state of its standard deviation") {
+  Model const model = model_of("disturbance w [N] ~ ornstein_uhlenbeck(sd = 2, time = 100 [ms])\n" + disturbed_oscillator);
+  Disturbance const& w = model.disturbances.at(0);
+  REQUIRE(w.state >= 0);
+  State const& state = model.states[static_cast<std::size_t>(w.state)];
+  CHECK(state.name == "w");
+  CHECK(at(model, w.intensity, {}) == near(2 * 4 / 0.1));
+  CHECK(at(model, state.initial, {}) == 0);
+  CHECK(at(model, state.initial_variance.value(), {}) == near(4));
+  CHECK(rate_of(model, "w", {{"w", 0.5}, {"noise(w)", 3}}) == near(3 - 5));
+  CHECK(rate_of(model, "y'", {{"x", 0}, {"k", 1e3}, {"y", 0}, {"y'", 0}, {"w", 7}}) == near(7));
+}
+
+TEST_CASE("disturbances are vectors, and parts bring theirs") {
+  Model const vector = model_of(
+      "state q(3) [m]\ninitial q = 0\nparameter s(3) [m/s] ~ half_normal(sd = 1)\n"
+      "disturbance w(3) [m/s] ~ ornstein_uhlenbeck(sd = s, time = (1, 2, 3))\nq' = w\nobserve d ~ normal(q[1], sd = 1 [mm])\n");
+  REQUIRE(vector.disturbances.size() == 3);
+  CHECK(vector.disturbances[2].name == "w[3]");
+  CHECK(at(vector, vector.disturbances[2].intensity, {{"s[3]", 3}}) == near(6));
+  Model const whole = checked(
+                          "model shaken {\ninput x [N]\nstate v [m/s]\ninitial v = 0\nparameter q [N^2 s] ~ log_uniform(1, 10)\n"
+                          "disturbance w [N] ~ white(intensity = q)\n1 [kg]*v' = x + w\n}\n"
+                          "model m {\ninput x [N]\npart front = shaken(x = x)\npart back = shaken(x = -x, q = 2 [N^2 s])\n"
+                          "observe speed [m/s] ~ normal(front.v + back.v, sd = 1)\n}\n")
+                          .models.at(1);
+  REQUIRE(whole.disturbances.size() == 2);
+  CHECK(whole.disturbances[0].name == "front.w");
+  CHECK(at(whole, whole.disturbances[0].intensity, {{"front.q", 5}}) == near(5));
+  CHECK(at(whole, whole.disturbances[1].intensity, {}) == near(2));
+}
+
+TEST_CASE("in discrete time a disturbance is a state of one sample, lags of it are states, too") {
+  Model const model = model_of(
+      "time discrete 0.1 [s]\ninput u\nstate y\ninitial y = 0\nparameter a, b, c ~ uniform(-1, 1)\n"
+      "disturbance w [mV] ~ normal(0, variance = 9)\n"
+      "y = a*lag(y, 1) + b*u + w/1 [mV] + c*lag(w, 1)/1 [mV]\nobserve output ~ normal(y, sd = 0.1)\n");
+  REQUIRE(model.disturbances.size() == 1);
+  Disturbance const& w = model.disturbances[0];
+  CHECK(at(model, w.intensity, {}) == near(9e-6));
+  CHECK(component_of(model, "w").initial_variance.has_value());
+  CHECK(rate_of(model, "w", {{"noise(w)", 3}}) == near(3));
+  State const& past = component_of(model, "lag(w, 1)");
+  CHECK(at(model, past.derivative, {{"w", 3}}) == near(3));
+  CHECK(at(model, past.initial_variance.value(), {}) == near(9e-6));
+  NodeId const predicted = model.channels[0].noise.arguments[0];
+  CHECK(at(model, predicted, {{"a", 0.5}, {"b", 2}, {"c", 0.25}, {"lag(y, 1)", 3}, {"u", 1}, {"w", 1e-3}, {"lag(w, 1)", 2e-3}}) ==
+        near(0.5 * 3 + 2 + 1 + 0.5));
+}
+
+TEST_CASE("a random initial value has a mean and a variance") {
+  std::string text = disturbed_oscillator;
+  text.replace(text.find("y = 0, y' = 0"), 13, "y ~ normal(3, sd = 2), y' = 0");
+  text.replace(text.find(" + w"), 4, "");
+  Model const model = model_of(text);
+  CHECK(initial_of(model, "y") == near(3e-3));
+  CHECK(at(model, component_of(model, "y").initial_variance.value(), {}) == near(4e-6));
+  CHECK_FALSE(component_of(model, "y'").initial_variance);
+  CHECK(model.disturbances.empty());
+  CHECK(model.filtered());
+}
+
+TEST_CASE("the noise of a disturbance may be multiplied by anything but itself") {
+  std::string text = disturbed_oscillator;
+  text.replace(text.find(" + w"), 4, " + abs(y')/1 [m/s]*w + k*y*w/1 [N]");
+  CHECK(messages("model m {\ndisturbance w [N] ~ white(intensity = 4)\n" + text + "}\n").empty());
+  // A memory frees a disturbance of what holds for white noise.
+  text.replace(text.find("+ abs"), std::string::npos,
+               "+ w^2/1 [N]\nobserve load [N] ~ normal(w, sd = 1)\nderive most [N] = max(0, w)\n");
+  CHECK(messages("model m {\ndisturbance w [N] ~ ornstein_uhlenbeck(sd = 1, time = 1)\n" + text + "}\n").empty());
+}
+
+TEST_CASE("the error of an input is a disturbance of the model that is fitted") {
+  FitTask const task = fit_of("", "f = fit m to bench with mh");
+  REQUIRE(task.input_errors.size() == 1);
+  CHECK(task.input_errors[0] == near(500));
+  CHECK(fit_of("", "f = fit m to exact with mh").input_errors.empty());
+  Model const model = checked(with_tasks("", "f = fit m to bench with mh")).models.at(0);
+  CHECK_FALSE(model.filtered());
+  auto const fitted = with_input_errors(model, task.input_errors);
+  REQUIRE(std::holds_alternative<Model>(fitted));
+  Model const& whole = std::get<Model>(fitted);
+  REQUIRE(whole.disturbances.size() == 1);
+  CHECK(whole.disturbances[0].held);
+  CHECK(at(whole, whole.disturbances[0].intensity, {}) == near(500.0 * 500));
+  CHECK(rate_of(whole, "y'", {{"x", 2}, {"k", 1e3}, {"y", 0}, {"y'", 0}, {"noise(error of x)", 3}}) == near(5));
+}
+
+TEST_CASE("a fit says how its likelihood is computed") {
+  std::string const white = "disturbance w [N] ~ white(intensity = 4)\n";
+  CHECK(fit_of(white, "f = fit m to exact with mh").filter == FilterRule::automatic);
+  CHECK(fit_of(white, "f = fit m to exact with mh, filter = unscented").filter == FilterRule::unscented);
+  CHECK(fit_of(white, "f = fit m to exact with mh, filter = kalman").filter == FilterRule::kalman);
+  CHECK(messages(with_tasks(white, "f = fit m to exact with mh, filter = ekf")).find("E6006") != std::string::npos);
+}
+
+TEST_CASE("a prediction has the errors of its own data, and samples correct its states by a rule") {
+  std::string const fitted = "f = fit m to exact with mh\n";
+  auto const prediction = [&](std::string const& task) {
+    return std::get<PredictTask>(checked(with_tasks("", fitted + task)).tasks.at(1).what);
+  };
+  CHECK(prediction("p = predict f on exact").input_errors.empty());
+  PredictTask const noisy = prediction("p = predict f on bench with prediction = one_step");
+  REQUIRE(noisy.input_errors.size() == 1);
+  CHECK(noisy.input_errors[0] == near(500));
+  CHECK(noisy.prediction == PredictionRule::one_step);
+  CHECK(messages(with_tasks("", fitted + "p = predict f on exact with prediction = one_step")).find("E6016") != std::string::npos);
+  std::string const white = "disturbance w [N] ~ white(intensity = 4)\n";
+  for (char const* rule : {"one_step", "free_run", "as_written"})
+    CHECK(messages(with_tasks(white, fitted + "p = predict f on exact with prediction = " + rule)).empty());
+  CHECK(messages(with_tasks("", fitted + "p = predict f on bench, exact")).find("E3317") != std::string::npos);
+}
+
+TEST_CASE("selection by likelihood takes what is random, selection by distance does not") {
+  std::string const white = "disturbance w [N] ~ white(intensity = 4)\n";
+  CHECK(messages(with_tasks(white, "s = select m to exact with reversible_jump(samples = 1000)")).empty());
+  CHECK(messages(with_tasks(white, "s = select m to exact with abc_smc")).find("E3318") != std::string::npos);
+  CHECK(messages(with_tasks("", "s = select m to bench with abc_smc")).find("E3318") != std::string::npos);
+  CHECK(messages(with_tasks("", "s = select m to exact with abc_smc")).empty());
+}
