@@ -110,8 +110,8 @@ std::string predicted_text(Model const& model, PredictionRule rule) {
   std::string const lags = model.dynamics == Dynamics::discrete ? prediction_text(model, rule) : std::string();
   if (!model.filtered()) return lags;
   bool const one_step = rule == PredictionRule::one_step;
-  std::string const corrected =
-      one_step ? "states corrected by all samples before each row" : "states corrected by the samples before the predicted rows only";
+  std::string const corrected = one_step ? "states corrected by all samples before each row"
+                                         : "states corrected by the samples before the predicted rows only";
   if (!lags.empty()) return fmt::format("{}; {}", lags, corrected);
   return fmt::format("{}: {}", prediction_name(one_step ? rule : PredictionRule::free_run), corrected);
 }
