@@ -260,17 +260,24 @@ class MomentWriter {
 
   NodeId expectation(MomentRow const& row) { return by_points(row) ? values(row.value).mean : row.value; }
 
-  /// cov(x_j, row)
+  /// cov(x_j, row): what is linear about the mean passes by the covariance itself, so that points are needed only for the rest.
+  /// They reproduce the covariance where it has a Cholesky factor, which at the stages of an integrator, near a known start, it
+  /// need not.
   NodeId with_state(MomentRow const& row, int j) {
     NodeId sum = zero_;
-    if (!by_points(row)) {
-      for (int k = 0; k < states_; ++k) add_product(sum, row.slopes[static_cast<std::size_t>(k)], covariance_(k, j));
-      return sum;
-    }
+    for (int k = 0; k < states_; ++k) add_product(sum, row.slopes[static_cast<std::size_t>(k)], covariance_(k, j));
+    if (!by_points(row)) return sum;
     Values const of = values(row.value);
-    for (std::size_t p = 0; p < points_.size(); ++p)
-      add_product(sum, points_[p].offset[static_cast<std::size_t>(j)], graph_.subtract(of.ahead[p], of.behind[p]));
-    return graph_.multiply(weight(), sum);
+    NodeId bent = zero_;
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      NodeId straight = zero_;
+      for (int k = 0; k < states_; ++k)
+        add_product(straight, row.slopes[static_cast<std::size_t>(k)], points_[p].offset[static_cast<std::size_t>(k)]);
+      NodeId const difference = graph_.subtract(of.ahead[p], of.behind[p]);
+      add_product(bent, points_[p].offset[static_cast<std::size_t>(j)],
+                  graph_.subtract(difference, graph_.multiply(graph_.constant(2), straight)));
+    }
+    return graph_.add(sum, graph_.multiply(weight(), bent));
   }
 
   /// cov(a, b)
