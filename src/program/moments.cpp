@@ -426,15 +426,17 @@ class MomentWriter {
     std::vector<NodeId> gains;
     for (int i = 0; i < states_; ++i) gains.push_back(with_state(output, i));
     result.variance = graph_.add(by_points(output) ? between(output, output) : spread(output, gains), channel.variance);
-    NodeId const scaled = graph_.divide(graph_.subtract(graph_.leaf(LeafKind::measured, index), result.mean), result.variance);
-    std::vector<NodeId> corrected = means_;
+    NodeId const inverse = graph_.divide(graph_.constant(1), result.variance);
+    NodeId const error = graph_.subtract(graph_.leaf(LeafKind::measured, index), result.mean);
+    std::vector<NodeId> corrected = means_, weighted;
+    for (NodeId const gain : gains) weighted.push_back(is_zero(gain) ? zero_ : graph_.multiply(gain, inverse));
     for (int i = 0; i < states_; ++i)
-      add_product(corrected[static_cast<std::size_t>(i)], gains[static_cast<std::size_t>(i)], scaled);
+      add_product(corrected[static_cast<std::size_t>(i)], weighted[static_cast<std::size_t>(i)], error);
     Symmetric left = covariance_;
     for (int i = 0; i < states_; ++i)
       for (int j = 0; j <= i; ++j) {
-        NodeId const both = graph_.multiply(gains[static_cast<std::size_t>(i)], gains[static_cast<std::size_t>(j)]);
-        if (!is_zero(both)) left(i, j) = graph_.subtract(left(i, j), graph_.divide(both, result.variance));
+        NodeId const a = weighted[static_cast<std::size_t>(i)], b = gains[static_cast<std::size_t>(j)];
+        if (!is_zero(a) && !is_zero(b)) left(i, j) = graph_.subtract(left(i, j), graph_.multiply(a, b));
       }
     result.correct = packed(std::move(corrected), left);
     return result;

@@ -98,7 +98,7 @@ class Compilation {
     }
     for (std::size_t i = 0; i < control_.size(); ++i)
       goals.push_back({algebra.rewrite(control_[i]), control_bank + static_cast<std::uint32_t>(i)});
-    program_.step = section(goals);
+    program_.step = section(goals, program_.source.corrects() ? Order::eager : Order::goal_by_goal);
   }
 
   void find_adjoint() {

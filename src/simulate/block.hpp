@@ -56,6 +56,9 @@ class Block {
   /// Goes on from these states [states x executor.width], which were those of a sample before.
   void put_states(double const* states);
   void copy_states(double* to) const;
+  /// Goes on from these states [states x lanes], which may be anybody's at that sample: a solver that remembers earlier steps
+  /// begins anew.
+  void take_states(ConstLanes states);
 
   /// Whether many samples are one call of machine code.
   bool runs_loops() const { return (observe_loop_ != nullptr || record_loop_ != nullptr) && fixed_step(); }

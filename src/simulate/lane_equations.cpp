@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text/diagnostic.hpp"
+#include "program/embedded.hpp"
 #include "program/interpreter/executor.hpp"
 #include "simulate/not_finite.hpp"
 
@@ -28,6 +30,12 @@ void LaneEquations::set_interval(int sample) {
 double LaneEquations::data(UniformLeaf const& leaf, double time) const {
   if (leaf.kind == LeafKind::time) return schedule_.time(0) + time;
   double const begin = this->time(interval_), end = this->time(interval_ + 1);
+  if (leaf.kind == LeafKind::equal_step) return mean_step(schedule_.experiment().time);
+  if (leaf.kind == LeafKind::interval) {  // what is held from sample to sample reads how long that is
+    if (static_cast<IntervalData>(leaf.index) != IntervalData::length)
+      throw InternalError("equations read what only the control of a step has");
+    return end - begin;
+  }
   InputSignal const& signal = schedule_.experiment().inputs[static_cast<std::size_t>(leaf.index)];
   // Nothing follows the last sample that its held value could be the limit of.
   if (beyond_ && leaf.kind == LeafKind::input) return signal.sample(interval_ + 1);

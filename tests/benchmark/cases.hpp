@@ -94,4 +94,42 @@ inline Case bouc_wen_with_powers() {
   return result;
 }
 
+/// The chain of `tests/jobs`: 2 n + 3 parameters m(n), k(n), alpha, beta, precision; measured at every mass.
+inline SimulationSource measured_chain(int masses) {
+  SimulationSource source;
+  Graph& g = source.graph;
+  auto const p = [&](int i) { return g.leaf(LeafKind::parameter, i); };
+  auto const state = [&](int i, int which) { return i < 0 ? g.constant(0) : g.leaf(LeafKind::state, 2 * i + which); };
+  auto const force = [&](int i) {  // of the spring before mass i
+    if (i >= masses) return g.constant(0);
+    NodeId const stretch = g.subtract(state(i, 0), state(i - 1, 0)), rate = g.subtract(state(i, 1), state(i - 1, 1));
+    return g.multiply(p(masses + i), g.add(stretch, g.multiply(p(2 * masses + 1), rate)));
+  };
+  source.parameters = 2 * masses + 3;
+  source.inputs = 1;
+  for (int i = 0; i < masses; ++i) {
+    NodeId const load = i + 1 == masses ? g.leaf(LeafKind::input, 0) : g.constant(0);
+    NodeId const pull = g.add(g.subtract(load, force(i)), force(i + 1));
+    source.initial.insert(source.initial.end(), {g.constant(0), g.constant(0)});
+    source.derivative.insert(source.derivative.end(),
+                             {state(i, 1), g.subtract(g.divide(pull, p(i)), g.multiply(p(2 * masses), state(i, 1)))});
+    NodeId const precision = p(2 * masses + 2);
+    source.channels.push_back({{systems::normal_log_density(g, i, state(i, 0), precision)}});
+    source.records.push_back(
+        g.multiply(g.unary(Operation::square_root, precision), g.subtract(g.leaf(LeafKind::measured, i), state(i, 0))));
+  }
+  return source;
+}
+
+inline Case chain_case(int masses) {
+  Case chain = duffing();
+  chain.record.h = 0.0005;
+  chain.experiment = experiment_of(chain.record);
+  chain.experiment.measured.assign(static_cast<std::size_t>(masses), chain.record.measured);
+  chain.centre.assign(static_cast<std::size_t>(masses), 1);
+  for (int i = 0; i < masses; ++i) chain.centre.push_back(1e4 + 500 * (i % 3));
+  chain.centre.insert(chain.centre.end(), {0.5, 5e-4, 1e8});
+  return chain;
+}
+
 }  // namespace benchmark_cases

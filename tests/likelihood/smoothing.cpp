@@ -152,6 +152,107 @@ TEST_CASE("a state that other states determine is smoothed with them") {
   check_equal(path, expected_of(system, of.experiment.time, of.u, of.y), 1e-7);
 }
 
+TEST_CASE("of five masses one is seen, and the force acts on the last") {
+  std::string const text = R"(
+model chain {
+  input x [N], w [N]
+  state y1 [m], y2 [m], y3 [m], y4 [m], y5 [m]
+  initial y1 = 0, y1' = 0, y2 = 0, y2' = 0, y3 = 0, y3' = 0, y4 = 0, y4' = 0, y5 = 0, y5' = 0
+  parameter q [N^2 s] ~ log_uniform(1e-6, 1)
+  parameter k [N/m] ~ log_uniform(1, 1e6)
+  1 [kg]*y1'' + 0.5 [N s/m]*y1' + k*(2*y1 - y2) = x
+  1 [kg]*y2'' + 0.5 [N s/m]*y2' + k*(2*y2 - y1 - y3) = 0
+  1 [kg]*y3'' + 0.5 [N s/m]*y3' + k*(2*y3 - y2 - y4) = 0
+  1 [kg]*y4'' + 0.5 [N s/m]*y4' + k*(2*y4 - y3 - y5) = 0
+  1 [kg]*y5'' + 0.5 [N s/m]*y5' + k*(y5 - y4) = w
+  observe first ~ normal(y1, sd = 4 [mm])
+}
+)";
+  Model const model = with_disturbance(filtered_file(text).models.front(), "w", "q");
+  LinearSystem system;
+  system.a = Eigen::MatrixXd::Zero(10, 10);
+  system.b = system.g = Eigen::MatrixXd::Zero(10, 1);
+  system.h = Eigen::MatrixXd::Zero(1, 10);
+  auto const place = [&](std::string const& name) {
+    for (std::size_t s = 0; s < model.states.size(); ++s)
+      if (model.states[s].name == name) return static_cast<Eigen::Index>(s);
+    FAIL(name);
+    return Eigen::Index{0};
+  };
+  for (int i = 1; i <= 5; ++i) {
+    auto const at = [&](int mass) { return place("y" + std::to_string(mass)); };
+    Eigen::Index const speed = place("y" + std::to_string(i) + "'");
+    system.a(at(i), speed) = 1;
+    system.a(speed, speed) = -0.5;
+    system.a(speed, at(i)) = i == 5 ? -100 : -200;
+    if (i > 1) system.a(speed, at(i - 1)) = 100;
+    if (i < 5) system.a(speed, at(i + 1)) = 100;
+  }
+  system.b(place("y1'"), 0) = system.g(place("y5'"), 0) = 1;
+  system.h(0, place("y1")) = 1;
+  system.start = Eigen::VectorXd::Zero(10);
+  system.start_covariance = Eigen::MatrixXd::Zero(10, 10);
+  system.q = Eigen::MatrixXd::Constant(1, 1, 0.5);
+  system.r = Eigen::MatrixXd::Constant(1, 1, 1.6e-5);
+  FilterRecord const of = record(60, 1, true);
+  Smoother::Path const path = smoothed_path(model, of, smoothing_solver("rk4", 10), FilterRule::automatic, {0.5, 100});
+  // The noise reaches the first mass by nine integrations: after one interval the covariance is singular to rounding.
+  check_equal(path, expected_of(system, of.experiment.time, of.u, of.y), 2e-5);
+}
+
+TEST_CASE("a disturbance in discrete time is smoothed as the joint normal distribution has it") {
+  std::string const text = R"(
+model ar {
+  time discrete 0.02 [s]
+  input x [N]
+  state y [m]
+  initial y = 0
+  parameter a ~ uniform(0, 1)
+  parameter s [m] ~ log_uniform(1e-5, 1)
+  disturbance w [m] ~ normal(0, sd = s)
+  y = a*lag(y, 1) + 0.001 [m/N]*x + w
+  observe displacement ~ normal(y, sd = 2 [mm])
+  derive present [mm] = y
+}
+)";
+  constexpr int samples = 40;
+  constexpr double a = 0.8, s = 0.004, r = 0.002;
+  Model const model = filtered_file(text).models.front();
+  FilterRecord const of = record(samples, 1, true);
+  Eigen::MatrixXd responses = Eigen::MatrixXd::Zero(samples, samples);  // of y to w
+  for (int k = 0; k < samples; ++k)
+    for (int j = 0; j <= k; ++j) responses(k, j) = std::pow(a, k - j);
+  JointNormal joint;
+  joint.mean = Eigen::VectorXd::Zero(samples);
+  joint.covariance = s * s * Eigen::MatrixXd::Identity(samples, samples);
+  Eigen::VectorXd const known = responses * (0.001 * of.u.row(0).transpose());
+  std::vector<int> seen;
+  for (int k = 0; k < samples; ++k)
+    if (!std::isnan(of.y(0, k))) seen.push_back(k);
+  joint.observation = responses(seen, Eigen::all);
+  joint.left = of.y.row(0).transpose()(seen) - known(seen);
+  joint.of_samples = joint.observation * joint.covariance * joint.observation.transpose();
+  joint.of_samples.diagonal().array() += r * r;
+  Eigen::MatrixXd functions(2 * samples, samples);
+  functions << Eigen::MatrixXd::Identity(samples, samples), responses;
+  auto const [mean, sd] = posterior_of(joint, functions);
+
+  auto const smoothing = compile_smoothing(compile(model, false, "rk4", FilterRule::automatic));
+  Smoother const smoother(smoothing, of.experiment, smoothing_solver("rk4", 1), 0, {});
+  std::vector<std::string> names;
+  for (SmoothedName const& each : smoother.quantities()) names.push_back(each.name);
+  REQUIRE(names == std::vector<std::string>{"w", "present", "y"});
+  CHECK_FALSE(smoother.quantities()[0].average);
+  Smoother::Path const path = smoother.run(column_of({a, s})).front();
+  for (Eigen::Index i = 0; i < samples; ++i) {
+    auto const at = static_cast<std::size_t>(i);
+    CHECK(std::abs(path.mean[at] - mean(i)) < 1e-9 * s);
+    CHECK(std::abs(path.sd[at] - sd(i)) < 1e-9 * s);
+    CHECK(path.mean[samples + at] == doctest::Approx(1e3 * (mean(samples + i) + known(i))).epsilon(1e-9));
+    CHECK(path.sd[samples + at] == doctest::Approx(1e3 * sd(samples + i)).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("quantities derived from smoothed states have their sds to first order") {
   std::string text = filtered_text;
   text.replace(text.find("  observe displacement"), 22, "  derive spring [N] = k*y + x\n  observe displacement");

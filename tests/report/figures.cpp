@@ -137,6 +137,28 @@ TEST_CASE("one trajectory is no posterior mean and has no band") {
   CHECK(figure.caption.ends_with("a single trajectory has no band."));
 }
 
+TEST_CASE("smoothed states have bands, also of an optimum, and a place of their own") {
+  Report report = example::duffing(40);
+  std::size_t const before = figures(report).size();
+  report.states = {report.predictions[0]};
+  report.states[0].smoothed = true;
+  report.states[0].quantities.resize(1);
+  PredictedQuantity& quantity = report.states[0].quantities[0];
+  quantity.noisy = {};
+  quantity.measured.clear();
+  quantity.response.draws = 1;
+  quantity.response.mean.back() = quantity.response.lower.back() = quantity.response.upper.back() = std::nan("");
+  CHECK(figures(report).size() == before + 1);
+  plot::Figure figure = fit_figure(report.states[0], quantity);
+  CHECK(figure.name == "smoothed_bench_train_" + quantity.name);
+  CHECK(figure.topic == plot::Topic::states);
+  CHECK(figure.script.find("'95 % band'") != std::string::npos);
+  CHECK(figure.caption.find("mean from there to the next") == std::string::npos);
+  quantity.average = true;
+  figure = fit_figure(report.states[0], quantity);
+  CHECK(figure.caption.find("mean from there to the next") != std::string::npos);
+}
+
 TEST_CASE("the numbers over a marginal are in the unit of its axis") {
   Report report = example::duffing(40);
   report.summary.resize(1);

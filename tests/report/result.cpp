@@ -10,6 +10,8 @@
 #include "core/text/diagnostic.hpp"
 #include "example.hpp"
 #include "report/figure/gnuplot.hpp"
+#include "report/file/report_cbor.hpp"
+#include "report/file/stored_report.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;
@@ -143,6 +145,32 @@ TEST_CASE("predictions of several experiments have a file each") {
   CHECK(fs::exists(folder.path() / "predict_bench_train.csv"));
   CHECK(fs::exists(folder.path() / "predict_bench_test.csv"));
   CHECK_FALSE(fs::exists(folder.path() / "predict.csv"));
+}
+
+TEST_CASE("smoothed states of several experiments have a file each, and are read back") {
+  TemporaryFolder const folder;
+  Report report = example::duffing(10);
+  std::string const without = record_bytes(report);
+  report.states = {report.predictions[0], report.predictions[0]};
+  report.states[1].experiment = "bench.test";
+  for (Prediction& each : report.states) {
+    each.inputs.clear();
+    each.smoothed = each.quantities[0].average = true;
+    for (PredictedQuantity& quantity : each.quantities) quantity.noisy = {}, quantity.measured.clear();
+  }
+  CHECK(record_bytes(report) != without);
+  write_result(report, folder.path(), {});
+  CHECK(fs::exists(folder.path() / "states_bench_train.csv"));
+  CHECK(fs::exists(folder.path() / "states_bench_test.csv"));
+  Report const stored = read_result(folder.path());
+  REQUIRE(stored.states.size() == 2);
+  CHECK(stored.states[1].smoothed);
+  CHECK(stored.states[1].quantities[0].average);
+  CHECK_FALSE(stored.states[1].quantities[1].average);
+  CHECK(stored.states[1].quantities[0].response.upper == report.states[1].quantities[0].response.upper);
+  std::string const table = read_file(folder.path() / "states_bench_test.csv");
+  write_file(folder.path() / "states_bench_test.csv", table + "\n");
+  CHECK_THROWS_AS(read_result(folder.path()), UserError);
 }
 
 TEST_CASE("a folder that cannot be written is an I/O error") {

@@ -24,7 +24,7 @@
 #include "app/session/task_checkpoint.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/automatic.hpp"
 #include "inference/backend/checkpoint.hpp"
@@ -273,6 +273,8 @@ class Fit {
     name_held(report, report.findings);
     if (!interrupted) {
       report.functions = likelihood_->functions(result, report.draws);
+      for (int e = 0; e < static_cast<int>(data_.size()); ++e)
+        if (auto states = likelihood_->states(report.draws, e)) report.states.push_back(std::move(*states));
       report.evidence = evidence_of(result, target, finished.extra);
       report.criteria = criteria_of(finished);
       if (report.evidence->log_evidence) report.prior_widths = prior_widths(priors_of_choice(report), report.draws);
@@ -280,8 +282,6 @@ class Fit {
     }
     if (!interrupted && session_.interrupted()) return stop_late(session_, task_, checkpoint_, preparation_);
     for (FittedRows& rows : finished.rows) report.predictions.push_back(std::move(rows.prediction));
-    for (int e = 0; e < static_cast<int>(data_.size()) && !interrupted; ++e)
-      if (auto states = likelihood_->states(report.draws, e)) report.states.push_back(std::move(*states));
     report.modes = result.modes;
     for (ParameterInfo const& each : target.parameters()) report.sampled_names.push_back(each.name);
     add_settings(result.settings, report);

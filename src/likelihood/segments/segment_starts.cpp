@@ -14,7 +14,7 @@ namespace sysid {
 namespace {
 
 constexpr double enough = 1e-4;  // gain of log likelihood
-constexpr int most_rounds = 40;
+constexpr int most_start_rounds = 40;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void fit_starts(SegmentSimulation const& simulation, ShootingPoint& point, std::
     return std::isfinite(squares) ? squares : std::numeric_limits<double>::infinity();
   };
   for (std::size_t s = 0; s < count; ++s) done[s] = !slopes[s].finite();
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < most_start_rounds; ++round) {
     if (interrupted && interrupted()) return;
     ShootingPoint trial = point;
     bool open = false;

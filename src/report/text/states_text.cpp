@@ -26,7 +26,7 @@ ReportTable states_table(Report const& report) {
       "States and disturbances",
       "Given all samples of the record. rms: of the mean along the record; sd: of what it is not known by, parameters "
       "and states together, its rms. Where the two are alike, the record hardly tells the quantity.",
-      {"", "unit", "rms", "sd"},
+      {"quantity", "unit", "rms", "sd"},
       {}};
   bool const several = report.states.size() > 1;
   if (several) table.header.insert(table.header.begin() + 1, "record");

@@ -1,7 +1,7 @@
 // `sysid check`: silent on what is sound, and naming what is planted: null directions, wild priors, coarse steps, data that are not
 // there. SYSID_BLESS=1 rewrites the recorded pages.
 #include "app/preflight/check_file.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "report/page/check_page.hpp"
 

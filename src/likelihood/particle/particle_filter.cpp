@@ -1,0 +1,174 @@
+// From sample to sample: move, weigh, choose.
+#include "likelihood/particle/particle_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "likelihood/particle/resampling.hpp"
+#include "simulate/particle_lanes.hpp"
+
+namespace sysid {
+namespace {
+
+std::size_t numbers_of_start(ParticleModel const& model, int particles) {
+  return static_cast<std::size_t>(particles) * static_cast<std::size_t>(model.starts);
+}
+/// Of the interval that begins with it, and one for the choice among the particles.
+std::size_t numbers_of_sample(ParticleModel const& model, int particles) {
+  return static_cast<std::size_t>(particles) * static_cast<std::size_t>(model.numbers) + 1;
+}
+
+/// Particles are resampled where their weights are worth less than this part of them.
+constexpr double fewest_effective = 0.5;
+
+class ParticleRun {
+ public:
+  ParticleRun(ParticleModel const& model, Simulator const& simulator, int particles)
+      : model_(model),
+        simulator_(simulator),
+        schedule_(simulator.schedule()),
+        particles_(simulator, particles),
+        order_(particles),
+        weights_(static_cast<std::size_t>(particles), 1.0 / particles),
+        density_(weights_.size()),
+        ancestors_(weights_.size()) {}
+
+  FilterOutcome run(ConstLanes parameters, ParticleNormals& normals, SeeParticles const& see) {
+    start(parameters, normals);
+    int const end = schedule_.last_summed();
+    for (int sample = 0; sample < end; ++sample) {
+      if (simulator_.stopped()) return {-infinity, sample};
+      if (sample > 0) particles_.step(sample - 1);
+      std::span<double const> const numbers = normals.take(numbers_of_sample(model_, particles_.count()));
+      set_noises(sample, numbers, true);
+      if (is_weighed(sample)) {
+        if (!weigh(sample)) return {-infinity, sample};
+        if (see) see({sample, particles_.states(), weights_});
+        if (sample + 1 < end && effective_ < fewest_effective) resample(numbers.back());
+      }
+      set_noises(sample, numbers, false);
+    }
+    return outcome_;
+  }
+
+ private:
+  void start(ConstLanes parameters, ParticleNormals& normals) {
+    std::span<double const> const numbers = normals.take(numbers_of_start(model_, particles_.count()));
+    ConstLanes const own(numbers.data(), model_.starts, particles_.count());
+    particles_.start({parameters.data(), model_.first_start, 1, parameters.stride()}, own);
+  }
+
+  bool is_weighed(int sample) const {
+    for (int c = 0; c < simulator_.program().registers.records; ++c)
+      if (schedule_.summed(c, sample)) return true;
+    return false;
+  }
+
+  /// Disturbances of the interval that begins with a sample: those that a channel reads there, or the others.
+  void set_noises(int sample, std::span<double const> numbers, bool observed) {
+    auto const count = weights_.size();
+    Lanes const states = particles_.states();
+    int const from = sample + 1 < schedule_.samples() ? sample : sample - 1;
+    double const step = from < 0 ? 1 : schedule_.time(from + 1) - schedule_.time(from);
+    std::size_t first = 0;
+    for (ParticleNoise const& noise : model_.noises) {
+      double const* const xi = numbers.data() + first;
+      first += count * static_cast<std::size_t>(noise.numbers());
+      if (noise.observed != observed) continue;
+      double* const value = states.row(noise.state).data();
+      if (!noise.white) {
+        std::copy_n(xi, count, value);
+        continue;
+      }
+      double* const rate = states.row(noise.state + 1).data();
+      double const *const slope = xi + count, size = 1 / std::sqrt(step);
+      for (std::size_t w = 0; w < count; ++w) {
+        value[w] = size * (xi[w] - std::numbers::sqrt3 * slope[w]);
+        rate[w] = 2 * std::numbers::sqrt3 * size / step * slope[w];
+      }
+    }
+  }
+
+  /// Whether any particle is left.
+  bool weigh(int sample) {
+    ConstLanes const densities = particles_.record(sample);
+    std::fill(density_.begin(), density_.end(), 0.0);
+    for (int c = 0; c < densities.rows(); ++c) {
+      if (!schedule_.summed(c, sample)) continue;
+      double const* const row = densities.row(c).data();
+      for (std::size_t w = 0; w < density_.size(); ++w) density_[w] += row[w];
+    }
+    double most = -infinity;
+    for (std::size_t w = 0; w < density_.size(); ++w) {
+      if (!(density_[w] < infinity) || !(weights_[w] > 0)) density_[w] = -infinity;  // not a number, or dead before
+      most = std::max(most, density_[w]);
+    }
+    if (most == -infinity) return false;
+    for (double& each : density_) each -= most;
+    elementary::exp_lanes(density_.data(), density_.data(), static_cast<int>(density_.size()));
+    double sum = 0;
+    for (std::size_t w = 0; w < density_.size(); ++w) sum += weights_[w] *= density_[w];
+    double squares = 0;
+    for (double& weight : weights_) weight /= sum, squares += weight * weight;
+    outcome_.log_likelihood += most + elementary::log(sum);
+    effective_ = 1 / (static_cast<double>(weights_.size()) * squares);
+    outcome_.least_effective = std::min(outcome_.least_effective, effective_);
+    return true;
+  }
+
+  /// Rows that are drawn anew for the next interval are not taken along.
+  void resample(double normal) {
+    Lanes const states = particles_.states();
+    double const uniform = 0.5 * elementary::erfc(-normal / std::numbers::sqrt2);
+    ConstLanes const own(states.data(), model_.states, states.width(), states.stride());
+    systematic_ancestors(weights_, order_(own), uniform, ancestors_);
+    particles_.select(ancestors_, 0, model_.states);
+    for (ParticleNoise const& noise : model_.noises)
+      if (noise.observed) particles_.select(ancestors_, noise.state, noise.state + noise.numbers());
+    int const memories = static_cast<int>(model_.model.states.size());
+    particles_.select(ancestors_, memories, states.rows());
+    std::fill(weights_.begin(), weights_.end(), 1 / static_cast<double>(weights_.size()));
+  }
+
+  ParticleModel const& model_;
+  Simulator const& simulator_;
+  Schedule const& schedule_;
+  ParticleLanes particles_;
+  ParticleOrder order_;
+  std::vector<double> weights_, density_;  // weights: their sum is 1
+  std::vector<int> ancestors_;
+  double effective_ = 1;
+  FilterOutcome outcome_;
+};
+
+}  // namespace
+
+ParticleFilter::ParticleFilter(ParticleModel const& model, Simulator const& simulator, int particles)
+    : model_(model), simulator_(simulator), particles_(particles) {}
+
+std::size_t ParticleFilter::numbers() const {
+  auto const samples = static_cast<std::size_t>(simulator_.schedule().last_summed());
+  return numbers_of_start(model_, particles_) + samples * numbers_of_sample(model_, particles_);
+}
+
+std::vector<double> ParticleFilter::draw(ParticleNormals& normals) const {
+  std::vector<double> drawn;
+  drawn.reserve(numbers());
+  auto const add = [&](std::size_t count) {
+    std::span<double const> const some = normals.take(count);
+    drawn.insert(drawn.end(), some.begin(), some.end());
+  };
+  add(numbers_of_start(model_, particles_));
+  for (int sample = 0; sample < simulator_.schedule().last_summed(); ++sample) add(numbers_of_sample(model_, particles_));
+  return drawn;
+}
+
+FilterOutcome ParticleFilter::run(ConstLanes parameters, ParticleNormals& normals, SeeParticles const& see) const {
+  return ParticleRun(model_, simulator_, particles_).run(parameters, normals, see);
+}
+
+}  // namespace sysid

@@ -1,0 +1,54 @@
+// The likelihood of one parameter vector in one experiment, estimated by weighted particles.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/numeric/lanes.hpp"
+#include "likelihood/particle/particle_model.hpp"
+#include "likelihood/particle/particle_normals.hpp"
+#include "simulate/simulator.hpp"
+
+namespace sysid {
+
+struct FilterOutcome {
+  double log_likelihood = 0;   // -infinity where no particle is left
+  int sample = -1;             // where that was
+  double least_effective = 1;  // the smallest effective part of the particles, (sum w)^2/(N sum w^2), over the weighed samples
+};
+
+/// What is to be seen at each sample that is weighed, before particles are resampled: their states [S x N], the model's own first.
+struct WeighedParticles {
+  int sample;
+  ConstLanes states;
+  std::span<double const> weights;  // their sum is 1
+};
+using SeeParticles = std::function<void(WeighedParticles const&)>;
+
+/// The bootstrap filter: particles move by the model's own dynamics from sample to sample with fresh numbers, are weighed by the
+/// density of what was measured, and are resampled where the weights W are worth less than half of them.   Gordon, Salmond, Smith
+/// 1993
+///
+///   log L = sum over samples i of log sum_j W_j p(y_i | state of particle j),  E L = p(y)      Del Moral 2004, sec. 7.4.1
+///
+/// Immutable; may be run concurrently.
+class ParticleFilter {
+ public:
+  /// simulator: of the densities of `model`; both must outlive it. particles > 0.
+  ParticleFilter(ParticleModel const& model, Simulator const& simulator, int particles);
+
+  /// Standard normal numbers that a run takes.
+  std::size_t numbers() const;
+  /// As many as that, as a run with `normals` would take them.
+  std::vector<double> draw(ParticleNormals& normals) const;
+  /// parameters [.. x 1]: those of the model, SI.
+  FilterOutcome run(ConstLanes parameters, ParticleNormals& normals, SeeParticles const& see = nullptr) const;
+
+ private:
+  ParticleModel const& model_;
+  Simulator const& simulator_;
+  int particles_;
+};
+
+}  // namespace sysid

@@ -1,0 +1,150 @@
+// Fits of models with disturbances as a user runs them. The records are made here, with steps a hundred times as fine as the
+// sampling, so that nothing of the program makes what it is tested with.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/running.hpp"
+#include "core/numeric/random.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+bool was_found(json const& summary, std::string const& code) {
+  for (json const& each : summary.at("findings"))
+    if (each.at("code") == code) return true;
+  return false;
+}
+
+/// x' = -a x^3 + w, white noise of intensity q, sampled at 4 Hz.
+std::string sampled_well(double a, double q, std::uint64_t seed, double noise = 0.3) {
+  Stream stream({seed, Purpose::test});
+  constexpr int fine = 100;
+  double const step = 0.25 / fine;
+  double x = stream.normal();
+  std::string text = "t,m\n";
+  for (int i = 0; i < 400; ++i) {
+    text += fmt::format("{},{}\n", 0.25 * i, x + noise * stream.normal());
+    for (int k = 0; k < fine; ++k) x += -a * x * x * x * step + std::sqrt(q * step) * stream.normal();
+  }
+  return text;
+}
+
+std::string const well = R"(
+model well {
+  state x
+  initial x ~ normal(0, sd = 1)
+  parameter a [1/s] ~ log_uniform(0.1, 10)
+  parameter q [1/s] ~ log_uniform(0.01, 10)
+  disturbance w [1/s] ~ white(intensity = q)
+  x' = -a*x^3 + w
+  observe m ~ normal(x, sd = 0.3)
+}
+data d { file "d.csv"; time t [s]; measure m = m }
+)";
+
+/// m y'' + c y' + k y = x + w: a force of sd 1 held over 10 ms, one in twenty of its size unmeasured.
+std::string sampled_oscillator(std::uint64_t seed, double unmeasured) {
+  Stream stream({seed, Purpose::test});
+  constexpr int fine = 50, samples = 600;
+  double const rate = 100, step = 1 / rate / fine, m = 1, c = 1, k = 400;
+  double y = 0, v = 0;
+  std::string text = "t,x,y\n";
+  for (int i = 0; i < samples; ++i) {
+    double const x = stream.normal(), w = unmeasured * stream.normal();
+    text += fmt::format("{},{},{}\n", i / rate, x, y + 2e-5 * stream.normal());
+    for (int j = 0; j < fine; ++j) {
+      v += step * (x + w - c * v - k * y) / m;
+      y += step * v;
+    }
+  }
+  return text;
+}
+
+std::string const shaken = R"(
+model shaken {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter m [kg] ~ log_uniform(0.1, 10)
+  parameter c [N s/m] ~ log_uniform(0.1, 10)
+  parameter k [N/m] ~ log_uniform(40, 4000)
+  parameter q [N^2 s] ~ log_uniform(1e-9, 1)
+  disturbance w [N] ~ white(intensity = q)
+  m*y'' + c*y' + k*y = x + w
+  observe d [m] ~ normal(y, sd = 2e-5)
+}
+data bench { file "b.csv"; time t [s]; input x = x [N] hold zero_order; measure d = y [m]
+  split train = rows 1..300, test = rows 301..600 }
+)";
+
+}  // namespace
+
+TEST_CASE("a fit says where the linearisation of its filter decides the result, and only there") {
+  std::string const extended = well + "post = fit well to d with map, seed = 1\n";
+  CaseRun const strong(extended, {{"d.csv", sampled_well(1, 1, 3)}});
+  CHECK(was_found(strong.summary("post"), "linearisation_matters"));
+  std::string const unscented = well + "post = fit well to d with map, filter = unscented, seed = 1\n";
+  CaseRun const mended(unscented, {{"d.csv", sampled_well(1, 1, 3)}});
+  CHECK_FALSE(was_found(mended.summary("post"), "linearisation_matters"));
+  // Within the spread of the states the cubic is a straight line.
+  CaseRun const weak(with(extended, "normal(x, sd = 0.3)", "normal(x, sd = 0.003)"),
+                     {{"d.csv", sampled_well(0.5, 0.02, 3, 0.003)}});
+  CHECK_FALSE(was_found(weak.summary("post"), "linearisation_matters"));
+}
+
+TEST_CASE("an unmeasured force is estimated, and without it the parameters are surer than they may be") {
+  std::string const data = sampled_oscillator(5, 0.05);
+  std::string const task = "post = fit shaken to bench.train with map, seed = 1\n";
+  CaseRun const with_force(shaken + task, {{"b.csv", data}});
+  json const summary = with_force.summary("post");
+  CHECK_FALSE(was_found(summary, "residuals_not_white"));
+  // 0.05 N held over 10 ms: an intensity of 0.05^2 * 0.01.
+  double const q = parameter(summary, "q").at("mean"), sd = parameter(summary, "q").at("sd");
+  CHECK(std::abs(q - 2.5e-5) < 3 * sd);
+  CHECK(sd < 0.5e-5);
+  std::string plain = with(shaken, " = x + w", " = x");
+  plain = without(without(plain, "  disturbance w [N] ~ white(intensity = q)\n"), "  parameter q [N^2 s] ~ log_uniform(1e-9, 1)\n");
+  CaseRun const sure(plain + task, {{"b.csv", data}});
+  CHECK(was_found(sure.summary("post"), "residuals_not_white"));
+  CHECK(sure.result.out.find("disturbance w ~ white(intensity = q)") != std::string::npos);
+  CHECK(parameter(sure.summary("post"), "k").at("sd").get<double>() < 0.5 * parameter(summary, "k").at("sd").get<double>());
+}
+
+TEST_CASE("free predictions know the rows before them and widen; one step ahead they know each row before") {
+  std::string const text =
+      shaken +
+      "post = fit shaken to bench.train with mh(samples = 2000, burn_in = 1000, thin = 10, chains = 4), seed = 1\n"
+      "free = predict post on bench.test with draws(100), seed = 1\n"
+      "step = predict post on bench.test with draws(100), prediction = one_step, seed = 1\n";
+  CaseRun const run(text, {{"b.csv", sampled_oscillator(5, 0.05)}});
+  auto const score = [&](std::string const& task, std::string const& name) {
+    return run.summary(task).at("fit").at(name).get<double>();
+  };
+  CHECK(score("step", "rmse") < 0.5 * score("free", "rmse"));
+  CHECK(score("free", "coverage_95") > 0.9);
+  CHECK(score("step", "coverage_95") > 0.9);
+}
+
+TEST_CASE("a simulation draws its disturbances") {
+  std::string const text = with(shaken, "observe d [m] ~ normal(y, sd = 2e-5)", "observe d [m] ~ normal(y, sd = 1e-9)") +
+                           "made = simulate shaken with values(m = 1, c = 1, k = 400, q = 1e-4), input x = sine(amplitude = 0, "
+                           "frequency = 1 [Hz]), samples = 4000, rate = 100 [Hz], substeps = 4, seed = 4, file = \"made.csv\"\n";
+  CaseRun const run(text, {{"b.csv", sampled_oscillator(5, 0)}});
+  // The stationary sd of the displacement of a white force: sqrt(q/(2 c k)).
+  std::istringstream lines(run.file("made/made.csv"));
+  double sum = 0, count = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || !(std::isdigit(static_cast<unsigned char>(line[0])) != 0)) continue;
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; i < 3; ++i) std::getline(cells, cell, ',');
+    if (++count <= 500) continue;  // what has not yet been shaken long enough
+    sum += std::stod(cell) * std::stod(cell);
+  }
+  CHECK(std::sqrt(sum / (count - 500)) == doctest::Approx(std::sqrt(1e-4 / (2 * 1 * 400))).epsilon(0.15));
+}

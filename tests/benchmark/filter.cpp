@@ -1,0 +1,109 @@
+// What the likelihood of a filter costs, in likelihoods of the same model without a disturbance, by the same executor: chains of
+// masses, a white force on the last one; thread processor time, measured in turns, medians of the ratios of each turn.
+#include <ctime>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+#include "cases.hpp"
+#include "program/moments.hpp"
+
+using namespace benchmark_cases;
+
+namespace {
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double timed(std::function<void()> const& work) {
+  double const begin = cpu_seconds();
+  work();
+  return cpu_seconds() - begin;
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+struct Simulated {
+  Simulator simulator;
+  LaneArray out;
+  std::vector<Outcome> outcome;
+
+  Simulated(SimulationSource source, Experiment const& experiment, int width)
+      : Simulated(std::make_shared<SimulationProgram const>(compile(std::move(source))), experiment, width) {}
+  Simulated(std::shared_ptr<SimulationProgram const> const& program, Experiment const& experiment, int width)
+      : simulator(program, Schedule(*program, experiment, {.substeps = 1}), {.threads = 1, .executor = ExecutorKind::native}),
+        out(program->sum_count(), width),
+        outcome(static_cast<std::size_t>(width)) {}
+  void operator()(ConstLanes parameters) { simulator.sums(parameters, out, outcome); }
+};
+
+/// The filter of the source with a white force on the last mass, as the model's likelihood has it.
+SimulationSource filtered(SimulationSource source, int masses, MomentRule rule) {
+  Graph& g = source.graph;
+  NodeId const force = g.divide(g.leaf(LeafKind::disturbance, 0), g.leaf(LeafKind::parameter, masses - 1));
+  source.derivative.back() = g.add(source.derivative.back(), force);
+  NodeId const variance = g.divide(g.constant(1), g.leaf(LeafKind::parameter, 2 * masses + 2));
+  std::vector<NormalChannel> channels;
+  for (std::size_t c = 0; c < source.channels.size(); ++c)
+    channels.push_back({g.leaf(LeafKind::state, 2 * static_cast<int>(c)), variance});
+  RandomStates random;
+  random.noises.push_back({g.constant(1e-3), false});
+  random.initial_variances.resize(source.derivative.size());
+  source.channels.clear();
+  source.records.clear();
+  Moments moments = with_moments(std::move(source), random, channels, rule);
+  Graph& grown = moments.source.graph;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    Innovation const& expected = moments.channels[c];
+    NodeId const precision = grown.divide(grown.constant(1), expected.variance);
+    moments.source.channels.push_back(
+        {{systems::normal_log_density(grown, static_cast<int>(c), expected.mean, precision)}, expected.correct, false});
+  }
+  return std::move(moments.source);
+}
+
+void compare(int masses, int channels, MomentRule rule) {
+  Case const chain = chain_case(masses);
+  SimulationSource source = measured_chain(masses);
+  source.channels.resize(static_cast<std::size_t>(channels));
+  source.records.clear();
+  Experiment experiment = chain.experiment;
+  experiment.measured.resize(static_cast<std::size_t>(channels));
+  LaneArray const parameters = chain.parameters(64);
+  Simulated plain(source, experiment, 64), filter(filtered(source, masses, rule), experiment, 64);
+  plain(parameters);
+  filter(parameters);
+  int const times = std::max(1, static_cast<int>(0.01 / timed([&] { plain(parameters); })));
+  std::vector<double> ratios, microseconds;
+  for (int round = 0; round < 15; ++round) {
+    double const one = timed([&] {
+      for (int i = 0; i < times; ++i) plain(parameters);
+    });
+    double const other = timed([&] {
+      for (int i = 0; i < times; ++i) filter(parameters);
+    });
+    ratios.push_back(other / one);
+    microseconds.push_back(1e6 * other / times / 64);
+  }
+  std::printf("%2d states, %2d of filter, %d channels, %s: %6.2f times a value, %8.1f us\n", 2 * masses,
+              filter.simulator.program().registers.states, channels, rule == MomentRule::linearised ? "extended " : "unscented",
+              median(ratios), median(microseconds));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main() {
+  for (MomentRule const rule : {MomentRule::linearised, MomentRule::sigma_points})
+    for (int const masses : {1, 2, 3, 5}) {
+      compare(masses, 1, rule);
+      if (masses > 1) compare(masses, masses, rule);
+    }
+}
