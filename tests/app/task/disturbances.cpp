@@ -128,6 +128,28 @@ TEST_CASE("free predictions know the rows before them and widen; one step ahead 
   CHECK(score("step", "rmse") < 0.5 * score("free", "rmse"));
   CHECK(score("free", "coverage_95") > 0.9);
   CHECK(score("step", "coverage_95") > 0.9);
+  auto const rule = [&](std::string const& task) { return run.summary(task).at("settings").at("prediction").get<std::string>(); };
+  CHECK(rule("step") == "one_step: states corrected by all samples before each row");
+  CHECK(rule("free") == "free_run: states corrected by the samples before the predicted rows only");
+  CHECK(run.summary("step").at("prediction_rule") == "one_step");
+  CHECK(run.summary("free").at("prediction_rule") == "free_run");
+}
+
+TEST_CASE("a prediction has the errors that inputs have in its own data, not those of the fit") {
+  std::string plain = with(shaken, " = x + w", " = x");
+  plain = without(without(plain, "  disturbance w [N] ~ white(intensity = q)\n"), "  parameter q [N^2 s] ~ log_uniform(1e-9, 1)\n");
+  std::string const text =
+      plain +
+      "data noisy { file \"b.csv\"; time t [s]; input x = x [N] hold zero_order error normal(sd = 0.3); measure d = y [m]\n"
+      "  split test = rows 301..600 }\n"
+      "post = fit shaken to bench.train with map, seed = 1\n"
+      "exact = predict post on bench.test with draws(50), seed = 1\n"
+      "open = predict post on noisy.test with draws(50), seed = 1\n"
+      "step = predict post on noisy.test with draws(50), prediction = one_step, seed = 1\n";
+  CaseRun const run(text, {{"b.csv", sampled_oscillator(5, 0)}});
+  CHECK_FALSE(run.summary("exact").at("settings").contains("prediction"));
+  CHECK(run.summary("open").at("settings").at("prediction").get<std::string>().starts_with("free_run: "));
+  CHECK(run.summary("step").at("settings").at("prediction").get<std::string>().starts_with("one_step: "));
 }
 
 TEST_CASE("a simulation draws its disturbances") {
