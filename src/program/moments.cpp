@@ -192,13 +192,14 @@ class MomentWriter {
   std::vector<Point> const& points() {
     if (!points_.empty()) return points_;
     std::vector<int> random;
-    for (int i = 0; i < states_; ++i)
-      if (!is_zero(covariance_(i, i))) random.push_back(i);
+    for (int k = 0; k < states_; ++k)
+      if (int const i = (random_.first_column + k) % states_; !is_zero(covariance_(i, i))) random.push_back(i);
     int const count = static_cast<int>(random.size());
     spread_ = std::max(count, 3);
     NodeId const scale = graph_.constant(std::sqrt(spread_));
     std::vector<std::vector<NodeId>> columns;  // of the factor, by state
-    for (int const j : random) {
+    for (auto place = random.begin(); place != random.end(); ++place) {
+      int const j = *place;
       Point point;
       point.state = j;
       std::vector<NodeId> column(static_cast<std::size_t>(states_), zero_);
@@ -213,8 +214,8 @@ class MomentWriter {
       NodeId const positive = graph_.binary(Operation::less, graph_.binary(Operation::maximum, least, zero_), pivot);
       NodeId const root = graph_.unary(Operation::square_root, graph_.select(positive, pivot, graph_.constant(1)));
       column[static_cast<std::size_t>(j)] = graph_.select(positive, root, zero_);
-      for (int const i : random)
-        if (i > j) column[static_cast<std::size_t>(i)] = graph_.select(positive, graph_.divide(left(i), root), zero_);
+      for (auto later = place + 1; later != random.end(); ++later)
+        column[static_cast<std::size_t>(*later)] = graph_.select(positive, graph_.divide(left(*later), root), zero_);
       point.positive = positive;
       point.root = root;
       for (int i = 0; i < states_; ++i) {
