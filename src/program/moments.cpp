@@ -38,6 +38,12 @@ struct MomentRow {
   bool linear = true;          // the slopes read no state
 };
 
+/// What a white noise adds to each derivative, at the mean.
+struct Gain {
+  NodeId intensity = 0;
+  std::vector<NodeId> rows;
+};
+
 class MomentWriter {
  public:
   MomentWriter(SimulationSource source, RandomStates const& random, MomentRule rule)
@@ -55,6 +61,8 @@ class MomentWriter {
   }
 
   Moments write(std::span<NormalChannel const> channels, bool since) {
+    find_gains();
+    if (!source_.map) add_drift();
     for (NodeId const derivative : source_.derivative) rules_.push_back(row(at_rest(derivative)));
     for (NormalChannel const& channel : channels) outputs_.push_back(row(channel.mean));
     add_noise();
@@ -102,20 +110,36 @@ class MomentWriter {
   }
 
   // --- G Q G'
-  void add_noise() {
+  void find_gains() {
     for (std::size_t d = 0; d < random_.noises.size(); ++d) {
       RandomStates::Noise const& noise = random_.noises[d];
       NodeId const leaf = graph_.leaf(LeafKind::disturbance, static_cast<int>(d));
-      NodeId const intensity = noise.held && !source_.map ? graph_.multiply(noise.intensity, sampling_interval()) : noise.intensity;
-      std::vector<NodeId> gains;
-      for (NodeId const derivative : source_.derivative) gains.push_back(at_rest(graph_.differentiate(derivative, leaf)));
-      gains_.push_back(gains);
-      intensities_.push_back(intensity);
+      Gain gain;
+      gain.intensity = noise.held && !source_.map ? graph_.multiply(noise.intensity, sampling_interval()) : noise.intensity;
+      for (NodeId const derivative : source_.derivative) gain.rows.push_back(at_rest(graph_.differentiate(derivative, leaf)));
+      gains_.push_back(std::move(gain));
+    }
+  }
+
+  /// Noise that a state multiplies has a mean effect: that of noise which is white for the states, but not for itself.
+  void add_drift() {
+    NodeId const half = graph_.constant(0.5);
+    for (Gain const& gain : gains_)
+      for (std::size_t i = 0; i < gain.rows.size(); ++i) {
+        NodeId drift = zero_;
+        for (std::size_t k = 0; k < gain.rows.size(); ++k)
+          if (!is_zero(gain.rows[k])) add_product(drift, finite_slope(graph_, gain.rows[i], means_[k]), gain.rows[k]);
+        if (!is_zero(drift))
+          source_.derivative[i] = graph_.add(source_.derivative[i], graph_.multiply(half, graph_.multiply(gain.intensity, drift)));
+      }
+  }
+
+  void add_noise() {
+    for (Gain const& gain : gains_)
       for (int i = 0; i < states_; ++i)
         for (int j = 0; j <= i; ++j)
-          add_product(noise_(i, j), intensity,
-                      graph_.multiply(gains[static_cast<std::size_t>(i)], gains[static_cast<std::size_t>(j)]));
-    }
+          add_product(noise_(i, j), gain.intensity,
+                      graph_.multiply(gain.rows[static_cast<std::size_t>(i)], gain.rows[static_cast<std::size_t>(j)]));
   }
 
   NodeId sampling_interval() {
@@ -396,7 +420,7 @@ class MomentWriter {
     for (bool grown = true; std::exchange(grown, false);)
       for (std::size_t i = 0; i < n; ++i) {
         if (some[i]) continue;
-        bool there = !is_zero(gains_[d][i]);
+        bool there = !is_zero(gains_[d].rows[i]);
         for (std::size_t k = 0; k < n && !source_.map; ++k) there = there || (some[k] && !is_zero(rules_[i].slopes[k]));
         if (there) some[i] = grown = true;
       }
@@ -407,13 +431,13 @@ class MomentWriter {
     std::vector<NodeId> change = source_.map ? std::vector<NodeId>(n, zero_) : moved(column);
     for (std::size_t i = 0; i < n; ++i) {
       if (some[i]) {
-        add_product(change[i], gains_[d][i], intensities_[d]);
+        add_product(change[i], gains_[d].rows[i], gains_[d].intensity);
         add_state(zero_, change[i]);
         since.begin.push_back(zero_);
       }
       since.noises.push_back(column[i]);
     }
-    since.sums.push_back(add_state(zero_, intensities_[d]));
+    since.sums.push_back(add_state(zero_, gains_[d].intensity));
     since.begin.push_back(zero_);
   }
 
@@ -464,9 +488,8 @@ class MomentWriter {
   int states_;
   NodeId zero_;
   std::vector<NodeId> means_;
+  std::vector<Gain> gains_;
   std::vector<MomentRow> rules_, outputs_;
-  std::vector<std::vector<NodeId>> gains_;  // G, by noise
-  std::vector<NodeId> intensities_;
   Symmetric covariance_;  // leaves, or zero
   Symmetric noise_;
   std::vector<Point> points_;
