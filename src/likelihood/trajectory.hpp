@@ -33,12 +33,12 @@ class Trajectory {
   struct Result {
     std::vector<std::vector<std::vector<double>>> values, noisy;
     /// Where states are random given the parameters, `values` are their means and random[q] draws about them, each sample by
-    /// itself: bands of one sample are right, paths along several are not. Empty for quantities that are known, or as a whole.
+    /// itself: bands of one sample are right, paths along several are not. Empty for quantities that are known.
     std::vector<std::vector<std::vector<double>>> random;
     /// What bands are made of.
+    bool is_random(std::size_t q) const { return q < random.size() && !random[q].empty(); }
     std::vector<std::vector<double>> const& drawn(std::size_t q) const { return is_random(q) ? random[q] : values[q]; }
     std::vector<std::vector<double>>& drawn(std::size_t q) { return is_random(q) ? random[q] : values[q]; }
-    bool is_random(std::size_t q) const { return q < random.size() && !random[q].empty(); }
     /// solved[d]: 1, vector d did not fail, whether or not it is defined everywhere.
     std::vector<char> solved;
     /// Of all vectors; what failed has its place there.

@@ -192,13 +192,14 @@ class MomentWriter {
   std::vector<Point> const& points() {
     if (!points_.empty()) return points_;
     std::vector<int> random;
-    for (int i = 0; i < states_; ++i)
-      if (!is_zero(covariance_(i, i))) random.push_back(i);
+    for (int k = 0; k < states_; ++k)
+      if (int const i = (random_.first_column + k) % states_; !is_zero(covariance_(i, i))) random.push_back(i);
     int const count = static_cast<int>(random.size());
     spread_ = std::max(count, 3);
     NodeId const scale = graph_.constant(std::sqrt(spread_));
     std::vector<std::vector<NodeId>> columns;  // of the factor, by state
-    for (int const j : random) {
+    for (auto place = random.begin(); place != random.end(); ++place) {
+      int const j = *place;
       Point point;
       point.state = j;
       std::vector<NodeId> column(static_cast<std::size_t>(states_), zero_);
@@ -213,8 +214,8 @@ class MomentWriter {
       NodeId const positive = graph_.binary(Operation::less, graph_.binary(Operation::maximum, least, zero_), pivot);
       NodeId const root = graph_.unary(Operation::square_root, graph_.select(positive, pivot, graph_.constant(1)));
       column[static_cast<std::size_t>(j)] = graph_.select(positive, root, zero_);
-      for (int const i : random)
-        if (i > j) column[static_cast<std::size_t>(i)] = graph_.select(positive, graph_.divide(left(i), root), zero_);
+      for (auto later = place + 1; later != random.end(); ++later)
+        column[static_cast<std::size_t>(*later)] = graph_.select(positive, graph_.divide(left(*later), root), zero_);
       point.positive = positive;
       point.root = root;
       for (int i = 0; i < states_; ++i) {
@@ -260,17 +261,24 @@ class MomentWriter {
 
   NodeId expectation(MomentRow const& row) { return by_points(row) ? values(row.value).mean : row.value; }
 
-  /// cov(x_j, row)
+  /// cov(x_j, row): what is linear about the mean passes by the covariance itself, so that points are needed only for the rest.
+  /// They reproduce the covariance where it has a Cholesky factor, which at the stages of an integrator, near a known start, it
+  /// need not.
   NodeId with_state(MomentRow const& row, int j) {
     NodeId sum = zero_;
-    if (!by_points(row)) {
-      for (int k = 0; k < states_; ++k) add_product(sum, row.slopes[static_cast<std::size_t>(k)], covariance_(k, j));
-      return sum;
-    }
+    for (int k = 0; k < states_; ++k) add_product(sum, row.slopes[static_cast<std::size_t>(k)], covariance_(k, j));
+    if (!by_points(row)) return sum;
     Values const of = values(row.value);
-    for (std::size_t p = 0; p < points_.size(); ++p)
-      add_product(sum, points_[p].offset[static_cast<std::size_t>(j)], graph_.subtract(of.ahead[p], of.behind[p]));
-    return graph_.multiply(weight(), sum);
+    NodeId bent = zero_;
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      NodeId straight = zero_;
+      for (int k = 0; k < states_; ++k)
+        add_product(straight, row.slopes[static_cast<std::size_t>(k)], points_[p].offset[static_cast<std::size_t>(k)]);
+      NodeId const difference = graph_.subtract(of.ahead[p], of.behind[p]);
+      add_product(bent, points_[p].offset[static_cast<std::size_t>(j)],
+                  graph_.subtract(difference, graph_.multiply(graph_.constant(2), straight)));
+    }
+    return graph_.add(sum, graph_.multiply(weight(), bent));
   }
 
   /// cov(a, b)

@@ -54,6 +54,8 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"likelihood/segments", {"core", "linear_algebra", "simulate", "likelihood"}},
     {"likelihood/selection", {"core", "simulate", "likelihood"}},
     {"likelihood/smoothing", {"core", "result", "expression", "model", "program", "simulate", "likelihood"}},
+    {"tracking",
+     {"core", "linear_algebra", "data", "expression", "function", "distribution", "model", "solver", "program", "simulate"}},
     {"check/message", {"core", "function", "distribution", "syntax"}},
     {"check/elaborate", {"core", "function", "syntax", "check/message"}},
     {"check/checked", {"core", "data", "model", "syntax", "regression/column", "solver"}},
@@ -171,6 +173,9 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"app/calibration",
      {"core", "result", "data", "model", "simulate", "likelihood", "check/checked", "diagnostics", "diagnostics/calibration",
       "inference/backend", "inference", "experiment", "report/file", "app/session", "app/fit"}},
+    {"app/tracking",
+     {"core", "result", "data", "expression", "distribution", "model", "program", "simulate", "likelihood", "tracking",
+      "check/checked", "experiment", "report/file", "app/session"}},
     {"app/catalogue",
      {"core", "function", "gaussian_process", "distribution", "model", "syntax", "regression/column", "regression/choice", "solver",
       "check/elaborate", "check/dictionary", "inference", "load"}},
@@ -212,7 +217,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"lsp", {"core", "syntax", "assist"}},
     {"cli",
      {"core", "syntax", "diagnostics", "inference", "load", "experiment", "typeset", "report/figure", "report/page", "app/session",
-      "app/preflight", "app/comparison", "app/calibration", "app/catalogue", "app/run", "exchange", "repl", "lsp"}},
+      "app/preflight", "app/comparison", "app/calibration", "app/tracking", "app/catalogue", "app/run", "exchange", "repl", "lsp"}},
 };
 
 /// The one room that may include headers that begin like this.
