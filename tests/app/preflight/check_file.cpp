@@ -200,7 +200,7 @@ model tank {
   ModelPage const& tank = result.page.models.at(1);
   CHECK(tank.unknowns == std::vector<std::string>{"level"});
   CHECK(tank.disturbances.at(0).text == "~ normal(0, sd = 0.1)");
-  CHECK(check_text(result.page).find("  disturbance   w         ~ normal(0, sd = 0.1)") != std::string::npos);
+  CHECK(check_text(result.page).find("  unmeasured  w  ") != std::string::npos);
   nlohmann::json const object = nlohmann::json::parse(check_json(result.page, ""));
   CHECK(object.at("models").at(0).at("disturbances").size() == 2);
 }
