@@ -285,6 +285,19 @@ class MomentWriter {
 
   NodeId expectation(MomentRow const& row) { return by_points(row) ? values(row.value).mean : row.value; }
 
+  /// By point: how a row differs ahead of the mean and behind it, beyond its slope.
+  std::vector<NodeId> bent(MomentRow const& row) {
+    std::vector<NodeId> result;
+    Values const of = values(row.value);
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      NodeId straight = zero_;
+      for (int k = 0; k < states_; ++k)
+        add_product(straight, row.slopes[static_cast<std::size_t>(k)], points_[p].offset[static_cast<std::size_t>(k)]);
+      result.push_back(graph_.subtract(graph_.subtract(of.ahead[p], of.behind[p]), graph_.multiply(graph_.constant(2), straight)));
+    }
+    return result;
+  }
+
   /// cov(x_j, row): what is linear about the mean passes by the covariance itself, so that points are needed only for the rest.
   /// They reproduce the covariance where it has a Cholesky factor, which at the stages of an integrator, near a known start, it
   /// need not.
@@ -292,17 +305,10 @@ class MomentWriter {
     NodeId sum = zero_;
     for (int k = 0; k < states_; ++k) add_product(sum, row.slopes[static_cast<std::size_t>(k)], covariance_(k, j));
     if (!by_points(row)) return sum;
-    Values const of = values(row.value);
-    NodeId bent = zero_;
-    for (std::size_t p = 0; p < points_.size(); ++p) {
-      NodeId straight = zero_;
-      for (int k = 0; k < states_; ++k)
-        add_product(straight, row.slopes[static_cast<std::size_t>(k)], points_[p].offset[static_cast<std::size_t>(k)]);
-      NodeId const difference = graph_.subtract(of.ahead[p], of.behind[p]);
-      add_product(bent, points_[p].offset[static_cast<std::size_t>(j)],
-                  graph_.subtract(difference, graph_.multiply(graph_.constant(2), straight)));
-    }
-    return graph_.add(sum, graph_.multiply(weight(), bent));
+    NodeId rest = zero_;
+    std::vector<NodeId> const bends = bent(row);
+    for (std::size_t p = 0; p < points_.size(); ++p) add_product(rest, points_[p].offset[static_cast<std::size_t>(j)], bends[p]);
+    return graph_.add(sum, graph_.multiply(weight(), rest));
   }
 
   /// cov(a, b)
@@ -352,14 +358,14 @@ class MomentWriter {
     std::vector<NodeId> result, whitened;
     for (MomentRow const& row : rules_) {
       NodeId sum = zero_;
+      for (int k = 0; k < states_; ++k)
+        add_product(sum, row.slopes[static_cast<std::size_t>(k)], column[static_cast<std::size_t>(k)]);
       if (by_points(row)) {
         if (whitened.empty()) whitened = whiten(column);
-        Values const of = values(row.value);
-        for (std::size_t p = 0; p < points_.size(); ++p) add_product(sum, whitened[p], graph_.subtract(of.ahead[p], of.behind[p]));
-        sum = graph_.multiply(graph_.constant(0.5 / std::sqrt(spread_)), sum);
-      } else {
-        for (int k = 0; k < states_; ++k)
-          add_product(sum, row.slopes[static_cast<std::size_t>(k)], column[static_cast<std::size_t>(k)]);
+        NodeId rest = zero_;
+        std::vector<NodeId> const bends = bent(row);
+        for (std::size_t p = 0; p < points_.size(); ++p) add_product(rest, whitened[p], bends[p]);
+        sum = graph_.add(sum, graph_.multiply(graph_.constant(0.5 / std::sqrt(spread_)), rest));
       }
       result.push_back(sum);
     }

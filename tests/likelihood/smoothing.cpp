@@ -105,6 +105,12 @@ TEST_CASE("smoothed states of a linear model are those of the joint normal distr
     solver = smoothing_solver("dopri5", 1);
     solver.relative = 1e-12;
   }
+  SUBCASE("sigma points after a known start, of what is linear but in form") {
+    std::string text = filtered_text;
+    text.replace(text.find("k*y = x"), 7, "k*y + 1e-9 [N/m^3]*y^3 = x");
+    model = with_disturbance(filtered_file(text).models.front(), "w", "q");
+    rule = FilterRule::unscented;
+  }
   SUBCASE("sigma points, of what is linear but in form") {
     std::string text = filtered_text;
     text.replace(text.find("k*y = x"), 7, "k*y + 1e-9 [N/m^3]*y^3 = x");
