@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -11,6 +10,7 @@
 #include "core/numeric/not_finite.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
 namespace {
@@ -219,7 +219,7 @@ void Tracker::settle() {
   for (int i = 0; i < n + p; ++i)
     for (int j = 0; j < n + p; ++j) whole(i, j) = program_.place(i, j) < 0 ? 0 : moment(i, j);
   Eigen::MatrixXd const cross = whole.topRightCorner(n, p);
-  Eigen::MatrixXd const gain = whole.bottomRightCorner(p, p).ldlt().solve(cross.transpose()).transpose();
+  Eigen::MatrixXd const gain = cross * inverse(whole.bottomRightCorner(p, p));
   Eigen::VectorXd const shift = prior_.mean - Eigen::Map<Eigen::VectorXd const>(moments_.data() + n, p);
   Eigen::VectorXd const mean = Eigen::Map<Eigen::VectorXd const>(moments_.data(), n) + gain * shift;
   Eigen::MatrixXd const covariance =

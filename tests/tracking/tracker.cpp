@@ -3,8 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
-
+#include "linear_algebra/decompositions.hpp"
 #include "made_oscillator.hpp"
 
 using namespace sysid;
@@ -51,7 +50,7 @@ model line {
   Experiment experiment;
   std::vector<double> x;
   experiment.measured.emplace_back();
-  Eigen::Matrix2d precision = prior.covariance.inverse();
+  Eigen::Matrix2d precision = inverse(prior.covariance);
   Eigen::Vector2d weighted = precision * prior.mean;
   for (int i = 0; i < 50; ++i) {
     experiment.time.push_back(i + 1);
@@ -68,8 +67,8 @@ model line {
   Tracker tracker(program, SolverSettings{}, ExecutionOptions{}, prior, {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0), false},
                   options);
   Estimates const all = tracked_along(tracker, experiment);
-  Eigen::Vector2d const mean = precision.ldlt().solve(weighted);
-  Eigen::Matrix2d const covariance = precision.inverse();
+  Eigen::Matrix2d const covariance = inverse(precision);
+  Eigen::Vector2d const mean = covariance * weighted;
   for (std::size_t j = 0; j < 2; ++j) {
     auto const at = static_cast<Eigen::Index>(j);
     CHECK(all.mean.back()[j] == doctest::Approx(mean(at)).epsilon(1e-10));

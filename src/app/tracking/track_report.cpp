@@ -1,4 +1,4 @@
-// Of an endless record the page shows some thousand rows, ever farther apart.
+// Of an endless record the page shows some hundred rows, ever farther apart.
 #include "app/tracking/track_report.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 namespace sysid {
 namespace {
 
-constexpr std::size_t most_shown = 2000;
+constexpr std::size_t most_shown = 300;  // and up to twice as many: all that a figure shows
 
 std::string with_sd(double value, double sd) {
   if (!(sd > 0) || !std::isfinite(value)) return significant(value, 4);
@@ -28,12 +28,12 @@ std::string changed(double before, double after) {
                      significant(100 * std::fabs(after / before - 1), 2));
 }
 
-ReportTable alarm_table(GatheredTrack const& gathered) {
+ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
   ReportTable table{
       "changes",
-      fmt::format("Where the innovations show that a parameter has jumped: |z| above {:.2f}, by the union bound at most one false "
-                  "alarm in the stated number of rows. After: the last row before the change. Values with their sds.",
-                  gathered.threshold),
+      fmt::format("Where the innovations show that a parameter has jumped: |z| above {:.2f}, by the union bound at most {:g} false "
+                  "alarms per row. After row: the last one before the change. Values with their sds.",
+                  gathered.threshold, rate),
       {"parameter", "unit", "alarm at row", "t [s]", "after row", "before", "now", "z", "or"},
       {}};
   for (Alarm const& each : gathered.alarms) {
@@ -62,25 +62,31 @@ ReportTable parameter_table(GatheredTrack const& gathered) {
   return table;
 }
 
-/// z of the sum of squared innovations, which is chi-squared with one degree of freedom for each sample.
-double excess(GatheredTrack const& gathered) {
+/// The size of the innovations against what the filter expects; z: of the sum of their squares, which is chi-squared with one
+/// degree of freedom for each sample.
+struct InnovationSize {
+  double ratio, z;
+  /// The fit knows its noise to some per cent: less than a tenth is nothing.
+  bool odd() const { return std::fabs(z) > 4 && std::fabs(ratio - 1) > 0.1; }
+};
+
+InnovationSize innovation_size(GatheredTrack const& gathered) {
   auto const n = static_cast<double>(gathered.samples);
-  return n > 0 ? (gathered.squared - n) / std::sqrt(2 * n) : 0;
+  if (n == 0) return {1, 0};
+  return {std::sqrt(gathered.squared / n), (gathered.squared - n) / std::sqrt(2 * n)};
 }
 
 ReportTable innovation_table(GatheredTrack const& gathered) {
-  auto const n = static_cast<double>(gathered.samples);
-  double const ratio = n > 0 ? std::sqrt(gathered.squared / n) : std::nan("");
-  double const z = excess(gathered);
-  return {
-      "innovations",
-      "Their size against what the filter expects, 1 where the model and its noise are right. Where it is far from 1 (|z| above "
-      "4), sds and the rate of false alarms are not as stated: a disturbance is missing, or the noise has changed.",
-      {"samples", "rms / expected", "z", ""},
-      {{std::to_string(gathered.samples), significant(ratio, 4), fmt::format("{:.1f}", z),
-        std::fabs(z) <= 4 ? "as expected"
-        : ratio > 1       ? "larger than expected"
-                          : "smaller than expected"}}};
+  InnovationSize const size = innovation_size(gathered);
+  return {"innovations",
+          "Their size against what the filter expects, 1 where the model and its noise are right. Where it is off by more than a "
+          "tenth, "
+          "sds and the rate of false alarms are not as stated: a disturbance is missing, or the noise has changed.",
+          {"samples", "rms / expected", "z", ""},
+          {{std::to_string(gathered.samples), significant(size.ratio, 4), fmt::format("{:.1f}", size.z),
+            !size.odd()      ? "as expected"
+            : size.ratio > 1 ? "larger than expected"
+                             : "smaller than expected"}}};
 }
 
 }  // namespace
@@ -179,8 +185,8 @@ void fill_report(Session const& session, TrackedFit const& fit, GatheredTrack co
   along.time = gathered.time;
   if (gathered.time_unit) along.time_unit = gathered.time_unit->text, along.time_scale = gathered.time_unit->scale;
   along.scored.assign(along.time.size(), 1);
-  for (std::size_t k = 0; k < gathered.mean.size(); ++k) {
-    std::size_t const q = (k + gathered.states) % gathered.mean.size();  // parameters first
+  // States move too fast for rows so far apart.
+  for (std::size_t q = gathered.states; q < gathered.mean.size(); ++q) {
     PredictedQuantity quantity{gathered.units.names[q], gathered.units.units[q], {}, {}, {}, {}};
     quantity.response.mean = gathered.mean[q];
     quantity.response.sd = gathered.sd[q];
@@ -192,12 +198,12 @@ void fill_report(Session const& session, TrackedFit const& fit, GatheredTrack co
   }
   report.predictions.push_back(std::move(along));
   report.tables.push_back(parameter_table(gathered));
-  if (!gathered.alarms.empty()) report.tables.push_back(alarm_table(gathered));
+  if (!gathered.alarms.empty()) report.tables.push_back(alarm_table(gathered, fit.options.false_alarms));
   report.tables.push_back(innovation_table(gathered));
   report.verdict = gathered.alarms.empty()
                        ? fmt::format("no change found in {} rows", gathered.rows)
                        : fmt::format("{} found in {} rows", counted(gathered.alarms.size(), "change"), gathered.rows);
-  if (std::fabs(excess(gathered)) > 4) report.verdict += "; the innovations are not of the size that the fit expects";
+  if (innovation_size(gathered).odd()) report.verdict += "; the innovations are not of the size that the fit expects";
 }
 
 }  // namespace sysid
