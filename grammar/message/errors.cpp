@@ -149,9 +149,10 @@ Diagnostic tilde_missing(Span where, std::string_view keyword, std::string_view 
 }
 
 Diagnostic tilde_without_keyword(Span where) {
-  return error("E1114", where, "`~` is used in a statement that is neither a prior nor an observation nor a disturbance",
-               "begin the statement with `parameter` for a prior, with `observe` for measured data, with `disturbance` for what was not "
-               "measured");
+  return error(
+      "E1114", where, "`~` is used in a statement that is no prior, observation or disturbance",
+      "begin the statement with `parameter` for a prior, with `observe` for measured data, with `disturbance` for what was not "
+      "measured");
 }
 
 Diagnostic other_file(Span begin, std::string const& name, std::string_view kind) {

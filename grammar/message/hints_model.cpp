@@ -115,9 +115,10 @@ std::string behind_declared(Gap const& gap) {
     return fmt::format("what measures a state is an observation: remove `{}` and write `observe {} ~ normal({}, sd = 1)`", rest,
                        gap.next() == nullptr ? "channel" : gap.next()->text, name);
   if (state && gap.found->is("~"))
-    return fmt::format("a random initial value is a statement of its own: remove `{0}` and write `initial {1} ~ normal(0, sd = 1)`; "
-                       "one that is to be estimated is a parameter: `parameter {1}0 ~ ...` and `initial {1} = {1}0`",
-                       rest, name);
+    return fmt::format(
+        "a random initial value is a statement of its own: remove `{0}` and write `initial {1} ~ normal(0, sd = 1)`; "
+        "one that is to be estimated is a parameter: `parameter {1}0 ~ ...` and `initial {1} = {1}0`",
+        rest, name);
   if (input && gap.found->is("="))
     return fmt::format("the column of an input is written in the data block: remove `{}` here", rest);
   if (input && gap.found->is("hold"))
@@ -222,8 +223,8 @@ std::string in_disturbance(Gap const& gap) {
   if (gap.wanted != wanted::tilde) return {};
   if (gap.found == nullptr) return fmt::format("write its law: {}", law);
   if (gap.found->is(","))
-    return fmt::format("declare each disturbance in a statement of its own: {}; equal ones are a vector, `disturbance {}(2) ~ ...`", law,
-                       gap.statement[1].text);
+    return fmt::format("declare each disturbance in a statement of its own: {}; equal ones are a vector, `disturbance {}(2) ~ ...`",
+                       law, gap.statement[1].text);
   if (gap.found->is("="))
     return fmt::format("what is known is a definition or an input; a disturbance has a law in place of `{}`: {}", gap.rest(), law);
   return {};

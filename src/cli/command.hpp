@@ -23,6 +23,7 @@ Work declare_tasks(CLI::App& verb);  // run, or the one kind of task that the ve
 Work declare_check(CLI::App& verb);
 Work declare_calibrate(CLI::App& verb);
 Work declare_crosscheck(CLI::App& verb);
+Work declare_track(CLI::App& verb);
 Work declare_repl(CLI::App& verb);
 Work declare_compare(CLI::App& verb);
 Work declare_report(CLI::App& verb);

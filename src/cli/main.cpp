@@ -35,6 +35,8 @@ constexpr Command commands[] = {
     {"lsp", files, "serve an editor on standard input and output: the language server protocol", &declare_lsp, ""},
     {"compare", results, "compare fits and predictions: evidence and errors", &declare_compare,
      "sysid compare results\nsysid compare results/linear results/cubic"},
+    {"track", results, "follow the parameters of a fit along new rows, with alarms where one has changed", &declare_track,
+     "sysid track beam.sysid results/posterior --rows 501..\nsysid track beam.sysid results/posterior --record today.csv --follow"},
     {"report", results, "write the report page of results again, without a new fit", &declare_report,
      "sysid report results/posterior\nsysid report results -o paper.html --figures pdf"},
     {"export", results, "write results for ArviZ and xarray, a fit as a Stan program, equations as LaTeX", &declare_export,

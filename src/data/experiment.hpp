@@ -33,6 +33,10 @@ class InputSignal {
   /// otherwise.
   InputSignal(InputRule rule, std::vector<double> time, std::vector<double> samples);
 
+  /// A straight line of its own on each interval, from begin[i] to end[i], [N] each; what the samples are is its begin. Its rule is
+  /// zero_order, whose curves jump at samples as this one does.
+  static InputSignal lines(std::vector<double> time, std::vector<double> begin, std::vector<double> const& end);
+
   InputRule rule() const { return record_->rule; }
   /// Degree of the polynomials.
   int degree() const { return record_->degree; }
@@ -63,6 +67,7 @@ class InputSignal {
   struct Record {
     InputRule rule;
     int degree;
+    bool ends_at_samples = true;                      // an interval ends in the next sample
     std::vector<double> time, samples, coefficients;  // [N], [N], [N - 1 x degree + 1]
   };
 
@@ -82,13 +87,19 @@ struct Experiment {
   std::vector<std::uint8_t> scored;           // [N], 1: in the split; simulation runs over all rows from the first one needed
   /// [N], 1: rows from which predictions learn of states that are random given the parameters; empty: from those that are scored.
   std::vector<std::uint8_t> corrects;
-  int first_row = 1;                          // row of the file that is index 0 (rows count from 1)
+  int first_row = 1;  // row of the file that is index 0 (rows count from 1)
   /// What discrete-time models read before index 0, each channel latest first; inputs are views that begin later in their record.
   std::vector<std::vector<double>> history;
   /// Per channel [N]: 0 where a past measured sample that its density reads is missing, so that it cannot be scored. Empty:
   /// nowhere.
   std::vector<std::vector<std::uint8_t>> has_lags;
 
+  /// The same of which predictions of random states learn nothing.
+  Experiment unread() const {
+    Experiment result = *this;
+    result.corrects.assign(time.size(), 0);
+    return result;
+  }
   /// Whether a likelihood reads the sample of a channel at an index: in the split, measured, and so is what its density looks back
   /// to.
   bool is_scored(std::size_t channel, std::size_t index) const {

@@ -34,6 +34,18 @@ InputSignal::InputSignal(InputRule rule, std::vector<double> time, std::vector<d
   record_ = std::move(record);
 }
 
+InputSignal InputSignal::lines(std::vector<double> time, std::vector<double> begin, std::vector<double> const& end) {
+  InputSignal result(InputRule::zero_order, std::move(time), std::move(begin));
+  Record record = *result.record_;
+  record.degree = 1;
+  record.ends_at_samples = false;
+  record.coefficients.clear();
+  for (std::size_t i = 0; i + 1 < record.samples.size(); ++i)
+    record.coefficients.insert(record.coefficients.end(), {record.samples[i], end[i] - record.samples[i]});
+  result.record_ = std::make_shared<Record const>(std::move(record));
+  return result;
+}
+
 std::span<double const> InputSignal::coefficients(int interval) const {
   auto const count = static_cast<std::size_t>(record_->degree + 1);
   return std::span(record_->coefficients).subspan(static_cast<std::size_t>(first_ + interval) * count, count);
@@ -41,7 +53,7 @@ std::span<double const> InputSignal::coefficients(int interval) const {
 
 double InputSignal::value(int interval, double s) const {
   // The next sample itself, not the sum of the coefficients, which is off in the last bit.
-  if (s == 1 && record_->degree > 0) return sample(interval + 1);
+  if (s == 1 && record_->degree > 0 && record_->ends_at_samples) return sample(interval + 1);
   std::span<double const> const c = coefficients(interval);
   double result = c.back();
   for (std::size_t p = c.size() - 1; p-- > 0;) result = result * s + c[p];

@@ -8,6 +8,7 @@
 
 #include "data/file_errors.hpp"
 #include "data/table.hpp"
+#include "data/table_record.hpp"
 
 namespace sysid {
 namespace {
@@ -27,7 +28,7 @@ void to_si(std::vector<double>& values, ColumnRequest const& request) {
 
 data_errors::Cell cell(Table const& table, std::size_t index, std::string const& column) {
   int const row = static_cast<int>(index) + 1;
-  return {table.name(), row, table.line(row), column};
+  return {table.name(), table.rows_before() + row, table.line(row), column};
 }
 
 /// A column without gaps; what: "an input", "the time".
@@ -75,28 +76,30 @@ auto collect(Diagnostics& diagnostics, std::optional<Span> mention, Read read) -
 }  // namespace
 
 std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics) {
-  if (!request.time && !(request.step > 0) && !request.independent_rows)
-    throw InternalError("a record without a time column needs a step");
   std::optional<Table> const table = collect(diagnostics, request.mention, [&] {
     Table read = Table::read(request.path, request.mention);
     if (read.rows() < 2) throw UserError(data_errors::too_few_rows(read.name(), read.rows(), request.mention));
     return read;
   });
-  if (!table) return std::nullopt;
+  return table ? read_record(request, *table, diagnostics) : std::nullopt;
+}
 
+std::optional<Record> read_record(RecordRequest const& request, Table const& table, Diagnostics& diagnostics) {
+  if (!request.time && !(request.step > 0) && !request.independent_rows)
+    throw InternalError("a record without a time column needs a step");
   bool complete_record = true;
   Record record;
   record.path = request.path;
-  record.digest = table->digest();
-  record.comments = table->comments();
-  std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(*table, request); });
+  record.digest = table.digest();
+  record.comments = table.comments();
+  std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(table, request); });
   if (!time) complete_record = false;
   // Inputs of independent rows are read at rows alone.
-  std::vector<double> rows(static_cast<std::size_t>(table->rows()));
+  std::vector<double> rows(static_cast<std::size_t>(table.rows()));
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i + 1);
   for (InputRequest const& input : request.inputs) {
     std::optional<std::vector<double>> samples =
-        collect(diagnostics, input.mention, [&] { return complete(*table, input, "an input"); });
+        collect(diagnostics, input.mention, [&] { return complete(table, input, "an input"); });
     std::optional<InputSignal> signal;
     if (samples && time)
       signal = collect(diagnostics, input.mention,
@@ -112,12 +115,12 @@ std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostic
       samples.emplace();
     else
       samples = collect(diagnostics, channel->mention, [&] {
-        std::vector<double> values = table->numbers(channel->column, channel->mention);
+        std::vector<double> values = table.numbers(channel->column, channel->mention);
         if (channel->counts)
           for (std::size_t i = 0; i < values.size(); ++i)
             if (values[i] < 0 || values[i] != std::floor(values[i]) || std::isinf(values[i]))
               if (!std::isnan(values[i]))
-                throw UserError(data_errors::not_a_count(cell(*table, i, channel->column), values[i], channel->mention));
+                throw UserError(data_errors::not_a_count(cell(table, i, channel->column), values[i], channel->mention));
         to_si(values, *channel);
         return values;
       });

@@ -197,8 +197,9 @@ Table Table::read(std::string const& path, std::optional<Span> mention) {
   return parse(path, read_regular_file(path), mention);
 }
 
-Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention) {
+Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention, int rows_before) {
   Table table;
+  table.rows_before_ = rows_before;
   table.name_ = std::move(name);
   table.bytes_ = std::move(bytes);
   table.digest_ = sha256(table.bytes_);
@@ -238,8 +239,10 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
     closed = split(table.bytes_, begin, end, separator, [&](std::size_t cell_begin, std::size_t) {
       if (++cells <= columns) table.cells_.push_back(cell_begin);
     });
-    if (!closed) throw UserError(data_errors::open_quote(table.name_, number, mention));
-    if (cells != columns) throw UserError(data_errors::ragged_row(table.name_, table.rows_, number, cells, columns, mention));
+    if (!closed) throw UserError(data_errors::open_quote(table.name_, rows_before + number, mention));
+    if (cells != columns)
+      throw UserError(
+          data_errors::ragged_row(table.name_, rows_before + table.rows_, rows_before + number, cells, columns, mention));
     table.cells_.push_back(end + 1);
   };
   while (line.next()) {
@@ -250,7 +253,7 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
     }
     for (; empty_lines > 0; --empty_lines) add_row(line.begin, line.begin, line.number - empty_lines);
     if (trimmed(text, blanks).starts_with('#'))
-      throw UserError(data_errors::comment_in_data(table.name_, table.rows_ + 1, line.number, mention));
+      throw UserError(data_errors::comment_in_data(table.name_, rows_before + table.rows_ + 1, rows_before + line.number, mention));
     add_row(line.begin, line.end, line.number);
   }
   return table;
@@ -308,9 +311,10 @@ std::vector<double> Table::numbers(std::string const& column, std::optional<Span
       value = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
-    data_errors::Cell const place{name_, row, line(row), column};
+    data_errors::Cell const place{name_, rows_before_ + row, line(row), column};
     std::string_view const shown = trimmed(text, blanks);
-    if (kind == Kind::text && row == 1 && names_units()) throw UserError(data_errors::row_of_units(place, shown, mention));
+    if (kind == Kind::text && rows_before_ + row == 1 && names_units())
+      throw UserError(data_errors::row_of_units(place, shown, mention));
     // A model of unknown origin may name any file as data: what is no number of a record is not repeated.
     bool const shows = any || like_a_number(shown) || (like_a_gap(shown) && is_record());
     throw UserError(kind == Kind::not_finite     ? data_errors::not_finite(place, shown, mention)

@@ -19,14 +19,15 @@ class Table {
  public:
   /// IoError when the file cannot be read, UserError (at `mention`) when it is no such table.
   static Table read(std::string const& path, std::optional<Span> mention = std::nullopt);
-  /// The same for bytes at hand, which messages call `name`.
-  static Table parse(std::string name, std::string bytes, std::optional<Span> mention = std::nullopt);
+  /// The same for bytes at hand, which messages call `name`. rows_before: of the file, which the bytes leave out.
+  static Table parse(std::string name, std::string bytes, std::optional<Span> mention = std::nullopt, int rows_before = 0);
 
   std::string const& name() const { return name_; }
   int rows() const { return rows_; }
   std::vector<std::string> const& columns() const { return columns_; }
   /// The line of the file, from 1, of row `row`, from 1.
-  int line(int row) const { return header_line_ + row; }
+  int line(int row) const { return header_line_ + rows_before_ + row; }
+  int rows_before() const { return rows_before_; }
   /// SHA-256 of the file's bytes.
   std::string const& digest() const { return digest_; }
   /// The comment lines before the header, without their `#` and the blanks around.
@@ -48,7 +49,7 @@ class Table {
   std::vector<std::string> columns_, comments_;
   std::vector<std::uint64_t>
       cells_;  // [rows x (columns + 1)]: where each cell begins; the last entry of a row: one past its end + 1
-  int rows_ = 0;
+  int rows_ = 0, rows_before_ = 0;
   int header_line_ = 0;
 };
 

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
 #include "likelihood/simulated_parameters.hpp"
+#include "likelihood/smoothing/pooled_states.hpp"
 
 namespace sysid {
 
@@ -33,6 +35,32 @@ Prediction record_along(Experiment const& experiment, Model const& model) {
   return prediction;
 }
 
+namespace {
+
+/// Of normal distributions about trajectories, one for each: the moments and quantiles of their mixture.
+Band normal_band(std::vector<std::vector<double>> const& means, std::vector<std::vector<double>> const& sds) {
+  Band out = band(means);
+  std::vector<double> centres, widths;
+  for (std::size_t i = 0; i < out.mean.size(); ++i) {
+    centres.clear();
+    widths.clear();
+    double variance = 0;
+    for (std::size_t d = 0; d < means.size(); ++d) {
+      if (i >= means[d].size() || !std::isfinite(means[d][i]) || !std::isfinite(sds[d][i])) continue;
+      centres.push_back(means[d][i]);
+      widths.push_back(sds[d][i]);
+      variance += sds[d][i] * sds[d][i];
+    }
+    if (centres.empty() || !std::isfinite(out.mean[i])) continue;
+    out.sd[i] = std::sqrt(out.sd[i] * out.sd[i] + variance / static_cast<double>(centres.size()));
+    out.lower[i] = normal_mixture_quantile(centres, widths, 0.025);
+    out.upper[i] = normal_mixture_quantile(centres, widths, 0.975);
+  }
+  return out;
+}
+
+}  // namespace
+
 Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
                        Experiment const& experiment, Model const& model) {
   Prediction prediction = record_along(experiment, model);
@@ -45,10 +73,14 @@ Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajector
     PredictedQuantity predicted;
     predicted.name = quantity.name;
     predicted.unit = quantity.unit;
-    predicted.response = band(result.drawn(q));
+    bool const random = result.is_random(q);
+    predicted.response = random ? normal_band(result.values[q], result.spread[q]) : band(result.values[q]);
     if (quantity.channel >= 0) {
       auto const channel = static_cast<std::size_t>(quantity.channel);
-      if (result.noisy[channel].size() > 1) predicted.noisy = band(result.noisy[channel]);  // one trajectory has no width
+      if (channel < result.noisy_spread.size() && !result.noisy_spread[channel].empty())
+        predicted.noisy = normal_band(result.values[q], result.noisy_spread[channel]);
+      else if (result.noisy[channel].size() > 1)
+        predicted.noisy = band(result.noisy[channel]);  // one trajectory has no width
       for (double const si : experiment.measured[channel]) predicted.measured.push_back(model.channels[channel].from_si(si));
     }
     prediction.quantities.push_back(std::move(predicted));

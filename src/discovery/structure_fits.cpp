@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "likelihood/segments/segment_starts.hpp"
 #include "simulate/thread_pool.hpp"
 

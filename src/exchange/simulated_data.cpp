@@ -110,13 +110,14 @@ void add_log_likelihood(NetcdfGroup& group, StoredFit const& fit, std::size_t e,
 }
 
 /// Trajectories along all experiments of declared values, lane by lane over chains and draws, which the group's dimensions are.
-void add_predictive(NetcdfGroup& group, StoredFit const& fit, ConstLanes declared, std::uint64_t seed) {
+/// learns: from the measured samples before a row, where states are random.
+void add_predictive(NetcdfGroup& group, StoredFit const& fit, ConstLanes declared, std::uint64_t seed, bool learns) {
   for (std::size_t e = 0; e < fit.data.size(); ++e) {
     Experiment const& experiment = fit.data[e].experiment;
     RowsOfExperiment const rows = scored_rows(experiment, fit.model().dynamics, fit.label(e));
     add_rows(group, experiment, rows);
-    Trajectory const trajectory(fit.compiled, experiment, fit.fitted.solver, start_rows(fit.what.start),
-                                fit.session.options.execution);
+    Trajectory const trajectory(fit.compiled, learns ? experiment : experiment.unread(), fit.fitted.solver,
+                                start_rows(fit.what.start), fit.session.options.execution);
     add_trajectories(group, fit.model(), trajectory.quantities(),
                      trajectory.run(fit.parameters(e, declared), prediction_noise(seed, static_cast<int>(e))), rows, fit.label(e));
   }
@@ -148,7 +149,7 @@ void add_posterior_groups(StoredFit const& fit, int draws, std::uint64_t seed, I
   NetcdfGroup likelihood("log_likelihood"), predictive("posterior_predictive");
   for (NetcdfGroup* group : {&likelihood, &predictive}) add_draw_dimensions(*group, fit.fitted.draws.chains.size(), numbers);
   for (std::size_t e = 0; e < fit.data.size(); ++e) add_log_likelihood(likelihood, fit, e, declared);
-  add_predictive(predictive, fit, declared, seed);
+  add_predictive(predictive, fit, declared, seed, true);
   data.add(std::move(likelihood));
   data.add(std::move(predictive));
 }
@@ -165,7 +166,7 @@ void add_prior_groups(StoredFit const& fit, int draws, std::uint64_t seed, Infer
   std::vector<std::size_t> all(drawn.total());
   std::iota(all.begin(), all.end(), std::size_t{0});
   add_draw_dimensions(predictive, 1, all);
-  add_predictive(predictive, fit, columns_of(drawn, all), seed);
+  add_predictive(predictive, fit, columns_of(drawn, all), seed, false);
   data.add(std::move(prior));
   data.add(std::move(predictive));
 }

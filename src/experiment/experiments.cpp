@@ -9,6 +9,7 @@
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
+#include "experiment/record_request.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/lags.hpp"
 #include "solver/linear_structure.hpp"
@@ -110,8 +111,8 @@ std::string predicted_text(Model const& model, PredictionRule rule) {
   std::string const lags = model.dynamics == Dynamics::discrete ? prediction_text(model, rule) : std::string();
   if (!model.filtered()) return lags;
   bool const one_step = rule == PredictionRule::one_step;
-  std::string const corrected =
-      one_step ? "states corrected by all samples before each row" : "states corrected by the samples before the predicted rows only";
+  std::string const corrected = one_step ? "states corrected by all samples before each row"
+                                         : "states corrected by the samples before the predicted rows only";
   if (!lags.empty()) return fmt::format("{}; {}", lags, corrected);
   return fmt::format("{}: {}", prediction_name(one_step ? rule : PredictionRule::free_run), corrected);
 }
@@ -120,7 +121,7 @@ std::string data_name(DataBlock const& block, int part) {
   return part < 0 ? block.name : block.name + "." + block.parts[static_cast<std::size_t>(part)].name;
 }
 
-Record load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder) {
+RecordRequest record_request(DataBlock const& block, Model const& model, std::filesystem::path const& folder) {
   RecordRequest request;
   request.path = (folder / block.path).string();
   request.mention = block.path_span;
@@ -143,11 +144,20 @@ Record load_record(DataBlock const& block, Model const& model, std::filesystem::
     else
       request.measured.push_back(ColumnRequest{bound->column, bound->unit, channel.unit, bound->span, channel.noise.row->discrete});
   }
+  return request;
+}
+
+void require_steps(Record const& record, DataBlock const& block, Model const& model) {
+  if (model.dynamics == Dynamics::discrete) check_steps(record, block, model);
+}
+
+Record load_record(DataBlock const& block, Model const& model, std::filesystem::path const& folder) {
+  RecordRequest const request = record_request(block, model, folder);
   try {
     Diagnostics diagnostics;
     auto record = load(request, diagnostics);
     if (!record) throw UnusableData(std::move(diagnostics));
-    if (model.dynamics == Dynamics::discrete) check_steps(*record, block, model);
+    require_steps(*record, block, model);
     return std::move(*record);
   } catch (IoError const& error) {
     Diagnostics diagnostics;

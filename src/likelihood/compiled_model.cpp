@@ -169,14 +169,14 @@ std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compi
   return finish(folded, std::move(source));
 }
 
-std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled) {
+std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled, bool ahead) {
   Folded folded(compiled.model, keeps_unknowns(compiled));
   ModelSource const of = source_of(folded, compiled);
   SimulationSource source = of.dynamics;
   for (std::size_t c = 0; c < compiled.model.channels.size(); ++c) {
     source.channels.push_back(of.channel(c, {}));
     source.records.push_back(channel_density(folded.graph, of.noise[c], compiled.model.channels[c], static_cast<int>(c)).sample);
-    source.recorded_at.push_back(of.recorded_with(c));
+    source.recorded_at.push_back(ahead ? before_channels : of.recorded_with(c));
   }
   return finish(folded, std::move(source));
 }

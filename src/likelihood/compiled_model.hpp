@@ -69,7 +69,8 @@ std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compi
                                                       std::span<NodeId const> per_channel);
 
 /// A program whose records are, per channel, the log density of its sample, of the declared unit; NaN where there is no sample.
-std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled);
+/// ahead: before the samples of its row correct random states.
+std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled, bool ahead = false);
 
 /// What `--dump program` prints: the likelihood program and the kernels of the prior.
 std::string dump_program(CompiledModel const& compiled);

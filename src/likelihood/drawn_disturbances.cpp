@@ -28,13 +28,16 @@ DrawnDisturbances draw_disturbances(Model model, ConstLanes parameters, Experime
     Disturbance const& disturbance = model.disturbances[d];
     double const intensity = value(disturbance.intensity);
     Stream stream(key.with_step(d));
-    std::vector<double> samples;
+    std::vector<double> begin, end;
     for (std::size_t i = 0; i < experiment.time.size(); ++i) {
       bool const white = continuous && !disturbance.held && i + 1 < experiment.time.size();
-      double const variance = white ? intensity / (experiment.time[i + 1] - experiment.time[i]) : intensity;
-      samples.push_back(std::sqrt(variance) * stream.normal());
+      double const sd = std::sqrt(white ? intensity / (experiment.time[i + 1] - experiment.time[i]) : intensity);
+      double const mean = sd * stream.normal(), slope = white ? sd * std::sqrt(3.0) * stream.normal() : 0;
+      begin.push_back(mean - slope);
+      end.push_back(mean + slope);
     }
-    experiment.inputs.emplace_back(InputRule::zero_order, experiment.time, std::move(samples));
+    experiment.inputs.push_back(continuous ? InputSignal::lines(experiment.time, std::move(begin), end)
+                                           : InputSignal(InputRule::zero_order, experiment.time, std::move(begin)));
     Quantity input = disturbance;
     input.name += " (drawn)";
     model.inputs.push_back(std::move(input));

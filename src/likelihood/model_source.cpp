@@ -52,8 +52,9 @@ SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
   source.parameters = all + (free_start ? static_cast<int>(model.states.size()) : 0);
   source.inputs = static_cast<int>(model.inputs.size());
   for (std::size_t i = 0; i < model.states.size(); ++i) {
-    source.initial.push_back(free_start ? folded.graph.leaf(LeafKind::parameter, all + static_cast<int>(i))
-                                        : folded(model.states[i].initial));
+    bool const estimated = free_start && !model.states[i].initial_variance;  // a random initial value keeps its law
+    source.initial.push_back(estimated ? folded.graph.leaf(LeafKind::parameter, all + static_cast<int>(i))
+                                       : folded(model.states[i].initial));
     source.derivative.push_back(folded(model.states[i].derivative));
   }
   source.map = model.dynamics == Dynamics::discrete;
@@ -86,8 +87,7 @@ void filter(Folded& folded, CompiledModel const& compiled, bool since, ModelSour
   RandomStates random;
   for (Disturbance const& each : model.disturbances) random.noises.push_back({folded(each.intensity), each.held});
   for (State const& state : model.states)
-    random.initial_variances.push_back(
-        state.initial_variance && !compiled.free_start ? std::optional(folded(*state.initial_variance)) : std::nullopt);
+    random.initial_variances.push_back(state.initial_variance ? std::optional(folded(*state.initial_variance)) : std::nullopt);
   std::vector<NormalChannel> channels;
   for (Distribution const& noise : source.noise)
     channels.push_back({noise.arguments[0], graph.multiply(noise.arguments[1], noise.arguments[1])});

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "likelihood/trajectory.hpp"
+
 namespace sysid {
 namespace {
 
@@ -36,12 +38,12 @@ Output::Output(std::shared_ptr<CompiledModel const> compiled, std::shared_ptr<Pa
   for (Channel const& channel : model.channels) deviance_.push_back(deviance_kernel(model, channel.noise));
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     Experiment const& experiment = experiments[e];
-    Part part{Simulator(compiled_->trajectory, Schedule(*compiled_->trajectory, experiment, solver), options, pool), nullptr, 0,
-              places_.size(), 0};
+    Schedule schedule(*compiled_->trajectory, with_corrections(model, experiment), solver);
+    Part part{Simulator(compiled_->trajectory, std::move(schedule), options, pool), nullptr, 0, places_.size(), 0};
     if (start_rows > 0) part.start = std::make_shared<StartState const>(compiled_, experiment, start_rows, solver, options, pool);
     for (std::size_t c = 0; c < model.channels.size(); ++c)
       for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
-        if (!part.simulator.schedule().summed(static_cast<int>(c), static_cast<int>(i))) continue;
+        if (!experiment.is_scored(c, i)) continue;
         places_.push_back({static_cast<int>(e), static_cast<int>(c), static_cast<int>(i), experiment.measured[c][i]});
         part.samples = std::max(part.samples, static_cast<int>(i) + 1);
       }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "likelihood/trajectory.hpp"
+
 namespace sysid {
 namespace {
 
@@ -13,14 +15,18 @@ constexpr int densities_at_once = 64;
 PointwiseLikelihood::PointwiseLikelihood(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment,
                                          SolverSettings const& solver, int start_rows, ExecutionOptions options)
     : compiled_(std::move(compiled)), simulator_([&] {
-        auto const program = compile_densities(*compiled_);
-        return Simulator(program, Schedule(*program, experiment, solver), options);
+        bool const ahead = compiled_->model.filtered() && !experiment.corrects.empty();
+        auto const program = compile_densities(*compiled_, ahead);
+        return Simulator(program, Schedule(*program, with_corrections(compiled_->model, experiment), solver), options);
       }()) {
   if (start_rows > 0) start_ = std::make_unique<StartState>(compiled_, experiment, start_rows, solver, options);
   samples_.resize(compiled_->model.channels.size());
   for (std::size_t c = 0; c < samples_.size(); ++c)
     for (int i = 0; i < simulator_.schedule().samples(); ++i)
-      if (simulator_.schedule().summed(static_cast<int>(c), i)) samples_[c].push_back(i);
+      if (experiment.is_scored(c, static_cast<std::size_t>(i))) {
+        samples_[c].push_back(i);
+        end_ = std::max(end_, i + 1);
+      }
 }
 
 void PointwiseLikelihood::records(ConstLanes parameters, int first_row, int last_row, Lanes out) const {
@@ -37,7 +43,7 @@ void PointwiseLikelihood::records(ConstLanes parameters, int first_row, int last
 
 std::vector<std::vector<std::vector<double>>> PointwiseLikelihood::run(ConstLanes parameters) const {
   std::vector<std::vector<std::vector<double>>> values(samples_.size());
-  int const last = simulator_.schedule().last_summed();
+  int const last = end_;
   for (int first = 0; first < parameters.width(); first += densities_at_once) {
     int const width = std::min(densities_at_once, parameters.width() - first);
     LaneArray out(last * channels(), width);

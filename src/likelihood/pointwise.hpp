@@ -11,7 +11,8 @@ namespace sysid {
 
 class PointwiseLikelihood {
  public:
-  /// start_rows > 0: the compiled model has a free start, fitted to the experiment's first rows.
+  /// start_rows > 0: the compiled model has a free start, fitted to the experiment's first rows. Where states are random, a density
+  /// is that of a sample given those before it; in an experiment that says which rows correct the states, given those of them.
   PointwiseLikelihood(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, SolverSettings const& solver,
                       int start_rows, ExecutionOptions options);
 
@@ -31,6 +32,7 @@ class PointwiseLikelihood {
   Simulator simulator_;
   std::unique_ptr<StartState> start_;
   std::vector<std::vector<int>> samples_;
+  int end_ = 0;  // behind the last of them
 };
 
 }  // namespace sysid

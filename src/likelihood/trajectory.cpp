@@ -39,13 +39,12 @@ Quantity const& quantity_of(Model const& model, CompiledModel::Record const& rec
   return model.channels[index];
 }
 
-/// The rows that states are corrected at take the place of those that are scored, of which a trajectory needs nothing.
+}  // namespace
+
 Experiment with_corrections(Model const& model, Experiment experiment) {
   if (model.filtered() && !experiment.corrects.empty()) experiment.scored = experiment.corrects;
   return experiment;
 }
-
-}  // namespace
 
 Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment const& experiment, SolverSettings const& solver,
                        int start_rows, ExecutionOptions options, Describe describe)
@@ -94,6 +93,8 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   double const nan = std::nan("");
   result.values.resize(quantities_.size());
   result.random.resize(quantities_.size());
+  result.spread.resize(quantities_.size());
+  result.noisy_spread.resize(model.channels.size());
   result.noisy.resize(model.channels.size());
   result.drift.resize(model.invariants.size());
   for (int w = 0; w < records.width(); ++w) {
@@ -121,6 +122,10 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
       };
       result.values[q].push_back(declared(values));
       if (int const spread = spreads_[static_cast<std::size_t>(r)]; spread >= 0) {
+        std::vector<double> sds(values.size(), nan);
+        for (int i = 0; good && i < samples; ++i)
+          sds[static_cast<std::size_t>(i)] = std::fabs(quantity.from_si(records(i * rows + spread, w)) - quantity.from_si(0));
+        result.spread[q].push_back(std::move(sds));
         add_spread(records, w, spread, state_key(noise_key, first + w, r), values);
         result.random[q].push_back(declared(std::move(values)));
       }
@@ -135,6 +140,20 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
          with_noise(records, outcome, r,
                     noise_key.at(noise_key.index + static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(record.index))))
       result.noisy[static_cast<std::size_t>(record.index)].push_back(std::move(noisy));
+    if (model.filtered()) add_noisy_spreads(records, outcome, r, result);
+  }
+}
+
+/// Of the channel whose centre is record `row`, whose noise is normal: its arguments are a mean and an sd.
+void Trajectory::add_noisy_spreads(LaneArray const& records, std::vector<Outcome> const& outcome, int row, Result& result) const {
+  int const samples = this->samples(), rows = static_cast<int>(compiled_->records.size());
+  auto const c = static_cast<std::size_t>(compiled_->records[static_cast<std::size_t>(row)].index);
+  Channel const& channel = compiled_->model.channels[c];
+  for (int w = 0; w < records.width(); ++w) {
+    std::vector<double> sds(static_cast<std::size_t>(samples), not_a_number);
+    for (int i = 0; outcome[static_cast<std::size_t>(w)].ok && i < samples; ++i)
+      sds[static_cast<std::size_t>(i)] = std::fabs(channel.from_si(records(i * rows + row + 2, w)) - channel.from_si(0));
+    result.noisy_spread[c].push_back(std::move(sds));
   }
 }
 

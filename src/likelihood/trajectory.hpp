@@ -18,6 +18,10 @@ struct TrajectoryQuantity {
   int channel = -1;  // of the model; -1: not measured
 };
 
+/// For simulations of which nothing is summed: where states are random, the rows that correct them take the place of those that are
+/// scored.
+Experiment with_corrections(Model const& model, Experiment experiment);
+
 class Trajectory {
  public:
   /// start_rows > 0: the compiled model has a free start, fitted to the experiment's first rows. describe: places of failures in
@@ -32,12 +36,14 @@ class Trajectory {
   /// from the stream of (noise_key, index d, step c). A failed vector is NaN throughout.
   struct Result {
     std::vector<std::vector<std::vector<double>>> values, noisy;
-    /// Where states are random given the parameters, `values` are their means and random[q] draws about them, each sample by
-    /// itself: bands of one sample are right, paths along several are not. Empty for quantities that are known.
-    std::vector<std::vector<std::vector<double>>> random;
-    /// What bands are made of.
-    std::vector<std::vector<double>> const& drawn(std::size_t q) const { return random[q].empty() ? values[q] : random[q]; }
-    std::vector<std::vector<double>>& drawn(std::size_t q) { return random[q].empty() ? values[q] : random[q]; }
+    /// Where states are random given the parameters, `values` are their means, spread[q][d][i] their sds, and random[q] draws about
+    /// them, each sample by itself: bands of one sample are right, paths along several are not. Empty for quantities that are
+    /// known. noisy_spread[c]: sds of the samples of a channel about `values`, that of the noise included; empty as above.
+    std::vector<std::vector<std::vector<double>>> random, spread, noisy_spread;
+    /// Draws of a quantity.
+    bool is_random(std::size_t q) const { return q < random.size() && !random[q].empty(); }
+    std::vector<std::vector<double>> const& drawn(std::size_t q) const { return is_random(q) ? random[q] : values[q]; }
+    std::vector<std::vector<double>>& drawn(std::size_t q) { return is_random(q) ? random[q] : values[q]; }
     /// solved[d]: 1, vector d did not fail, whether or not it is defined everywhere.
     std::vector<char> solved;
     /// Of all vectors; what failed has its place there.
@@ -64,6 +70,7 @@ class Trajectory {
   void record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const;
   void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
   void collect_moments(LaneArray const& records, std::vector<Outcome> const& outcome, Result& result) const;
+  void add_noisy_spreads(LaneArray const& records, std::vector<Outcome> const& outcome, int row, Result& result) const;
   void add_spread(ConstLanes records, int lane, int spread, StreamKey key, std::vector<double>& values) const;
   std::vector<std::vector<double>> with_noise(LaneArray const& records, std::vector<Outcome> const& outcome, int row,
                                               StreamKey key) const;

@@ -38,6 +38,12 @@ struct MomentRow {
   bool linear = true;          // the slopes read no state
 };
 
+/// What a white noise adds to each derivative, at the mean.
+struct Gain {
+  NodeId intensity = 0;
+  std::vector<NodeId> rows;
+};
+
 class MomentWriter {
  public:
   MomentWriter(SimulationSource source, RandomStates const& random, MomentRule rule)
@@ -55,6 +61,8 @@ class MomentWriter {
   }
 
   Moments write(std::span<NormalChannel const> channels, bool since) {
+    find_gains();
+    if (!source_.map) add_drift();
     for (NodeId const derivative : source_.derivative) rules_.push_back(row(at_rest(derivative)));
     for (NormalChannel const& channel : channels) outputs_.push_back(row(channel.mean));
     add_noise();
@@ -102,20 +110,36 @@ class MomentWriter {
   }
 
   // --- G Q G'
-  void add_noise() {
+  void find_gains() {
     for (std::size_t d = 0; d < random_.noises.size(); ++d) {
       RandomStates::Noise const& noise = random_.noises[d];
       NodeId const leaf = graph_.leaf(LeafKind::disturbance, static_cast<int>(d));
-      NodeId const intensity = noise.held && !source_.map ? graph_.multiply(noise.intensity, sampling_interval()) : noise.intensity;
-      std::vector<NodeId> gains;
-      for (NodeId const derivative : source_.derivative) gains.push_back(at_rest(graph_.differentiate(derivative, leaf)));
-      gains_.push_back(gains);
-      intensities_.push_back(intensity);
+      Gain gain;
+      gain.intensity = noise.held && !source_.map ? graph_.multiply(noise.intensity, sampling_interval()) : noise.intensity;
+      for (NodeId const derivative : source_.derivative) gain.rows.push_back(at_rest(graph_.differentiate(derivative, leaf)));
+      gains_.push_back(std::move(gain));
+    }
+  }
+
+  /// Noise that a state multiplies has a mean effect: that of noise which is white for the states, but not for itself.
+  void add_drift() {
+    NodeId const half = graph_.constant(0.5);
+    for (Gain const& gain : gains_)
+      for (std::size_t i = 0; i < gain.rows.size(); ++i) {
+        NodeId drift = zero_;
+        for (std::size_t k = 0; k < gain.rows.size(); ++k)
+          if (!is_zero(gain.rows[k])) add_product(drift, finite_slope(graph_, gain.rows[i], means_[k]), gain.rows[k]);
+        if (!is_zero(drift))
+          source_.derivative[i] = graph_.add(source_.derivative[i], graph_.multiply(half, graph_.multiply(gain.intensity, drift)));
+      }
+  }
+
+  void add_noise() {
+    for (Gain const& gain : gains_)
       for (int i = 0; i < states_; ++i)
         for (int j = 0; j <= i; ++j)
-          add_product(noise_(i, j), intensity,
-                      graph_.multiply(gains[static_cast<std::size_t>(i)], gains[static_cast<std::size_t>(j)]));
-    }
+          add_product(noise_(i, j), gain.intensity,
+                      graph_.multiply(gain.rows[static_cast<std::size_t>(i)], gain.rows[static_cast<std::size_t>(j)]));
   }
 
   NodeId sampling_interval() {
@@ -192,13 +216,14 @@ class MomentWriter {
   std::vector<Point> const& points() {
     if (!points_.empty()) return points_;
     std::vector<int> random;
-    for (int i = 0; i < states_; ++i)
-      if (!is_zero(covariance_(i, i))) random.push_back(i);
+    for (int k = 0; k < states_; ++k)
+      if (int const i = (random_.first_column + k) % states_; !is_zero(covariance_(i, i))) random.push_back(i);
     int const count = static_cast<int>(random.size());
     spread_ = std::max(count, 3);
     NodeId const scale = graph_.constant(std::sqrt(spread_));
     std::vector<std::vector<NodeId>> columns;  // of the factor, by state
-    for (int const j : random) {
+    for (auto place = random.begin(); place != random.end(); ++place) {
+      int const j = *place;
       Point point;
       point.state = j;
       std::vector<NodeId> column(static_cast<std::size_t>(states_), zero_);
@@ -213,8 +238,8 @@ class MomentWriter {
       NodeId const positive = graph_.binary(Operation::less, graph_.binary(Operation::maximum, least, zero_), pivot);
       NodeId const root = graph_.unary(Operation::square_root, graph_.select(positive, pivot, graph_.constant(1)));
       column[static_cast<std::size_t>(j)] = graph_.select(positive, root, zero_);
-      for (int const i : random)
-        if (i > j) column[static_cast<std::size_t>(i)] = graph_.select(positive, graph_.divide(left(i), root), zero_);
+      for (auto later = place + 1; later != random.end(); ++later)
+        column[static_cast<std::size_t>(*later)] = graph_.select(positive, graph_.divide(left(*later), root), zero_);
       point.positive = positive;
       point.root = root;
       for (int i = 0; i < states_; ++i) {
@@ -260,6 +285,19 @@ class MomentWriter {
 
   NodeId expectation(MomentRow const& row) { return by_points(row) ? values(row.value).mean : row.value; }
 
+  /// By point: how a row differs ahead of the mean and behind it, beyond its slope.
+  std::vector<NodeId> bent(MomentRow const& row) {
+    std::vector<NodeId> result;
+    Values const of = values(row.value);
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      NodeId straight = zero_;
+      for (int k = 0; k < states_; ++k)
+        add_product(straight, row.slopes[static_cast<std::size_t>(k)], points_[p].offset[static_cast<std::size_t>(k)]);
+      result.push_back(graph_.subtract(graph_.subtract(of.ahead[p], of.behind[p]), graph_.multiply(graph_.constant(2), straight)));
+    }
+    return result;
+  }
+
   /// cov(x_j, row): what is linear about the mean passes by the covariance itself, so that points are needed only for the rest.
   /// They reproduce the covariance where it has a Cholesky factor, which at the stages of an integrator, near a known start, it
   /// need not.
@@ -267,17 +305,10 @@ class MomentWriter {
     NodeId sum = zero_;
     for (int k = 0; k < states_; ++k) add_product(sum, row.slopes[static_cast<std::size_t>(k)], covariance_(k, j));
     if (!by_points(row)) return sum;
-    Values const of = values(row.value);
-    NodeId bent = zero_;
-    for (std::size_t p = 0; p < points_.size(); ++p) {
-      NodeId straight = zero_;
-      for (int k = 0; k < states_; ++k)
-        add_product(straight, row.slopes[static_cast<std::size_t>(k)], points_[p].offset[static_cast<std::size_t>(k)]);
-      NodeId const difference = graph_.subtract(of.ahead[p], of.behind[p]);
-      add_product(bent, points_[p].offset[static_cast<std::size_t>(j)],
-                  graph_.subtract(difference, graph_.multiply(graph_.constant(2), straight)));
-    }
-    return graph_.add(sum, graph_.multiply(weight(), bent));
+    NodeId rest = zero_;
+    std::vector<NodeId> const bends = bent(row);
+    for (std::size_t p = 0; p < points_.size(); ++p) add_product(rest, points_[p].offset[static_cast<std::size_t>(j)], bends[p]);
+    return graph_.add(sum, graph_.multiply(weight(), rest));
   }
 
   /// cov(a, b)
@@ -327,14 +358,14 @@ class MomentWriter {
     std::vector<NodeId> result, whitened;
     for (MomentRow const& row : rules_) {
       NodeId sum = zero_;
+      for (int k = 0; k < states_; ++k)
+        add_product(sum, row.slopes[static_cast<std::size_t>(k)], column[static_cast<std::size_t>(k)]);
       if (by_points(row)) {
         if (whitened.empty()) whitened = whiten(column);
-        Values const of = values(row.value);
-        for (std::size_t p = 0; p < points_.size(); ++p) add_product(sum, whitened[p], graph_.subtract(of.ahead[p], of.behind[p]));
-        sum = graph_.multiply(graph_.constant(0.5 / std::sqrt(spread_)), sum);
-      } else {
-        for (int k = 0; k < states_; ++k)
-          add_product(sum, row.slopes[static_cast<std::size_t>(k)], column[static_cast<std::size_t>(k)]);
+        NodeId rest = zero_;
+        std::vector<NodeId> const bends = bent(row);
+        for (std::size_t p = 0; p < points_.size(); ++p) add_product(rest, whitened[p], bends[p]);
+        sum = graph_.add(sum, graph_.multiply(graph_.constant(0.5 / std::sqrt(spread_)), rest));
       }
       result.push_back(sum);
     }
@@ -395,7 +426,7 @@ class MomentWriter {
     for (bool grown = true; std::exchange(grown, false);)
       for (std::size_t i = 0; i < n; ++i) {
         if (some[i]) continue;
-        bool there = !is_zero(gains_[d][i]);
+        bool there = !is_zero(gains_[d].rows[i]);
         for (std::size_t k = 0; k < n && !source_.map; ++k) there = there || (some[k] && !is_zero(rules_[i].slopes[k]));
         if (there) some[i] = grown = true;
       }
@@ -406,13 +437,13 @@ class MomentWriter {
     std::vector<NodeId> change = source_.map ? std::vector<NodeId>(n, zero_) : moved(column);
     for (std::size_t i = 0; i < n; ++i) {
       if (some[i]) {
-        add_product(change[i], gains_[d][i], intensities_[d]);
+        add_product(change[i], gains_[d].rows[i], gains_[d].intensity);
         add_state(zero_, change[i]);
         since.begin.push_back(zero_);
       }
       since.noises.push_back(column[i]);
     }
-    since.sums.push_back(add_state(zero_, intensities_[d]));
+    since.sums.push_back(add_state(zero_, gains_[d].intensity));
     since.begin.push_back(zero_);
   }
 
@@ -463,9 +494,8 @@ class MomentWriter {
   int states_;
   NodeId zero_;
   std::vector<NodeId> means_;
+  std::vector<Gain> gains_;
   std::vector<MomentRow> rules_, outputs_;
-  std::vector<std::vector<NodeId>> gains_;  // G, by noise
-  std::vector<NodeId> intensities_;
   Symmetric covariance_;  // leaves, or zero
   Symmetric noise_;
   std::vector<Point> points_;

@@ -25,6 +25,9 @@ struct RandomStates {
   };
   std::vector<Noise> noises;
   std::vector<std::optional<NodeId>> initial_variances;  // per state; absent: the initial value is known
+  /// The state whose column of the Cholesky factor comes first, those after it next, then those before: where the covariance is
+  /// nearly singular, states that determine others come before them.
+  int first_column = 0;
 };
 
 /// A channel with normal noise: expressions of states, inputs, time and parameters.

@@ -20,7 +20,7 @@ struct ModelPage {
   std::string name, title;
   std::vector<std::string> equations, unknowns;  // "m*y'' + k*y = x"; "y''"
   std::vector<DeclaredLine> states;              // text: "order 2"; in discrete time "2 past samples"
-  std::vector<DeclaredLine> inputs, channels, parameters, derived;
+  std::vector<DeclaredLine> inputs, disturbances, channels, parameters, derived;
   std::vector<std::string> unchecked;  // places whose units could not be compared, in the user's words
 };
 

@@ -1,5 +1,5 @@
 // The tolerance guard on targets whose optimum depends on the solver in a known way.
-#include "diagnostics/tolerance_check.hpp"
+#include "diagnostics/tolerance/tolerance_check.hpp"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -47,6 +47,24 @@ std::string const behind = "\n}\nposterior = fit osc to bench.train with mh(samp
 
 }  // namespace
 
+TEST_CASE("disturbances, random initial values and errors of inputs: laws with their arguments, what they drive, filters") {
+  Folder const folder;
+  CHECK(has(folder.at(before + "dist|" + behind), "disturbance"));
+  auto const laws = folder.at(before + "disturbance w [N] ~ |" + behind);
+  CHECK((has(laws, "white") && has(laws, "ornstein_uhlenbeck") && has(laws, "normal") && !has(laws, "uniform")));
+  auto const arguments = folder.at(before + "disturbance w [N] ~ ornstein_uhlenbeck(|" + behind);
+  CHECK((has(arguments, "sd") && has(arguments, "time") && has(arguments, "mass")));
+  CHECK(has(folder.at(before + "disturbance wind [N] ~ white(intensity = 1)\n  let pressure = |" + behind), "wind"));
+  std::string const file = before + behind;
+  auto const column = folder.at(file + "data noisy { file \"bench.csv\"; time t [s]; input x = force [N] |");
+  CHECK((has(column, "hold") && has(column, "error")));
+  CHECK(folder.at(file + "data noisy { file \"bench.csv\"; input x = force [N] hold linear error |") ==
+        std::vector<std::string>{"normal"});
+  CHECK(has(folder.at(file + "data noisy { file \"bench.csv\"; input x = force [N] hold linear error normal(|"), "sd"));
+  CHECK(has(folder.at(file + "a = fit osc to bench with map, filter = |"), "unscented"));
+  CHECK(has(folder.at(file + "f = predict posterior on bench with prediction = |"), "one_step"));
+}
+
 TEST_CASE("at the top: items, verbs, subjects, data, options and their values") {
   Folder const folder;
   std::string const file = before + behind;

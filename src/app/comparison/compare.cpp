@@ -86,6 +86,7 @@ std::vector<StoredSummary> results_in(fs::path const& folder) {
                                    each.is("select")       ? "selection"
                                    : each.is("calibrate")  ? "calibration"
                                    : each.is("crosscheck") ? "crosscheck"
+                                   : each.is("track")      ? "track"
                                                            : "discovery",
                                    each.name));
   std::erase_if(found, [](StoredSummary const& each) { return !each.is("fit") && !each.is("predict"); });
@@ -111,8 +112,8 @@ void tell_apart(std::vector<StoredSummary>& results) {
 std::string data_text(StoredSummary const& result) {
   std::string text;
   for (json const& data : result.summary.at("data"))
-    text += fmt::format("{}{}, rows {} ({} scored)", text.empty() ? "" : "; ", data.value("name", ""), data.value("scored_rows", ""),
-                        data.value("scored", 0));
+    text += fmt::format("{}{}, rows {} ({} scored)", text.empty() ? "" : "; ", data.value("name", ""),
+                        data.value("scored_rows", ""), data.value("scored", 0));
   return text;
 }
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "experiment/experiments.hpp"
 #include "result/finding.hpp"
 

@@ -24,7 +24,7 @@
 #include "app/session/task_checkpoint.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/automatic.hpp"
 #include "inference/backend/checkpoint.hpp"

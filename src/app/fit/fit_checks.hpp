@@ -8,7 +8,7 @@
 
 #include "app/fit/fit_likelihood.hpp"
 #include "app/session/preparation.hpp"
-#include "diagnostics/tolerance_check.hpp"
+#include "diagnostics/tolerance/tolerance_check.hpp"
 #include "search/objective_kind.hpp"
 
 namespace sysid {

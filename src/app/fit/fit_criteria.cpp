@@ -123,6 +123,8 @@ int number_of_draws(FinishedFit const& fit) {
 std::string why_none(FinishedFit const& fit) {
   if (!fit.likelihood.model().processes.empty())
     return "the samples are not independent given the parameters, because the model has a Gaussian process";
+  if (fit.likelihood.model().filtered())
+    return "the samples are not independent given the parameters, because the model has disturbances or random initial values";
   if (fit.result.draws.total() < 2) return "the fit has no posterior draws";
   return "";
 }

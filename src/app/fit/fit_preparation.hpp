@@ -8,7 +8,7 @@
 #include "app/fit/fit_likelihood.hpp"
 #include "app/session/preparation.hpp"
 #include "app/session/task_checkpoint.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "search/objective_kind.hpp"
 #include "search/search.hpp"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "app/preflight/preflight.hpp"
 #include "core/numeric/elementary.hpp"
@@ -239,14 +240,19 @@ PriorDraws draw_prior(Preflight const& preflight) {
     prior.coordinates.push_back(std::move(coordinate));
   }
   prior.noise = listed(noise);
-  Output const& stated = preflight.output();
+  // What the prior predicts knows nothing of the record.
+  std::vector<Experiment> unread;
+  for (Experiment const& each : preflight.experiments) unread.push_back(each.unread());
+  std::optional<Output> free;
+  if (preflight.model().filtered()) free.emplace(preflight.output_along(unread));
+  Output const& stated = free ? *free : preflight.output();
   LaneArray const values = space.values_of_declared(declared);
   prior.points = LaneArray(stated.point_rows(), count);
   for (int r = 0; r < values.rows(); ++r)
     for (int w = 0; w < count; ++w) prior.points(r, w) = values(r, w);
   stated.start(prior.points);
-  prior.simulations = simulate_prior(preflight.session, preflight.what, preflight.compiled, preflight.space, preflight.experiments,
-                                     stated, theta, prior.points);
+  prior.simulations = simulate_prior(preflight.session, preflight.what, preflight.compiled, preflight.space,
+                                     free ? unread : preflight.experiments, stated, theta, prior.points);
   return prior;
 }
 

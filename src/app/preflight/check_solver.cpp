@@ -8,7 +8,7 @@
 
 #include "app/preflight/check_file.hpp"
 #include "app/preflight/preflight.hpp"
-#include "diagnostics/tolerance_check.hpp"
+#include "diagnostics/tolerance/tolerance_check.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/local_searches.hpp"
 #include "search/refit.hpp"

@@ -13,7 +13,8 @@ namespace {
 
 struct Texts {
   std::vector<std::string> equations;
-  std::map<std::string, std::string> parameters, channels, derived;
+  std::map<std::string, std::string> parameters, disturbances, channels, derived;
+  std::map<std::string, std::string> starts;  // random ones, "~ normal(0, sd = 1)"
 };
 
 // What is said of a name first stays.
@@ -29,6 +30,11 @@ void add_texts(ast::File const& tree, std::string const& model, bool equations, 
         texts.parameters.try_emplace(parameter->name.name.text, parameter->prior   ? "~ " + call(*parameter->prior)
                                                                 : parameter->value ? "= " + unparse(*parameter->value)
                                                                                    : std::string());
+      if (auto const* disturbance = std::get_if<ast::DisturbanceDeclaration>(&statement))
+        texts.disturbances.try_emplace(disturbance->name.name.text, "~ " + call(disturbance->law));
+      if (auto const* initials = std::get_if<ast::InitialDeclaration>(&statement))
+        for (ast::InitialValue const& initial : initials->values)
+          if (initial.law) texts.starts.try_emplace(unparse(ast::Expression{{}, initial.state}), "~ " + call(*initial.law));
       if (auto const* observation = std::get_if<ast::Observation>(&statement))
         texts.channels.try_emplace(observation->channel.name.text, "~ " + call(observation->noise));
       if (auto const* definition = std::get_if<ast::Definition>(&statement))
@@ -46,17 +52,33 @@ Texts texts_of(ast::File const& written, ast::File const& flat, std::string cons
   return texts;
 }
 
+/// What is said of a name; of an element, `m[1]`, what is said of all.
+std::string text_of(std::map<std::string, std::string> const& texts, std::string const& name) {
+  auto place = texts.find(name);
+  if (place == texts.end()) place = texts.find(name.substr(0, name.find('[')));
+  return place == texts.end() ? std::string() : place->second;
+}
+
+bool is_disturbance(Model const& model, std::string const& name) {
+  return std::any_of(model.disturbances.begin(), model.disturbances.end(),
+                     [&](Disturbance const& each) { return each.name == name; });
+}
+
 // "y", "y'", "y''" are one state of order 3; its unknown is y'''. Beside those there may be algebraic ones.
-void add_orders(Model const& model, ModelPage& page) {
+void add_orders(Model const& model, Texts const& texts, ModelPage& page) {
   std::vector<std::pair<State const*, int>> orders;
+  std::map<std::string, std::string> random;  // by the first component
   for (State const& state : model.states) {
+    if (is_disturbance(model, state.name)) continue;
     if (orders.empty() || !state.name.ends_with('\''))
       orders.emplace_back(&state, 1);
     else
       ++orders.back().second;
+    if (std::string const start = text_of(texts.starts, state.name); !start.empty())
+      random[orders.back().first->name] += fmt::format(", initial {} {}", state.name, start);
   }
   for (auto const& [state, order] : orders) {
-    page.states.push_back({state->name, state->unit_text(), fmt::format("order {}", order)});
+    page.states.push_back({state->name, state->unit_text(), fmt::format("order {}{}", order, random[state->name])});
     if (model.unknowns.empty()) page.unknowns.push_back(state->name + std::string(static_cast<std::size_t>(order), '\''));
   }
   for (Unknown const& unknown : model.unknowns) page.unknowns.push_back(unknown.name);
@@ -65,18 +87,11 @@ void add_orders(Model const& model, ModelPage& page) {
 // Each state has an equation for its present sample, however many past ones are remembered.
 void add_pasts(Model const& model, ModelPage& page) {
   for (LaggedQuantity const& lagged : model.lagged_quantities) {
-    if (lagged.channel >= 0) continue;
+    if (lagged.channel >= 0 || is_disturbance(model, lagged.name)) continue;
     std::size_t const lags = lagged.registers.size();
     page.states.push_back({lagged.name, lagged.unit_text(), lags == 0 ? std::string() : counted(lags, "past sample")});
     page.unknowns.push_back(lagged.name);
   }
-}
-
-/// What is said of a name; of an element, `m[1]`, what is said of all.
-std::string text_of(std::map<std::string, std::string> const& texts, std::string const& name) {
-  auto place = texts.find(name);
-  if (place == texts.end()) place = texts.find(name.substr(0, name.find('[')));
-  return place == texts.end() ? std::string() : place->second;
 }
 
 }  // namespace
@@ -90,9 +105,11 @@ ModelPage describe_structure(ast::File const& written, ast::File const& flat, Mo
   if (model.dynamics == Dynamics::discrete)
     add_pasts(model, page);
   else
-    add_orders(model, page);
+    add_orders(model, texts, page);
   for (Unchecked const& each : model.unchecked) page.unchecked.push_back(fmt::format("`{}`: {}", each.what, each.why));
   for (Quantity const& input : model.inputs) page.inputs.push_back({input.name, input.unit_text(), {}});
+  for (Disturbance const& disturbance : model.disturbances)
+    page.disturbances.push_back({disturbance.name, disturbance.unit_text(), text_of(texts.disturbances, disturbance.name)});
   for (Channel const& channel : model.channels)
     page.channels.push_back({channel.name, channel.unit_text(), text_of(texts.channels, channel.name)});
   for (Parameter const& parameter : model.parameters)

@@ -102,6 +102,10 @@ Output Preflight::output_of(std::shared_ptr<CompiledModel const> const& with_met
   return {with_method, space, experiments, solver, start_rows(what.start), session.abandonable(), pool_};
 }
 
+Output Preflight::output_along(std::vector<Experiment> const& along) const {
+  return {compiled, space, along, solvers.front(), start_rows(what.start), session.abandonable(), pool_};
+}
+
 Output const& Preflight::output(std::size_t solver) const {
   return outputs_[solver].get([&] { return output_of(compiled, solvers[solver]); });
 }

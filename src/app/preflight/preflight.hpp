@@ -45,6 +45,8 @@ class Preflight {
 
   /// By one of the solvers; the rows of finer and finer ones take long to tabulate, so each is made when it is first asked for.
   Output const& output(std::size_t solver = 0) const;
+  /// The same along other experiments.
+  Output output_along(std::vector<Experiment> const& along) const;
   /// One that ends its steps where the equations jump; null where they do not.
   Output const* output_on_jumps() const;
   /// Of a trajectory with the stated solver, in trajectories of one step of rk4 for each substep, about.

@@ -12,7 +12,7 @@
 #include "app/session/fit_target.hpp"
 #include "app/session/solver_refinement.hpp"
 #include "core/numeric/elementary.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 
 namespace sysid {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/session/fit_target.hpp"
 #include "app/session/solver_refinement.hpp"
 #include "core/system/interrupt.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "search/local_searches.hpp"
 #include "search/search.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 #include "app/session/preparation.hpp"
 #include "app/session/session.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "inference/backend/backend.hpp"
 
 namespace sysid {

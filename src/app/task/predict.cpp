@@ -41,12 +41,11 @@ class Predict {
         data_(trajectories_.data()) {}
 
   ExitCode run() {
-    Report report = begin_report(
-        session_, task_, fit_.model,
-        fmt::format("predict {} on {} with draws({}){}", fit_task_.name, data_names(session_.file, what_.experiments),
-                    trajectories_.wanted(),
-                    predicted_.empty() ? std::string() : fmt::format(" ({})", predicted_)),
-        seed_);
+    Report report =
+        begin_report(session_, task_, fit_.model,
+                     fmt::format("predict {} on {} with draws({}){}", fit_task_.name, data_names(session_.file, what_.experiments),
+                                 trajectories_.wanted(), predicted_.empty() ? std::string() : fmt::format(" ({})", predicted_)),
+                     seed_);
     add_predicted_rule(model_, what_.prediction, report);
     if (trajectories_.fitted().draws.total() == 1)
       report.findings.push_back(

@@ -117,8 +117,10 @@ Diagnostic unused_disturbance(Span declaration, std::string const& disturbance) 
             fmt::format("add it to the equation that it disturbs, as in `m*y'' + k*y = x + {}`, or remove it", disturbance)));
 }
 
-Diagnostic disturbance_beside(Span place, Subject const& disturbance, std::string const& what, std::string const& help) {
-  return about(disturbance.names, error("E3309", place, fmt::format("{} cannot stand beside {}", disturbance.words, what), help));
+Diagnostic disturbance_beside(Span place, Subject const& disturbance, Subject const& other, std::string const& help) {
+  Names names = disturbance.names;
+  names.insert(names.end(), other.names.begin(), other.names.end());
+  return about(names, error("E3309", place, fmt::format("{} cannot stand beside {}", disturbance.words, other.words), help));
 }
 
 Diagnostic law_of_initial(ast::Call const& law, std::string const& state) {
@@ -156,7 +158,7 @@ Diagnostic filter_of_nothing(Span option, std::string const& model) {
 
 Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optional<Span> const& part) {
   return about(
-      {"filter", model},
+      {"filter", "kalman", model},
       with_place(error("E3313", option, fmt::format("`kalman` needs linear equations and channels, which `{}` has not", model),
                        "write `filter = extended` or `unscented`, or remove the option: the program then chooses"),
                  part, "not linear"));
@@ -186,11 +188,14 @@ Diagnostic law_of_input_error(Span law, std::string const& input, std::string co
                               "write its standard deviation as a number: `error normal(sd = 0.5)`"));
 }
 
-Diagnostic input_error_refused(Span error_place, std::string const& input, std::string const& reason,
-                               std::optional<Label> const& place, std::string const& help) {
-  Diagnostic diagnostic = error("E3316", error_place, fmt::format("input `{}` cannot have an error: {}", input, reason), help);
+Diagnostic input_error_refused(Span error_place, std::string const& input, Subject const& reason, std::optional<Label> const& place,
+                               std::string const& help) {
+  Diagnostic diagnostic =
+      error("E3316", error_place, fmt::format("input `{}` cannot have an error: {}", input, reason.words), help);
   if (place) diagnostic.secondary.push_back(*place);
-  return about({input}, std::move(diagnostic));
+  Names names = reason.names;
+  names.push_back(input);
+  return about(names, std::move(diagnostic));
 }
 
 Diagnostic input_errors_differ(Span second, Span first, std::string const& input, std::string const& one,

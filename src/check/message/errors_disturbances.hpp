@@ -28,8 +28,8 @@ Diagnostic white_noise_observed(Span reader, Subject const& what, Span declarati
 /// part: where it stands, if it has a place.
 Diagnostic not_linear_in_disturbance(Span declaration, std::string const& disturbance, std::optional<Span> const& part);
 Diagnostic unused_disturbance(Span declaration, std::string const& disturbance);
-/// what: "a Gaussian process".
-Diagnostic disturbance_beside(Span place, Subject const& disturbance, std::string const& what, std::string const& help);
+/// other: "a Gaussian process".
+Diagnostic disturbance_beside(Span place, Subject const& disturbance, Subject const& other, std::string const& help);
 
 // random initial values
 Diagnostic law_of_initial(ast::Call const& law, std::string const& state);
@@ -48,7 +48,7 @@ Diagnostic particle_filter_missing(Span option);
 
 // errors of inputs
 Diagnostic law_of_input_error(Span law, std::string const& input, std::string const& reason);
-Diagnostic input_error_refused(Span error, std::string const& input, std::string const& reason, std::optional<Label> const& place,
+Diagnostic input_error_refused(Span error, std::string const& input, Subject const& reason, std::optional<Label> const& place,
                                std::string const& help);
 Diagnostic input_errors_differ(Span second, Span first, std::string const& input, std::string const& one, std::string const& other);
 

@@ -238,15 +238,15 @@ void ModelChecker::place_disturbances() {
   Quantity const& random = declared ? static_cast<Quantity const&>(model_.disturbances.front()) : *first;
   errors::Subject const subject = errors::named(declared ? "disturbance" : "the random initial value of", random.name);
   if (!model_.processes.empty())
-    diagnostics_.add(errors::disturbance_beside(random.span, subject, "a Gaussian process",
+    diagnostics_.add(errors::disturbance_beside(random.span, subject, {"a Gaussian process"},
                                                 "give the process the range in which it is needed, `gp(..., within = (-1, 1))`: "
                                                 "a finite sum then stands for it"));
   if (!model_.unknowns.empty() || !model_.invariants.empty())
     diagnostics_.add(errors::disturbance_beside(
-        random.span, subject, "algebraic unknowns and constraints",
+        random.span, subject, {"algebraic unknowns and constraints"},
         "eliminate the unknowns, so that each state has its differential equation, solved for its highest derivative"));
   if (!model_.memories.empty())
-    diagnostics_.add(errors::disturbance_beside(random.span, subject, "`since_last`",
+    diagnostics_.add(errors::disturbance_beside(random.span, subject, errors::named("since_last"),
                                                 "observe the quantity itself, or make its change a state of its own"));
   int which = 0;
   for (Channel const& channel : model_.channels)

@@ -31,9 +31,10 @@ class TaskChecker {
   void suit_exact(SolverSettings const& solver, Model const& model);
   void suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options);
   void suit(FitTask& task, Model const& model);
-  // `prediction = one_step`, for models that have lags to read. corrected: fits whose random states samples correct in a prediction,
-  // which the rule is of, too.
-  void prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule, std::span<int const> corrected = {});
+  // `prediction = one_step`, for models that have lags to read. corrected: fits whose random states samples correct in a
+  // prediction, which the rule is of, too.
+  void prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule,
+                  std::span<int const> corrected = {});
   // Whether the option says how a fit simulates; read into `task` then.
   bool simulation_option(ast::Option const& option, std::string const& key, std::span<int const> models, FitTask& task);
   // Each argument of `values(m = 1, ...)`, `noise(displacement = 0.1 [mm])` with the index of its name among `known`, once.
@@ -104,8 +105,8 @@ class TaskChecker {
   // --- task_predict.cpp
   PredictTask predict();
   // corrected: the models of the fits whose states are random.
-  void predict_option(ast::Option const& option, std::string const& key, std::span<int const> models, std::span<int const> corrected,
-                      PredictTask& task);
+  void predict_option(ast::Option const& option, std::string const& key, std::span<int const> models,
+                      std::span<int const> corrected, PredictTask& task);
   void draws(ast::Option const& option, int& count);
   // The fits whose draws are used: of a selection one per candidate; none when an error was added.
   std::vector<FitTask const*> predicted_fits(PredictTask& task);

@@ -20,7 +20,8 @@ using Problem = InputErrorProblem;
 
 /// Why, and what to do.
 struct Refusal {
-  std::string reason, help;
+  errors::Subject reason;
+  std::string help;
 };
 
 Refusal refusal_of(Problem const& problem, Model const& model) {
@@ -30,24 +31,34 @@ Refusal refusal_of(Problem const& problem, Model const& model) {
       input);
   switch (problem.kind) {
     case Problem::Kind::rate:
-      return {fmt::format("the model reads its derivative `{}'`, which errors of samples do not have", input),
-              fmt::format("declare what the derivative lacks as a disturbance of the model, `disturbance e ~ white(intensity = q)`, and "
-                          "write `{}' + e`",
-                          input)};
+      return {{fmt::format("the model reads its derivative `{}'`, which errors of samples do not have", input), {input + "'"}},
+              fmt::format(
+                  "declare what the derivative lacks as a disturbance of the model, `disturbance e ~ white(intensity = q)`, and "
+                  "write `{}' + e`",
+                  input)};
     case Problem::Kind::channel:
-      return {fmt::format("channel `{}` reads it directly", model.channels[static_cast<std::size_t>(problem.index)].name), cure};
+      return {{fmt::format("channel `{}` reads it directly", model.channels[static_cast<std::size_t>(problem.index)].name),
+               {model.channels[static_cast<std::size_t>(problem.index)].name}},
+              cure};
     case Problem::Kind::nonlinear:
-      return {"the equations are not linear in it", cure};
+      return {{"the equations are not linear in it"}, cure};
     case Problem::Kind::no_states:
-      return {fmt::format("model `{}` has no states, so that its rows are independent", model.name),
+      return {{fmt::format("model `{}` has no states, so that its rows are independent", model.name), {model.name}},
               "if the rows are equally far apart in time, declare `time discrete`"};
     case Problem::Kind::processes:
-      return {"the model has a Gaussian process", "fit the model without the process, or without the error"};
+      return {{"the model has a Gaussian process"}, "fit the model without the process, or without the error"};
     case Problem::Kind::constraints:
-      return {"the model has algebraic unknowns or constraints",
+      return {{"the model has algebraic unknowns or constraints"},
               "eliminate the unknowns, so that each state has its differential equation"};
   }
   return {};
+}
+
+/// Without those that no back end has yet.
+std::vector<std::string> available_filters() {
+  std::vector<std::string> names = filter_names();
+  std::erase(names, filter_name(FilterRule::particle));
+  return names;
 }
 
 }  // namespace
@@ -58,7 +69,7 @@ void TaskChecker::filter(ast::Option const& option, FilterRule& rule) {
   if (auto const found = find_filter(given))
     rule = *found;
   else
-    diagnostics_.add(errors::option_choice(option.value.span, "filter", given, filter_names()));
+    diagnostics_.add(errors::option_choice(option.value.span, "filter", given, available_filters()));
   filter_needed_ = !find_filter(given);  // nothing more is said of a word that is none
   refuse_particle(option, rule);
 }
@@ -166,7 +177,8 @@ void TaskChecker::refuse_input_errors(std::vector<ExperimentUse> const& experime
     for (DataInputUse const& bound : file_.data[static_cast<std::size_t>(use.data)].inputs)
       if (bound.error)
         return diagnostics_.add(errors::input_error_refused(
-            bound.error->span, bound.input, "a discovery takes samples of inputs as exact", Label{tree_.subject.span, "discovered here"},
+            bound.error->span, bound.input, {"a discovery takes samples of inputs as exact"},
+            Label{tree_.subject.span, "discovered here"},
             "discover from a data block without `error`, then fit the model that was found to this one"));
 }
 

@@ -17,7 +17,7 @@ constexpr TaskOptionRow rows[] = {
     {"prediction", "prediction = free_run", "the past samples from which a discrete-time model predicts",
      "as_written one_step free_run"},
     {"filter", "filter = unscented", "how the likelihood is computed where states are random: disturbances, random initial values",
-     "auto kalman extended unscented particle"},
+     "auto kalman extended unscented"},
     {"search", "search = near(posterior)",
      "where the search for modes starts: at draws of the prior, or where an earlier fit ended", "everywhere near"},
     {"evidence", "evidence = bridge", "how the evidence of the model is computed", "auto importance bridge smc laplace none"},

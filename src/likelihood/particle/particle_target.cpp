@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
@@ -14,6 +16,21 @@
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
+namespace {
+
+/// The bits of a parameter vector as one word: another for almost any other vector (SplitMix64's finaliser).
+std::uint64_t mixed(ConstLanes theta, int lane) {
+  std::uint64_t word = 0;
+  for (int p = 0; p < theta.rows(); ++p) {
+    word += std::bit_cast<std::uint64_t>(theta(p, lane)) + 0x9e3779b97f4a7c15;
+    word = (word ^ (word >> 30)) * 0xbf58476d1ce4e5b9;
+    word = (word ^ (word >> 27)) * 0x94d049bb133111eb;
+    word ^= word >> 31;
+  }
+  return word;
+}
+
+}  // namespace
 
 ParticleTarget::~ParticleTarget() = default;
 
@@ -33,19 +50,25 @@ ParticleTarget::ParticleTarget(std::shared_ptr<ParticleModel const> model, std::
   simulators_ = std::move(simulators);
 }
 
-ParticleTarget::ParticleTarget(ParticleTarget const& other, int particles)
+ParticleTarget::ParticleTarget(ParticleTarget const& other, ParticleOptions particles)
     : model_(other.model_),
       space_(other.space_),
       experiments_(other.experiments_),
       options_(other.options_),
-      particles_(other.particles_),
+      particles_(particles),
       pool_(other.pool_),
-      simulators_(other.simulators_) {
-  particles_.particles = particles;
-}
+      simulators_(other.simulators_) {}
 
 std::unique_ptr<ParticleTarget> ParticleTarget::with_particles(int particles) const {
-  return std::unique_ptr<ParticleTarget>(new ParticleTarget(*this, particles));
+  ParticleOptions other = particles_;
+  other.particles = particles;
+  return std::unique_ptr<ParticleTarget>(new ParticleTarget(*this, other));
+}
+
+std::unique_ptr<ParticleTarget> ParticleTarget::with_numbers(ParticleNumbers numbers) const {
+  ParticleOptions other = particles_;
+  other.numbers = numbers;
+  return std::unique_ptr<ParticleTarget>(new ParticleTarget(*this, other));
 }
 
 ParticleFilter ParticleTarget::filter(int experiment, int particles) const {
@@ -119,8 +142,11 @@ std::unique_ptr<ParticleNormals> ParticleTarget::fixed_normals(int experiment) c
 }
 
 void ParticleTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const {
-  run(
-      theta, particles_.particles, [&](int, int experiment) { return fixed_normals(experiment); }, out, ledger);
+  auto const chosen = [&](int lane, int experiment) -> std::unique_ptr<ParticleNormals> {
+    if (particles_.numbers == ParticleNumbers::fixed) return fixed_normals(experiment);
+    return std::make_unique<StreamNormals>(key_of(particles_.key.with_index(mixed(theta, lane)), experiment));
+  };
+  run(theta, particles_.particles, chosen, out, ledger);
 }
 
 void ParticleTarget::estimate(ConstLanes theta, StreamKey key, std::span<double> out, Ledger& ledger) const {

@@ -16,11 +16,19 @@ namespace sysid {
 /// Particles of a filter where nothing else is asked for.
 constexpr int default_particles = 512;
 
+/// Which random numbers `log_likelihood` takes.
+enum class ParticleNumbers {
+  fixed,          // the same for all parameter vectors, so that neighbours can be compared: for searches
+  of_parameters,  // each parameter vector its own, as independent of those of any other as fresh ones, but the same whenever it is
+                  // asked for: for chains, which then sample the exact posterior
+};
+
 struct ParticleOptions {
   int particles = default_particles;
-  /// Of the numbers behind `log_likelihood`: the same for every parameter vector. Its index lies beyond those of populations.
+  ParticleNumbers numbers = ParticleNumbers::fixed;
+  /// Of `log_likelihood`. Its index lies beyond those of populations.
   StreamKey key = {.seed = 1, .purpose = Purpose::particle, .index = std::uint64_t{1} << 40};
-  /// Numbers of that key are kept up to this size, else drawn again for every vector.
+  /// Fixed numbers are kept up to this size, else drawn again for every vector.
   std::size_t stored_bytes = std::size_t{64} << 20;
 };
 
@@ -35,8 +43,9 @@ struct ParticleNeed {
 };
 
 /// Experiments are independent given the parameters: their estimates multiply. An estimate is a function of the parameters and of
-/// standard normal numbers, and unbiased in its mean over these. `log_likelihood` takes those of one fixed key, so that it is one
-/// function of the parameters; of several states it is rough, where the descendants of a particle change.
+/// standard normal numbers, and unbiased in its mean over these. `log_likelihood` is one function of the parameters, as that of
+/// every target, but rough: with fixed numbers and several states where the descendants of a particle change, with numbers of the
+/// parameters everywhere.
 class ParticleTarget : public Target {
  public:
   /// model: particle_model of the space's model, for the method of options.solver. experiments: those of the space, in its order.
@@ -75,7 +84,10 @@ class ParticleTarget : public Target {
   /// The same target with another number of particles.
   std::unique_ptr<ParticleTarget> with_particles(int particles) const;
 
-  /// What one run by the numbers of `log_likelihood` sees at theta [P x 1] in an experiment.
+  /// The same target with other numbers behind `log_likelihood`.
+  std::unique_ptr<ParticleTarget> with_numbers(ParticleNumbers numbers) const;
+
+  /// What one run by the fixed numbers sees at theta [P x 1] in an experiment.
   FilterOutcome look(ConstLanes theta, int experiment, SeeParticles const& see) const;
 
   std::shared_ptr<ParticleModel const> const& model() const { return model_; }
@@ -86,7 +98,7 @@ class ParticleTarget : public Target {
  private:
   using Simulators = std::vector<Simulator>;
   using MakeNormals = std::function<std::unique_ptr<ParticleNormals>(int lane, int experiment)>;
-  ParticleTarget(ParticleTarget const& other, int particles);
+  ParticleTarget(ParticleTarget const& other, ParticleOptions particles);
   void run(ConstLanes theta, int particles, MakeNormals const& normals, std::span<double> out, Ledger& ledger) const;
   ParticleFilter filter(int experiment, int particles) const;
   LaneArray parameters(ConstLanes values, int experiment) const;

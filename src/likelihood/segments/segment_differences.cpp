@@ -10,7 +10,7 @@ namespace {
 // What a perturbation moves the outputs by, in their sds: small against curvature, which is large where neighbours part, and large
 // against rounding or against the tolerance that an adaptive solver keeps. Within the factor a slope serves.
 constexpr double smooth_effect = 1e-6, rough_effect = 1e-4;
-constexpr double serves_within = 100;
+constexpr double similar_effect = 100;
 constexpr double largest_step = 1e30;  // where nothing shows
 
 double first_step(double value) { return value != 0 ? smooth_effect * std::abs(value) : smooth_effect; }
@@ -42,7 +42,7 @@ bool SegmentDifferences::mend(std::vector<SegmentSlopes> const& slopes) {
       good = false;
       return;
     }
-    bool const serves = effect >= 1 / serves_within && effect <= serves_within;
+    bool const serves = effect >= 1 / similar_effect && effect <= similar_effect;
     good = good && serves;
     if (effect > 0 || step < largest_step) step *= std::clamp(effect > 0 ? 1 / effect : 1e6, 1e-6, 1e6);
   };

@@ -61,8 +61,11 @@ std::vector<Figure> figures(Report const& report) {
   }
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
-      if (shows_something(quantity) && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity))
+      if (shows_something(quantity) && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity)) {
         out.push_back(fit_figure(prediction, quantity));
+        if (report.verb == "track")
+          out.back().caption = fmt::format("The parameter {} along the rows that were tracked, with its 95 % band.", quantity.name);
+      }
   for (Prediction const& states : report.states)
     for (PredictedQuantity const& quantity : states.quantities)
       if (shows_something(quantity) && states.time.size() > 1) out.push_back(fit_figure(states, quantity));

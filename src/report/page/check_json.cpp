@@ -16,16 +16,14 @@ Json lines(std::vector<DeclaredLine> const& declared) {
 }
 
 Json model_object(ModelPage const& model) {
-  return {{"name", model.name},
-          {"title", model.title},
-          {"equations", model.equations},
-          {"unknowns", model.unknowns},
-          {"states", lines(model.states)},
-          {"inputs", lines(model.inputs)},
-          {"channels", lines(model.channels)},
-          {"parameters", lines(model.parameters)},
-          {"derived", lines(model.derived)},
-          {"unchecked_units", model.unchecked}};
+  Json out = {{"name", model.name},         {"title", model.title},          {"equations", model.equations},
+              {"unknowns", model.unknowns}, {"states", lines(model.states)}, {"inputs", lines(model.inputs)}};
+  if (!model.disturbances.empty()) out["disturbances"] = lines(model.disturbances);
+  out["channels"] = lines(model.channels);
+  out["parameters"] = lines(model.parameters);
+  out["derived"] = lines(model.derived);
+  out["unchecked_units"] = model.unchecked;
+  return out;
 }
 
 Json dictionary_object(DictionaryPage const& dictionary) {

@@ -56,6 +56,7 @@ std::string model_text(ModelPage const& model) {
   out += entry(plural("equation", model.equations.size()), equations);
   out += table(plural("state", model.states.size()), rows_of(model.states), 3);
   out += table(plural("input", model.inputs.size()), rows_of(model.inputs), 3);
+  out += table("unmeasured", rows_of(model.disturbances), 3);
   out += table(plural("channel", model.channels.size()), rows_of(model.channels), 3);
   out += table(plural("parameter", model.parameters.size()), rows_of(model.parameters), 3);
   out += table("derived", rows_of(model.derived), 3);

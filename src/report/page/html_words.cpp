@@ -128,6 +128,10 @@ std::string verdict_meaning(Report const& report) {
     default:
       break;
   }
+  if (report.verb == "track")
+    return "The model follows the rows, or was moved where they show a change. That nothing was found does not prove that nothing "
+           "has "
+           "changed: a slow change may be taken for drift, one of the noise for none.";
   if (bands) return "No check failed. The bands are valid if the model is valid on this record: compare them with the measurement.";
   if (report.discovery)
     return "No check failed. The equations are the best from the terms of the dictionary; this does not prove that no other term "

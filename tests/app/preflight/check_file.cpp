@@ -1,7 +1,7 @@
 // `sysid check`: silent on what is sound, and naming what is planted: null directions, wild priors, coarse steps, data that are not
 // there. SYSID_BLESS=1 rewrites the recorded pages.
 #include "app/preflight/check_file.hpp"
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "report/page/check_page.hpp"
 
@@ -163,6 +163,46 @@ truth = simulate duffing with values(m = 1, c = 20, k = 1e4, k3 = 5e9, sigma = 1
   for (DeclaredLine const& line : own.page.models.front().parameters)
     if (line.name == "joint.k") joint = line.text;
   CHECK(joint == "~ log_uniform(1, 1e6)");
+}
+
+TEST_CASE("disturbances and random starts have lines of their own, and are no unknowns") {
+  TemporaryFolder folder;
+  std::string const text = R"(
+model mast {
+  input x [N]
+  state y [mm]
+  initial y ~ normal(0, sd = 2), y' = 0
+  parameter k [N/m] ~ log_uniform(1e3, 1e5)
+  disturbance wind [N] ~ ornstein_uhlenbeck(sd = 0.3, time = 2)
+  disturbance hum [N] ~ white(intensity = 0.1)
+  1 [kg]*y'' + 20 [N s/m]*y' + k*y = x + wind + hum
+  observe displacement ~ normal(y, sd = 1e-4)
+}
+model tank {
+  time discrete 1 [s]
+  input u
+  state level
+  initial level = 0
+  parameter a ~ uniform(-1, 1)
+  disturbance w ~ normal(0, sd = 0.1)
+  level = a*lag(level, 1) + u + w + 0.5*lag(w, 1)
+  observe output ~ normal(level, sd = 0.1)
+}
+)";
+  CheckResult const result = checked(folder.path() / "own.sysid", text);
+  ModelPage const& mast = result.page.models.at(0);
+  CHECK(mast.unknowns == std::vector<std::string>{"y''"});
+  REQUIRE(mast.states.size() == 1);
+  CHECK(mast.states[0].text == "order 2, initial y ~ normal(0, sd = 2)");
+  REQUIRE(mast.disturbances.size() == 2);
+  CHECK(mast.disturbances[0].text == "~ ornstein_uhlenbeck(sd = 0.3, time = 2)");
+  CHECK(mast.disturbances[1].unit == "N");
+  ModelPage const& tank = result.page.models.at(1);
+  CHECK(tank.unknowns == std::vector<std::string>{"level"});
+  CHECK(tank.disturbances.at(0).text == "~ normal(0, sd = 0.1)");
+  CHECK(check_text(result.page).find("  unmeasured  w  ") != std::string::npos);
+  nlohmann::json const object = nlohmann::json::parse(check_json(result.page, ""));
+  CHECK(object.at("models").at(0).at("disturbances").size() == 2);
 }
 
 TEST_CASE("the page of shipped models is the recorded one, and JSON holds the same") {

@@ -20,15 +20,15 @@ bool was_found(json const& summary, std::string const& code) {
   return false;
 }
 
-/// x' = -a x^3 + w, white noise of intensity q, sampled at 4 Hz with noise of sd 0.3.
-std::string sampled_well(double a, double q, std::uint64_t seed) {
+/// x' = -a x^3 + w, white noise of intensity q, sampled at 4 Hz.
+std::string sampled_well(double a, double q, std::uint64_t seed, double noise = 0.3) {
   Stream stream({seed, Purpose::test});
   constexpr int fine = 100;
   double const step = 0.25 / fine;
   double x = stream.normal();
   std::string text = "t,m\n";
   for (int i = 0; i < 400; ++i) {
-    text += fmt::format("{},{}\n", 0.25 * i, x + 0.3 * stream.normal());
+    text += fmt::format("{},{}\n", 0.25 * i, x + noise * stream.normal());
     for (int k = 0; k < fine; ++k) x += -a * x * x * x * step + std::sqrt(q * step) * stream.normal();
   }
   return text;
@@ -92,7 +92,8 @@ TEST_CASE("a fit says where the linearisation of its filter decides the result, 
   CaseRun const mended(unscented, {{"d.csv", sampled_well(1, 1, 3)}});
   CHECK_FALSE(was_found(mended.summary("post"), "linearisation_matters"));
   // Within the spread of the states the cubic is a straight line.
-  CaseRun const weak(with(extended, "sd = 0.3)", "sd = 0.003)"), {{"d.csv", sampled_well(0.5, 0.0001, 3)}});
+  CaseRun const weak(with(extended, "normal(x, sd = 0.3)", "normal(x, sd = 0.003)"),
+                     {{"d.csv", sampled_well(0.5, 0.02, 3, 0.003)}});
   CHECK_FALSE(was_found(weak.summary("post"), "linearisation_matters"));
 }
 
@@ -127,6 +128,28 @@ TEST_CASE("free predictions know the rows before them and widen; one step ahead 
   CHECK(score("step", "rmse") < 0.5 * score("free", "rmse"));
   CHECK(score("free", "coverage_95") > 0.9);
   CHECK(score("step", "coverage_95") > 0.9);
+  auto const rule = [&](std::string const& task) { return run.summary(task).at("settings").at("prediction").get<std::string>(); };
+  CHECK(rule("step") == "one_step: states corrected by all samples before each row");
+  CHECK(rule("free") == "free_run: states corrected by the samples before the predicted rows only");
+  CHECK(run.summary("step").at("prediction_rule") == "one_step");
+  CHECK(run.summary("free").at("prediction_rule") == "free_run");
+}
+
+TEST_CASE("a prediction has the errors that inputs have in its own data, not those of the fit") {
+  std::string plain = with(shaken, " = x + w", " = x");
+  plain = without(without(plain, "  disturbance w [N] ~ white(intensity = q)\n"), "  parameter q [N^2 s] ~ log_uniform(1e-9, 1)\n");
+  std::string const text =
+      plain +
+      "data noisy { file \"b.csv\"; time t [s]; input x = x [N] hold zero_order error normal(sd = 0.3); measure d = y [m]\n"
+      "  split test = rows 301..600 }\n"
+      "post = fit shaken to bench.train with map, seed = 1\n"
+      "exact = predict post on bench.test with draws(50), seed = 1\n"
+      "open = predict post on noisy.test with draws(50), seed = 1\n"
+      "step = predict post on noisy.test with draws(50), prediction = one_step, seed = 1\n";
+  CaseRun const run(text, {{"b.csv", sampled_oscillator(5, 0)}});
+  CHECK_FALSE(run.summary("exact").at("settings").contains("prediction"));
+  CHECK(run.summary("open").at("settings").at("prediction").get<std::string>().starts_with("free_run: "));
+  CHECK(run.summary("step").at("settings").at("prediction").get<std::string>().starts_with("one_step: "));
 }
 
 TEST_CASE("a simulation draws its disturbances") {

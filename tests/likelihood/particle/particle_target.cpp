@@ -1,11 +1,12 @@
 // What a target of particles promises beside its mean: the same bytes for any lanes and threads, numbers that can be kept and
 // moved, failures that are counted, what channels read of a disturbance, what a model remembers.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <numbers>
 
 #include "core/numeric/statistics.hpp"
 #include "likelihood/particle/cases.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -170,6 +171,23 @@ TEST_CASE("particles: the numbers of the likelihood are the same, kept or drawn 
   CHECK(values_of(target, theta) == values_of(*particle_target(model, experiments, 64), theta));
 }
 
+TEST_CASE("particles: a parameter vector can have numbers of its own, the same wherever it is asked for") {
+  Model const model = blown_pendulum();
+  std::vector<Experiment> const experiments = {blown_record(15, 0.2), blown_record(10, -0.1)};
+  auto const fixed = particle_target(model, experiments, 64);
+  auto const target = fixed->with_numbers(ParticleNumbers::of_parameters);
+  int const lanes = 400;
+  LaneArray theta = lanes_of(*target, pendulum_values, lanes);
+  for (int w = 0; w < lanes; ++w) theta(1, w) += 1e-12 * w;
+  std::vector<double> const values = values_of(*target, theta);
+  CHECK(values_of(*target, theta.view().columns(7, 3)) == std::vector<double>{values[7], values[8], values[9]});
+  // As different as independent estimates, and as far from one another along the lanes as anywhere.
+  double const independent = std::sqrt(sample_variance(estimates(*fixed, theta, {.seed = 51})));
+  CHECK(std::sqrt(sample_variance(values)) == doctest::Approx(independent).epsilon(0.2));
+  std::vector<double> const earlier(values.begin(), values.end() - 1), later(values.begin() + 1, values.end());
+  CHECK(sd_of_differences(earlier, later) == doctest::Approx(std::sqrt(2) * independent).epsilon(0.2));
+}
+
 TEST_CASE("particles: where none is left the likelihood is zero, and the failure is counted at its place") {
   Model model = parsed_model(R"(
 model growth {
@@ -244,7 +262,7 @@ model filter {
   covariance += variance.asDiagonal();
   Eigen::VectorXd const r = y - mean;
   double const exact =
-      -0.5 * (11 * std::log(2 * std::numbers::pi) + std::log(covariance.determinant()) + r.dot(covariance.inverse() * r));
+      -0.5 * (11 * std::log(2 * std::numbers::pi) + log_absolute_determinant(covariance) + r.dot(inverse(covariance) * r));
   SolverSettings solver;
   solver.substeps = 4;
   Bias const found = bias(*particle_target(model, {experiment}, 64, solver), {s}, exact, 4000, 31);

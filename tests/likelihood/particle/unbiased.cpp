@@ -1,10 +1,11 @@
 // Estimates of the likelihood by particles have the likelihood as their mean: against the dense joint normal of short linear
 // records, and against quadrature where the noise is not normal.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <numbers>
 
 #include "likelihood/particle/cases.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -12,11 +13,9 @@ using namespace sysid::testing;
 namespace {
 
 double dense_normal(Eigen::VectorXd const& y, Eigen::VectorXd const& mean, Eigen::MatrixXd const& covariance) {
-  Eigen::LLT<Eigen::MatrixXd> const factor(covariance);
-  Eigen::VectorXd const r = factor.matrixL().solve(y - mean);
-  double log_determinant = 0;
-  for (Eigen::Index i = 0; i < y.size(); ++i) log_determinant += 2 * std::log(factor.matrixLLT()(i, i));
-  return -0.5 * (static_cast<double>(y.size()) * std::log(2 * std::numbers::pi) + log_determinant + r.squaredNorm());
+  Eigen::VectorXd const r = y - mean;
+  return -0.5 * (static_cast<double>(y.size()) * std::log(2 * std::numbers::pi) + log_absolute_determinant(covariance) +
+                 r.dot(inverse(covariance) * r));
 }
 
 /// A linear system with random states, as all its samples together: x' = A x + b + L w from a normal start.

@@ -1,5 +1,5 @@
 // Step halving against the widths of modes.
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnostics/tolerance.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "likelihood/target.hpp"
 #include "result/draws.hpp"
 #include "result/finding.hpp"

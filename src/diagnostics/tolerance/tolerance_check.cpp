@@ -1,5 +1,5 @@
 // Draws weighted again by a finer solver, modes found again with it, and what is said of either.
-#include "diagnostics/tolerance_check.hpp"
+#include "diagnostics/tolerance/tolerance_check.hpp"
 
 #include <fmt/format.h>
 

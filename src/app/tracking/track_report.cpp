@@ -1,0 +1,209 @@
+// Of an endless record the page shows some hundred rows, ever farther apart.
+#include "app/tracking/track_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/session/made_from.hpp"
+#include "app/session/reporting.hpp"
+#include "core/text/number.hpp"
+#include "core/text/words.hpp"
+#include "model/filter_rule.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr std::size_t most_shown = 300;  // and up to twice as many: all that a figure shows
+
+std::string with_sd(double value, double sd) {
+  if (!(sd > 0) || !std::isfinite(value)) return significant(value, 4);
+  int const digits = std::clamp(value == 0 ? 2 : static_cast<int>(std::floor(std::log10(std::fabs(value) / sd))) + 3, 2, 9);
+  return fmt::format("{} ± {}", significant(value, digits), significant(sd, 2));
+}
+
+std::string changed(double before, double after) {
+  if (before == 0 || (before > 0) != (after > 0)) return "changed";
+  return fmt::format("{} by {} %", std::fabs(after) < std::fabs(before) ? "fell" : "rose",
+                     significant(100 * std::fabs(after / before - 1), 2));
+}
+
+ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
+  ReportTable table{
+      "changes",
+      fmt::format("Where the innovations show that a parameter has jumped: |z| above {:.2f}, by the union bound at most {:g} false "
+                  "alarms per row. After row: the last one before the change. Values with their sds.",
+                  gathered.threshold, rate),
+      {"parameter", "unit", "alarm at row", "t [s]", "after row", "before", "now", "z", "or"},
+      {}};
+  for (Alarm const& each : gathered.alarms) {
+    std::size_t const q = gathered.states + static_cast<std::size_t>(each.parameter);
+    double const scale = gathered.units.scales[q];
+    table.rows.push_back(
+        {gathered.units.names[q], gathered.units.units[q], std::to_string(each.row), significant(each.time, 7),
+         std::to_string(each.onset_row), with_sd(each.before / scale, each.before_sd / scale),
+         with_sd(each.after / scale, each.after_sd / scale), fmt::format("{:.1f}", each.statistic),
+         each.other < 0 || std::fabs(each.other_statistic) < std::fabs(each.statistic) - 2
+             ? std::string()
+             : fmt::format("{} (z = {:.1f})", gathered.units.names[gathered.states + static_cast<std::size_t>(each.other)],
+                           each.other_statistic)});
+  }
+  return table;
+}
+
+ReportTable parameter_table(GatheredTrack const& gathered) {
+  ReportTable table{"parameters",
+                    "At the first row that was tracked and at the last one, with their sds.",
+                    {"parameter", "unit", fmt::format("row {}", gathered.first_row), fmt::format("row {}", gathered.last_row)},
+                    {}};
+  for (std::size_t q = gathered.states; q < gathered.states + gathered.tracked; ++q)
+    table.rows.push_back({gathered.units.names[q], gathered.units.units[q], with_sd(gathered.first_mean[q], gathered.first_sd[q]),
+                          with_sd(gathered.last_mean[q], gathered.last_sd[q])});
+  return table;
+}
+
+/// The size of the innovations against what the filter expects; z: of the sum of their squares, which is chi-squared with one
+/// degree of freedom for each sample.
+struct InnovationSize {
+  double ratio, z;
+  /// The fit knows its noise to some per cent: less than a tenth is nothing.
+  bool odd() const { return std::fabs(z) > 4 && std::fabs(ratio - 1) > 0.1; }
+};
+
+InnovationSize innovation_size(GatheredTrack const& gathered) {
+  auto const n = static_cast<double>(gathered.samples);
+  if (n == 0) return {1, 0};
+  return {std::sqrt(gathered.squared / n), (gathered.squared - n) / std::sqrt(2 * n)};
+}
+
+ReportTable innovation_table(GatheredTrack const& gathered) {
+  InnovationSize const size = innovation_size(gathered);
+  return {"innovations",
+          "Their size against what the filter expects, 1 where the model and its noise are right. Where it is off by more than a "
+          "tenth, "
+          "sds and the rate of false alarms are not as stated: a disturbance is missing, or the noise has changed.",
+          {"samples", "rms / expected", "z", ""},
+          {{std::to_string(gathered.samples), significant(size.ratio, 4), fmt::format("{:.1f}", size.z),
+            !size.odd()      ? "as expected"
+            : size.ratio > 1 ? "larger than expected"
+                             : "smaller than expected"}}};
+}
+
+}  // namespace
+
+GatheredTrack::GatheredTrack(TrackedFit const& fit, TrackedUnits of)
+    : units(std::move(of)), states(fit.model().states.size()), tracked(fit.tracked.size()), mean(units.names.size()), sd(mean) {}
+
+void GatheredTrack::add(TrackedRow const& row) {
+  auto const declared = [&](std::vector<double> values) {
+    for (std::size_t q = 0; q < values.size(); ++q) values[q] /= units.scales[q];
+    return values;
+  };
+  if (rows == 0) first_row = row.row;
+  if (rows == 0 || row.settling) first_mean = declared(row.mean), first_sd = declared(row.sd);
+  last_row = row.row;
+  if (row.settling)
+    ++settling;
+  else
+    squared += row.squared, samples += row.samples;
+  if (row.alarm != nullptr) alarms.push_back(*row.alarm);
+  if (rows++ % stride == 0) {
+    time.push_back(row.time);
+    for (std::size_t q = 0; q < mean.size(); ++q) {
+      mean[q].push_back(row.mean[q] / units.scales[q]);
+      sd[q].push_back(row.sd[q] / units.scales[q]);
+    }
+    if (time.size() == 2 * most_shown) {
+      auto const halve = [](std::vector<double>& values) {
+        for (std::size_t i = 0; i < most_shown; ++i) values[i] = values[2 * i];
+        values.resize(most_shown);
+      };
+      halve(time);
+      for (std::size_t q = 0; q < mean.size(); ++q) halve(mean[q]), halve(sd[q]);
+      stride *= 2;
+    }
+  }
+  last_mean.resize(mean.size());
+  last_sd.resize(mean.size());
+  for (std::size_t q = 0; q < mean.size(); ++q) {
+    last_mean[q] = row.mean[q] / units.scales[q];
+    last_sd[q] = row.sd[q] / units.scales[q];
+  }
+}
+
+std::string GatheredTrack::alarm_line(Alarm const& alarm) const {
+  std::size_t const q = states + static_cast<std::size_t>(alarm.parameter);
+  double const scale = units.scales[q];
+  return fmt::format("row {} (t = {} s): `{}` {} after row {}, from {} to {}{} (z = {:.1f})", alarm.row, significant(alarm.time, 7),
+                     units.names[q], changed(alarm.before, alarm.after), alarm.onset_row,
+                     with_sd(alarm.before / scale, alarm.before_sd / scale), with_sd(alarm.after / scale, alarm.after_sd / scale),
+                     unit_after_number(units.units[q]), alarm.statistic);
+}
+
+Report track_head(Session const& session, TrackedFit const& fit) {
+  TrackOptions const& options = fit.options;
+  Report report = begin_report(session, *fit.task, fit.fit->model,
+                               fmt::format("track the parameters of {} along {}", fit.task->name,
+                                           options.record.empty()  ? fit.block(session).name
+                                           : options.record == "-" ? "standard input"
+                                                                   : options.record),
+                               0);
+  report.verb = "track";
+  std::string arguments = fmt::format(" {}", options.result.string());
+  if (!options.data.empty()) arguments += " --data " + options.data;
+  if (!options.record.empty()) arguments += " --record " + options.record;
+  if (options.first_row > 1 || options.last_row > 0)
+    arguments += fmt::format(" --rows {}..{}", options.first_row, options.last_row > 0 ? std::to_string(options.last_row) : "");
+  if (options.at_rest) arguments += " --at-rest";
+  report.command = fmt::format("sysid track {}{}", session.source.name(), arguments);
+  std::vector<std::string> names;
+  for (TrackedParameter const& each : fit.tracked)
+    names.push_back(fit.model().parameters[static_cast<std::size_t>(each.parameter)].name);
+  report.settings = {{"parameters", fmt::format("{}", fmt::join(names, ", "))},
+                     {"fixed", fmt::format("{}", fmt::join(fit.fixed, ", "))},
+                     {"drift", options.drift.time > 0 ? fmt::format("{} in {} s", options.drift.relative, options.drift.time)
+                                                      : fmt::format("{} in 1000 rows", options.drift.relative)},
+                     {"filter", std::string(filter_name(options.filter))},
+                     {"false_alarms", options.false_alarms},
+                     {"window", static_cast<std::int64_t>(options.window)}};
+  if (fit.model().integrated()) report.settings.emplace_back("solver", fit.solver.text());
+  return report;
+}
+
+void fill_report(Session const& session, TrackedFit const& fit, GatheredTrack const& gathered, Report& report) {
+  add_source(fit.options.result, report);
+  DataInfo data;
+  data.name = fit.block(session).name;
+  data.file = gathered.file;
+  data.sha256 = gathered.digest;
+  data.rows = gathered.last_row;
+  data.scored = static_cast<int>(gathered.rows);
+  data.scored_rows = fmt::format("{}..{}", gathered.first_row, gathered.last_row);
+  report.data.push_back(data);
+  Prediction along;
+  along.experiment = fit.block(session).name;
+  along.time = gathered.time;
+  if (gathered.time_unit) along.time_unit = gathered.time_unit->text, along.time_scale = gathered.time_unit->scale;
+  along.scored.assign(along.time.size(), 1);
+  // States move too fast for rows so far apart.
+  for (std::size_t q = gathered.states; q < gathered.mean.size(); ++q) {
+    PredictedQuantity quantity{gathered.units.names[q], gathered.units.units[q], {}, {}, {}, {}};
+    quantity.response.mean = gathered.mean[q];
+    quantity.response.sd = gathered.sd[q];
+    for (std::size_t i = 0; i < along.time.size(); ++i) {
+      quantity.response.lower.push_back(gathered.mean[q][i] - 1.96 * gathered.sd[q][i]);
+      quantity.response.upper.push_back(gathered.mean[q][i] + 1.96 * gathered.sd[q][i]);
+    }
+    along.quantities.push_back(std::move(quantity));
+  }
+  report.predictions.push_back(std::move(along));
+  report.tables.push_back(parameter_table(gathered));
+  if (!gathered.alarms.empty()) report.tables.push_back(alarm_table(gathered, fit.options.false_alarms));
+  report.tables.push_back(innovation_table(gathered));
+  report.verdict = gathered.alarms.empty()
+                       ? fmt::format("no change found in {} rows", gathered.rows)
+                       : fmt::format("{} found in {} rows", counted(gathered.alarms.size(), "change"), gathered.rows);
+  if (innovation_size(gathered).odd()) report.verdict += "; the innovations are not of the size that the fit expects";
+}
+
+}  // namespace sysid

@@ -1,0 +1,35 @@
+// What is kept of the rows of a track for its page: some of them, all alarms, sums.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/tracking/track_table.hpp"
+
+namespace sysid {
+
+struct GatheredTrack {
+  GatheredTrack(TrackedFit const& fit, TrackedUnits units);
+  void add(TrackedRow const& row);
+  /// "row 3001 (t = 30.0 s): `k` fell from 1.000 ± 0.004 to 0.902 ± 0.009 N/m after row 2950 (z = -11.2)"
+  std::string alarm_line(Alarm const& alarm) const;
+
+  TrackedUnits units;
+  std::size_t states, tracked;
+  std::string file, digest;
+  std::optional<Unit> time_unit;
+  double threshold = 0;
+  std::int64_t rows = 0, samples = 0, settling = 0;
+  int first_row = 0, last_row = 0;
+  double squared = 0;  // of the rows that did not settle
+  std::vector<Alarm> alarms;
+  std::vector<double> first_mean, first_sd, last_mean, last_sd;  // [states + tracked], declared units
+  // Every `stride`th row.
+  std::vector<double> time;
+  std::vector<std::vector<double>> mean, sd;  // [states + tracked][rows]
+  std::int64_t stride = 1;
+};
+
+Report track_head(Session const& session, TrackedFit const& fit);
+void fill_report(Session const& session, TrackedFit const& fit, GatheredTrack const& gathered, Report& report);
+
+}  // namespace sysid

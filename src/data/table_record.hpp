@@ -1,0 +1,13 @@
+// A record from a table at hand, as rows that have just arrived are.
+#pragma once
+#include <optional>
+
+#include "data/record.hpp"
+#include "data/table.hpp"
+
+namespace sysid {
+
+/// As `load` does from a file, but of any number of rows.
+std::optional<Record> read_record(RecordRequest const& request, Table const& table, Diagnostics& diagnostics);
+
+}  // namespace sysid

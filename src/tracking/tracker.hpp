@@ -1,0 +1,122 @@
+// States and parameters along rows as they arrive: the filter of a TrackedProgram, its beginning, and alarms where a parameter has
+// jumped.
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "data/experiment.hpp"
+#include "simulate/simulator.hpp"
+#include "tracking/change_detector.hpp"
+#include "tracking/tracked_program.hpp"
+
+namespace sysid {
+
+/// Of the parameters on their unbounded scales.
+struct TrackedPrior {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+
+/// Of the states at the first row.
+struct StatePrior {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+  /// It is a guess: the first rows tell of the states alone, what they say of the parameters is left aside.
+  bool settles = false;
+};
+
+struct TrackingOptions {
+  std::vector<double> intensities;  // of the random walks [tracked]: of differential equations per second, of maps per row
+  std::vector<double> scales;       // [tracked] a large change on the unbounded scale
+  double false_alarms = 1e-5;       // most of them per row
+  int window = 2048;                // rows looked back for a jump
+  int settling_rows = 50;
+};
+
+/// A jump of a parameter, in SI; rows as of the experiment's file.
+struct Alarm {
+  int parameter = 0;  // of the tracked ones
+  int row = 0, onset_row = 0;
+  double time = 0, onset_time = 0;
+  double statistic = 0;  // z
+  double before = 0, before_sd = 0, after = 0, after_sd = 0;
+  int other = -1;  // a parameter that explains it nearly as well
+  double other_statistic = 0;
+};
+
+/// Estimates once the samples of a row are known, SI. Valid during the call it is handed to.
+struct TrackedRow {
+  int row = 0;
+  double time = 0;
+  bool settling = false;
+  std::vector<double> mean, sd;  // [states + tracked]
+  std::size_t tracked = 0;
+  std::vector<double> innovation, expected;  // per channel, and its sd; NaN: no sample
+  double squared = 0;                        // sum of (innovation/sd)^2
+  int samples = 0;
+  Alarm const* alarm = nullptr;
+};
+
+class Tracker {
+ public:
+  using Sink = std::function<void(TrackedRow const&)>;
+
+  Tracker(TrackedProgram program, SolverSettings solver, ExecutionOptions execution, TrackedPrior parameters, StatePrior states,
+          TrackingOptions options);
+
+  /// Rows from index `from` of the experiment on, in order; each goes to `sink`. From the second call on index from - 1 is the row
+  /// that came last. UserError where the filter has no finite values.
+  void take(Experiment const& experiment, int from, Sink const& sink);
+
+  ChangeDetector const& detector() const { return detector_; }
+
+ private:
+  int take_some(Experiment const& experiment, int from, int to, Sink const& sink);
+  bool read(Experiment const& experiment, int index, double const* records, Sink const& sink);
+  void report(Experiment const& experiment, int index, double const* records, TrackedRow& row);
+  void settle();
+  Alarm respond(Experiment const& experiment, int index, DetectedJump const& jump);
+  double& moment(int i, int j) { return moments_[static_cast<std::size_t>(program_.place(i, j))]; }
+  double variance(int i) const { return moments_[static_cast<std::size_t>(program_.place(i, i))]; }
+  /// SI value and sd of a tracked parameter whose coordinate has this mean and variance; `others` are where they are now.
+  std::pair<double, double> value_of(int parameter, double mean, double variance) const;
+  void values_now(std::vector<double>& mean, std::vector<double>& sd);
+
+  TrackedProgram program_;
+  SolverSettings solver_;
+  ExecutionOptions execution_;
+  TrackedPrior prior_;
+  TrackingOptions options_;
+  ChangeDetector detector_;
+  std::vector<double> moments_;
+  int rows_ = 0;                               // taken so far
+  int settling_ = 0;                           // rows left
+  std::vector<std::pair<int, double>> times_;  // of the rows that a jump may have come after: row of the file, time
+  TrackedRow row_;
+  Alarm alarm_;
+  std::vector<double> scratch_;
+};
+
+/// Rows [begin, end) of an experiment, with the rows before them as what a map looks back to, at most `lags`.
+Experiment slice(Experiment const& experiment, int begin, int end, int lags);
+
+/// Means and covariances as the program has them.
+std::vector<double> moments_of(TrackedProgram const& program, StatePrior const& states, TrackedPrior const& parameters);
+
+/// A state somewhere along a record: the mean and four times the covariance of what a simulation with the mean parameters passes
+/// through. first: the states at its beginning. The rows are filtered where `corrects`.
+StatePrior states_along(TrackedProgram const& program, SolverSettings const& solver, ExecutionOptions const& execution,
+                        Experiment const& experiment, StatePrior const& first, TrackedPrior const& parameters, bool corrects);
+
+/// A solver with fixed steps, fine enough that halving them moves the innovations along the experiment's first rows by less than a
+/// hundredth of their sds; UserError where 64 steps are not enough.
+SolverSettings tracking_solver(TrackedProgram const& program, SolverSettings solver, ExecutionOptions const& execution,
+                               Experiment const& experiment, StatePrior const& first, TrackedPrior const& parameters);
+
+/// The method that tracking integrates with, where the solver of a fit is `solver`: itself if its steps are fixed and it is no
+/// exact one, which needs equations that are linear in the states and the parameters; else rk4.
+SolverSettings steps_for_tracking(SolverSettings const& solver);
+
+}  // namespace sysid

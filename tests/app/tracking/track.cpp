@@ -1,0 +1,216 @@
+// `track` from the text to its folder: the table, alarms, rows as they are appended, what is refused.
+#include "app/tracking/track.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/running.hpp"
+#include "app/tracking/followed_rows.hpp"
+#include "core/numeric/random.hpp"
+
+using namespace sysid;
+
+namespace {
+
+std::string const oscillator = R"(model oscillator {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter m [kg] = 1
+  parameter c [N s/m] ~ log_uniform(0.1, 10)
+  parameter k [N/m] ~ log_uniform(10, 1000)
+  parameter sigma [mm] ~ log_uniform(0.1, 100)
+  m*y'' + c*y' + k*y = x
+  observe displacement ~ normal(y, sd = sigma)
+}
+data beam {
+  file    "beam.csv"
+  time    t
+  input   x = force [N] hold zero_order
+  measure displacement = d [mm]
+  split   train = rows 1..500, later = rows 501..1500
+}
+posterior = fit oscillator to beam.train with mh(samples = 2000, burn_in = 1000, thin = 2, chains = 2), seed = 3, solver = rk4
+)";
+
+/// Rows of beam.csv; the stiffness falls by a tenth after row `change`.
+std::vector<std::string> beam_rows(int rows, int change) {
+  Stream stream(StreamKey{5, Purpose::test, 1, 0});
+  std::vector<std::string> lines;
+  double y = 0, v = 0;
+  double const h = 0.03;
+  for (int i = 0; i < rows; ++i) {
+    double const x = 9 * stream.normal(), measured = y + 0.0055 * stream.normal();
+    lines.push_back(fmt::format("{:.2f},{:.6f},{}\n", i * h, x, i == 700 ? "" : fmt::format("{:.5f}", 1000 * measured)));
+    double const k = i + 1 >= change ? 90 : 100;
+    for (int s = 0; s < 20; ++s) {
+      double const half = v + h / 40 * (x - v - k * y);
+      y += h / 20 * half;
+      v = half + h / 40 * (x - half - k * y);
+    }
+  }
+  return lines;
+}
+
+struct TrackResult {
+  int exit = 0;
+  std::string out, notices;
+};
+
+struct Beam {
+  TemporaryFolder folder;
+  std::vector<std::string> rows = beam_rows(1500, 1000);
+
+  explicit Beam(std::string const& text = oscillator) : text_(text) {
+    write(1500);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    run_text(folder.path() / "beam.sysid", text_, options);
+  }
+  void write(int count) const {
+    std::string csv = "t,force,d\n";
+    for (int i = 0; i < count; ++i) csv += rows[static_cast<std::size_t>(i)];
+    write_file(folder.path() / "beam.csv", csv);
+  }
+  TrackOptions options() const {
+    TrackOptions track;
+    track.result = folder.path() / "results/posterior";
+    return track;
+  }
+  TrackResult run(TrackOptions const& options, std::string const& output = "tracked") const {
+    RunOptions run;
+    run.output = folder.path() / output;
+    run.figures = false;
+    Source source((folder.path() / "beam.sysid").string(), text_);
+    Diagnostics diagnostics;
+    auto const file = load(source, diagnostics);
+    REQUIRE(file);
+    SilentProgress silent;
+    std::ostringstream out, notices;
+    Session session(source, *file, run, silent, out, notices);
+    ExitCode const code = track(session, options);
+    return {static_cast<int>(code), out.str(), notices.str()};
+  }
+  std::string refusal(TrackOptions const& options) const {
+    try {
+      run(options, "refused");
+    } catch (UserError const& error) {
+      return error.diagnostic().message;
+    }
+    return "";
+  }
+  std::vector<std::string> table(std::string const& output = "tracked") const {
+    std::istringstream text(read_file(folder.path() / output / "posterior/track.csv"));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(text, line);)
+      if (!line.starts_with('#')) lines.push_back(line);
+    return lines;
+  }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
+TEST_CASE("a track has a line for every row, an alarm where the stiffness has fallen, and a page") {
+  Beam const beam;
+  TrackOptions options = beam.options();
+  options.first_row = 501;
+  TrackResult const result = beam.run(options);
+  CHECK(result.exit == 1);
+  CHECK(result.notices.find("`k` fell by ") != std::string::npos);
+  CHECK(result.out.find("1 change found in 1000 rows") != std::string::npos);
+  std::vector<std::string> const table = beam.table();
+  REQUIRE(table.size() == 1001);
+  CHECK(table.front() ==
+        "row,t,y_mean,y_sd,y'_mean,y'_sd,c_mean,c_sd,k_mean,k_sd,displacement_innovation,displacement_expected_sd,"
+        "squared,samples,alarm");
+  CHECK(table[1].starts_with("501,15,"));
+  CHECK(table[201].find(",NaN,NaN,0,0,") != std::string::npos);  // row 701 has no sample
+  int alarms = 0;
+  for (std::string const& line : table) alarms += line.ends_with(",k");
+  CHECK(alarms == 1);
+  auto const summary = nlohmann::json::parse(read_file(beam.folder.path() / "tracked/posterior/summary.json"));
+  CHECK(summary.at("verb") == "track");
+  CHECK(summary.at("settings").at("parameters") == "c, k");
+  CHECK(summary.at("settings").at("fixed") == "sigma");
+  CHECK(std::filesystem::exists(beam.folder.path() / "tracked/posterior/report.html"));
+  CHECK(!std::filesystem::exists(beam.folder.path() / "tracked/posterior/track.csv.partial"));
+}
+
+TEST_CASE("rows that are appended one by one give the table of the whole record, line by line") {
+  Beam const beam;
+  TrackOptions options = beam.options();
+  options.first_row = 501;
+  options.last_row = 800;
+  beam.run(options);
+  beam.write(503);
+  options.follow = true;
+  TrackResult followed;
+  std::thread tracking([&] { followed = beam.run(options, "followed"); });
+  std::ofstream file(beam.folder.path() / "beam.csv", std::ios::app);
+  for (int i = 503; i < 800; ++i) {
+    std::string const& line = beam.rows[static_cast<std::size_t>(i)];
+    file << line.substr(0, 5) << std::flush;  // half of a line is no row
+    if (i % 30 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    file << line.substr(5) << std::flush;
+  }
+  tracking.join();
+  CHECK(followed.exit == 0);
+  CHECK(beam.table("followed") == beam.table());
+}
+
+TEST_CASE("an interruption ends a track that follows, with its results; one of a whole record leaves nothing") {
+  Beam const beam;
+  TrackOptions options = beam.options();
+  options.follow = true;
+  TrackResult followed;
+  std::thread tracking([&] { followed = beam.run(options); });
+  auto const path = beam.folder.path() / "tracked/posterior/track.csv";
+  for (int i = 0; i < 1000 && !(std::filesystem::exists(path) && beam.table().size() > 1500); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  request_interrupt();
+  tracking.join();
+  CHECK(followed.exit == 1);
+  CHECK(beam.table().size() == 1501);
+  CHECK(std::filesystem::exists(beam.folder.path() / "tracked/posterior/summary.json"));
+  options.follow = false;
+  TrackResult const stopped = beam.run(options, "stopped");
+  clear_interrupt();
+  CHECK(stopped.exit == 75);
+  CHECK(!std::filesystem::exists(beam.folder.path() / "stopped/posterior/track.csv"));
+}
+
+TEST_CASE("what cannot be tracked is refused, with the reason") {
+  Beam const beam(oscillator + "best = fit oscillator to beam.train with map, seed = 1, solver = rk4\n");
+  TrackOptions options = beam.options();
+  options.parameters = {"sigma"};
+  CHECK(beam.refusal(options) == "`sigma` is no parameter that can be tracked");
+  options.parameters.clear();
+  options.data = "bench";
+  CHECK(beam.refusal(options) == "the fit has no data `bench`");
+  options.data.clear();
+  options.result = beam.folder.path() / "results/best";
+  CHECK(beam.refusal(options).find("holds an optimum") != std::string::npos);
+  options = beam.options();
+  options.first_row = 2000;
+  CHECK(beam.refusal(options).find("1500") != std::string::npos);
+}
+
+TEST_CASE("lines of a followed file come whole, blank ones and the header apart") {
+  TemporaryFolder const folder;
+  auto const path = folder.path() / "rows.csv";
+  write_file(path, "# made\nsep=;\na;b\r\n1;2\n\n3;4\n5;");
+  FollowedRows rows(path, false);
+  CHECK(rows.next(1) == std::vector<std::string>{"1;2"});
+  CHECK(rows.next(10) == std::vector<std::string>{"3;4"});
+  CHECK(rows.next(10) == std::vector<std::string>{"5;"});
+  CHECK(rows.next(10).empty());
+  CHECK(rows.header() == "# made\nsep=;\na;b\n");
+}
