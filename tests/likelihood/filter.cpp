@@ -45,6 +45,49 @@ TEST_CASE("the likelihood of a linear model with a disturbance is the joint norm
   }
 }
 
+// Near a known start the covariances at the stages of a Runge-Kutta step have no Cholesky factor.
+TEST_CASE("sigma points of a nearly linear model under a force with memory are the extended filter, from a known start on") {
+  std::string const text = R"(
+model gusts {
+  input x [N], z [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter m [kg] ~ log_uniform(0.1, 10)
+  parameter c [N s/m] ~ log_uniform(0.1, 100)
+  parameter k [N/m] ~ log_uniform(10, 1000)
+  parameter s [N] ~ log_uniform(1e-3, 10)
+  parameter sigma [m] ~ log_uniform(1e-5, 1)
+  disturbance w [N] ~ ornstein_uhlenbeck(sd = s, time = 0.1 [s])
+  m*y'' + c*y' + k*y + 1000 [N/m^3]*y^3 = x + z + w
+  observe displacement ~ normal(y, sd = sigma)
+  observe speed [m/s] ~ normal(y', sd = 0.03)
+}
+)";
+  Model const model = filtered_file(text).models.front();
+  FilterRecord const of = record(60, 2, false);
+  std::vector<double> const values = {1.3, 4, 130, 0.2, 0.004};
+  ModelTarget const extended(compile(model, false, "rk4"), of.experiment, filter_options("rk4", 1));
+  ModelTarget const unscented(compile(model, false, "rk4", FilterRule::unscented), of.experiment, filter_options("rk4", 1));
+  double const expected = value_at(extended, values);
+  REQUIRE(std::isfinite(expected));
+  CHECK(value_at(unscented, values) == doctest::Approx(expected).epsilon(1e-3));
+}
+
+TEST_CASE("a disturbance that is held from sample to sample knows their interval, whatever the solver") {
+  Model model = with_disturbance(filtered_file(filtered_text).models.front(), "w", "q");
+  model.disturbances.front().held = true;
+  std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
+  FilterRecord const of = record(60, 2, false);
+  ModelTarget const fixed(compile(model, false, "rk4"), of.experiment, filter_options("rk4", 40));
+  double const expected = value_at(fixed, values);
+  for (std::string const method : {"dopri5", "cvode"}) {
+    TargetOptions options = filter_options(method, 1);
+    options.solver.relative = 1e-9;
+    ModelTarget const target(compile(model, false, method), of.experiment, options);
+    CHECK(value_at(target, values) == doctest::Approx(expected).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("residuals and densities of samples are those of the filter") {
   std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
   Model const model = with_disturbance(filtered_file(filtered_text).models.front(), "w", "q");

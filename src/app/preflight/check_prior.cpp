@@ -136,6 +136,7 @@ bool follows_states(Model const& model, Channel const& channel) {
 // Nothing moves the model at any draw: no other check has a response to look at.
 void check_motion(Preflight const& preflight, PriorPage::Channel const& line, Channel const& channel) {
   if (line.high > 0 || !follows_states(preflight.model(), channel)) return;
+  if (preflight.model().filtered()) return;  // disturbances and random starts move it; draws of the prior have their means
   std::vector<std::string> still;
   for (std::size_t i = 0; i < preflight.model().inputs.size(); ++i)
     if (std::all_of(preflight.experiments.begin(), preflight.experiments.end(), [&](Experiment const& each) {
