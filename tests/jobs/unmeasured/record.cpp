@@ -3,8 +3,8 @@
 //
 // duffing: models/duffing from rest, 500 samples at 1 kHz, force normal with sd 10 N and held for a sample, displacement with 1 %
 //   normal noise. An unmeasured force with an rms of LEVEL times that of the measured one in means over a sample: redrawn at each
-//   substep, sd larger by the root of their number, which is as white as the integration can have it; or, with HOLD, once a sample. The
-//   force is recorded with normal errors of INPUT_ERROR times its rms. Runge-Kutta's fourth order, 20 substeps a sample.
+//   substep, sd larger by the root of their number, which is as white as the integration can have it; or, with HOLD, once a sample.
+//   The force is recorded with normal errors of INPUT_ERROR times its rms. Runge-Kutta's fourth order, 20 substeps a sample.
 // chain: five masses between springs and dashpots, the first one tied to the ground, white forces on all, none recorded; SAMPLES
 //   velocities of all masses at 50 Hz once the start is forgotten, with normal noise of NOISE times the rms of each. 40 substeps.
 #include <array>
@@ -67,10 +67,11 @@ void duffing(double level, double input_error, bool held) {
     }
   }
   double const sigma = 0.01 * rms(displacement);
-  std::printf("# m = %g\n# c = %g\n# k = %g\n# k3 = %g\n# s = %.17g\n# sigma = %.17g\nt,x,displacement\n", m, c, k, k3, level * force_sd,
-              sigma);
+  std::printf("# m = %g\n# c = %g\n# k = %g\n# k3 = %g\n# s = %.17g\n# sigma = %.17g\nt,x,displacement\n", m, c, k, k3,
+              level * force_sd, sigma);
   for (int n = 0; n < samples; ++n)
-    std::printf("%.17g,%.17g,%.17g\n", n * interval, force[n] + input_error * force_sd * normal(), displacement[n] + sigma * normal());
+    std::printf("%.17g,%.17g,%.17g\n", n * interval, force[n] + input_error * force_sd * normal(),
+                displacement[n] + sigma * normal());
 }
 
 void chain(int samples, double noise) {
