@@ -10,8 +10,8 @@ namespace sysid {
 namespace {
 
 constexpr int spacing = 8, per_octave = 8;
-constexpr double clear_lead = 9;  // of z^2: twice the logarithm of a likelihood ratio
-constexpr int most_waited = 64;   // rows
+constexpr double clear_lead = 20;  // of z^2: twice the logarithm of a likelihood ratio
+constexpr int most_waited = 100;   // rows
 
 /// Whether a row is still kept at an age: the older, the wider apart.
 bool is_kept(int row, int age, int window) {

@@ -32,7 +32,7 @@ struct DetectedJump {
 /// that of a jump at least 7/8 of the samples after it count. An alarm: |z| above the quantile of `rate`/(2 M) of the normal,
 /// where M is the most pairs of a row and a parameter there can be: by the union bound the probability of an alarm at a row without
 /// a jump is at most `rate`. The first rows after a jump may be explained by several parameters: an alarm waits until the largest
-/// z^2 leads that of any other parameter by 9, a likelihood ratio of 90, but no longer than 64 rows.
+/// z^2 leads that of any other parameter by 20, a likelihood ratio of e^10, but no longer than 100 rows.
 class ChangeDetector {
  public:
   /// states: before the `parameters` among the entries. window: the oldest row looked back for.

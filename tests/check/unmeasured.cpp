@@ -171,6 +171,13 @@ TEST_CASE("a prediction has the errors of its own data, and samples correct its 
   std::string const white = "disturbance w [N] ~ white(intensity = 4)\n";
   for (char const* rule : {"one_step", "free_run", "as_written"})
     CHECK(messages(with_tasks(white, fitted + "p = predict f on exact with prediction = " + rule)).empty());
+  // Beside a model that samples correct, one runs freely that they do not.
+  std::string mixed = with_tasks(white, "");
+  std::string quiet = with_tasks("", "");
+  quiet = quiet.substr(0, quiet.find(noisy_data));
+  quiet.replace(quiet.find("model m"), 7, "model n");
+  mixed += quiet + "f = fit m to exact with mh\ng = fit n to exact with mh\np = predict f, g on exact with prediction = one_step\n";
+  CHECK(messages(mixed).empty());
   CHECK(messages(with_tasks("", fitted + "p = predict f on bench, exact")).find("E3317") != std::string::npos);
 }
 

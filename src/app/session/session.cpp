@@ -28,12 +28,15 @@ void Session::find_results_in(std::filesystem::path folder, Task const& task) {
 
 std::shared_ptr<CompiledModel const> Session::compiled(FitTask const& fit, bool free_start, std::string const& method,
                                                        PredictionRule prediction) {
-  // Before each sample the states are what the filter makes of those before it: lags stay as they were fitted.
-  bool const random = file.models[static_cast<std::size_t>(fit.model)].filtered() || !fit.input_errors.empty();
-  if (random && prediction == PredictionRule::one_step) prediction = fit.prediction;
+  // Random states are before each sample what the filter makes of those before it: lags stay as they were fitted. In continuous
+  // time there are none.
+  Model const& written = file.models[static_cast<std::size_t>(fit.model)];
+  bool const random = written.filtered() || !fit.input_errors.empty();
+  bool const by_equations = written.dynamics == Dynamics::discrete && !random;
+  if (prediction == PredictionRule::one_step && !by_equations) prediction = fit.prediction;
   auto& place = compiled_[{fit.model, free_start, method, prediction, fit.filter, fit.input_errors}];
   if (!place) {
-    auto ruled = with_prediction(file.models[static_cast<std::size_t>(fit.model)], prediction);
+    auto ruled = with_prediction(written, prediction);
     if (!ruled) throw InternalError("a prediction rule was let through that the model has no data for");
     auto whole = with_input_errors(std::move(*ruled), fit.input_errors);
     if (!std::holds_alternative<Model>(whole))

@@ -177,6 +177,8 @@ void TaskChecker::prediction(ast::Option const& option, std::span<int const> mod
   for (int const index : models) {
     if (std::find(corrected.begin(), corrected.end(), index) != corrected.end()) continue;
     Model const& model = file_.models[static_cast<std::size_t>(index)];
+    // Beside models that are corrected, one that is not runs freely.
+    if (model.dynamics != Dynamics::discrete && !corrected.empty()) continue;
     if (model.dynamics != Dynamics::discrete)
       return diagnostics_.add(errors::prediction_without_lags(option.span, model.name, model.filtered()));
     if (!with_prediction(model, rule)) return diagnostics_.add(errors::nothing_measured_to_predict_from(option.span, model.name));
