@@ -267,8 +267,10 @@ TEST_CASE("mistakes planted in the shipped models are refused where they stand")
       fmt::print("{:24} planted {:5} refused {:5} statement {:5} token {:5} alone {:5}\n", kind, tally.planted, tally.refused,
                  tally.statement, tally.token, tally.alone);
     CAPTURE(kind);
-    // A sign can go without a trace: `[1m]` is read as `[1 m]`, a sum of squares without a plus as another name. Nothing else can.
-    CHECK(tally.refused >= (kind == "deleted sign" ? 0.95 : 1.0) * tally.planted);
+    // A sign can go without a trace: `[1m]` is read as `[1 m]`, a sum of squares without a plus as another name. So can the name of a
+    // channel of a model that is only simulated. Nothing else can.
+    double const least = kind == "deleted sign" ? 0.95 : kind == "misspelt declaration" ? 0.998 : 1.0;
+    CHECK(tally.refused >= least * tally.planted);
     CHECK(tally.statement >= 0.99 * tally.refused);
     CHECK(tally.token >= 0.7 * tally.refused);
     CHECK(tally.alone >= 0.7 * tally.refused);
