@@ -8,6 +8,7 @@
 
 #include "check/checked/task_kinds.hpp"
 #include "check/message/errors.hpp"
+#include "check/message/errors_disturbances.hpp"
 #include "core/setting/table.hpp"
 
 namespace sysid {
@@ -110,6 +111,11 @@ PredictTask TaskChecker::predict() {
     else if (option.input)
       options_.unknown(option, task_option_names("predict"));
   }
+  if (task.redraw_each_step && !corrected.empty())
+    for (ast::Option const& option : tree_.options)
+      if (key_of(option) == "redraw")
+        diagnostics_.add(errors::disturbance_beside(option.span, {"a prediction of random states"}, errors::named("redraw"),
+                                                    "remove the option: each trajectory then has one draw of the parameters"));
   for (int const m : models) {
     Model const& model = file_.models[static_cast<std::size_t>(m)];
     suit(task.start, model, tree_.options);
