@@ -39,7 +39,7 @@ Output::Output(std::shared_ptr<CompiledModel const> compiled, std::shared_ptr<Pa
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     Experiment const& experiment = experiments[e];
     Schedule schedule(*compiled_->trajectory, with_corrections(model, experiment), solver);
-    Part part{Simulator(compiled_->trajectory, std::move(schedule), options, pool), nullptr, 0, places_.size(), 0};
+    Part part{Simulator(compiled_->trajectory, std::move(schedule), options, pool), nullptr, 0, places_.size(), 0, false};
     if (start_rows > 0) part.start = std::make_shared<StartState const>(compiled_, experiment, start_rows, solver, options, pool);
     for (std::size_t c = 0; c < model.channels.size(); ++c)
       for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
@@ -48,6 +48,7 @@ Output::Output(std::shared_ptr<CompiledModel const> compiled, std::shared_ptr<Pa
         part.samples = std::max(part.samples, static_cast<int>(i) + 1);
       }
     part.count = places_.size() - part.first;
+    part.predicts = model.filtered() && !experiment.corrects.empty();
     parts_.push_back(std::move(part));
   }
 }
@@ -93,6 +94,21 @@ void Output::centres(ConstLanes points, Lanes out) const {
         int const row = places_[r].sample * records_per_sample() + centre_row_[static_cast<std::size_t>(places_[r].channel)];
         for (int w = 0; w < width; ++w) out(static_cast<int>(r), first + w) = all(row, w);
       }
+      if (part.predicts) add_spread(all, part, first, out);
+    }
+  }
+}
+
+void Output::add_spread(ConstLanes records, Part const& part, int first, Lanes out) const {
+  for (std::size_t k = 0; k < compiled_->records.size(); ++k) {
+    CompiledModel::Record const& spread = compiled_->records[k];
+    if (spread.kind != CompiledModel::Record::Kind::spread) continue;
+    for (int w = 0; w < records.width(); ++w) {
+      Stream stream({0, Purpose::prediction, static_cast<std::uint64_t>(first + w), k});
+      for (std::size_t r = part.first; r < part.first + part.count; ++r)
+        if (centre_row_[static_cast<std::size_t>(places_[r].channel)] == spread.index)
+          out(static_cast<int>(r), first + w) +=
+              stream.normal() * records(places_[r].sample * records_per_sample() + static_cast<int>(k), w);
     }
   }
 }

@@ -30,10 +30,12 @@ json check(json const& summary, std::string const& name) {
 /// Every row of the table, in its order.
 void check_rows(json const& summary) {
   json const& checks = summary.at("checks");
-  REQUIRE(checks.size() == fit_check_rows().size());
+  std::vector<FitCheckRow> rows(fit_check_rows().begin(), fit_check_rows().end());
+  std::erase_if(rows, [](FitCheckRow const& row) { return row.of_filters; });
+  REQUIRE(checks.size() == rows.size());
   for (std::size_t k = 0; k < checks.size(); ++k) {
     CAPTURE(checks[k].dump());
-    CHECK(checks[k].at("name") == std::string(fit_check_rows()[k].name));
+    CHECK(checks[k].at("name") == std::string(rows[k].name));
     bool const ran = checks[k].at("ran").get<bool>();
     CHECK(checks[k].contains("reason") == !ran);
     if (!ran) CHECK_FALSE(checks[k].at("reason").get<std::string>().empty());
