@@ -269,7 +269,7 @@ TEST_CASE("mistakes planted in the shipped models are refused where they stand")
     CAPTURE(kind);
     // A sign can go without a trace: `[1m]` is read as `[1 m]`, a sum of squares without a plus as another name. So can the name of a
     // channel of a model that is only simulated. Nothing else can.
-    double const least = kind == "deleted sign" ? 0.95 : kind == "misspelt declaration" ? 0.998 : 1.0;
+    double const least = kind == "deleted sign" ? 0.95 : kind == "misspelt declaration" ? 0.995 : 1.0;
     CHECK(tally.refused >= least * tally.planted);
     CHECK(tally.statement >= 0.99 * tally.refused);
     CHECK(tally.token >= 0.7 * tally.refused);
