@@ -6,15 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "program/moment_passage.hpp"
 #include "program/simulation_program.hpp"
 
 namespace sysid {
-
-/// How moments pass through what is not linear in the states.
-enum class MomentRule {
-  linearised,    // the extended Kalman filter: slopes at the mean
-  sigma_points,  // the unscented Kalman filter: values at points that have the mean and covariance of the states
-};
 
 /// What is random in the states of a source: initial values, and white noise, leaves disturbance(i), that derivatives (the next
 /// values of a map) read linearly.
@@ -67,9 +62,8 @@ struct Moments {
 /// or, from sigma points, m' = E f(x), P' = cov(x, f) + cov(f, x) + G Q G'            Sarkka 2007, eq. 34 and 35
 /// and of a map m <- f(m), P <- A P A' + G Q G'. A sample y with mean h and noise variance R corrects by, with H = dh/dx,
 ///   S = H P H' + R,  m <- m + P H' (y - h)/S,  P <- P - P H' H P/S
-/// channel after channel, which is the same as all at once because their noises are independent. Sigma points are m +- sqrt(c)
-/// times the columns of the Cholesky factor of P, c = max(n, 3) of n random states, weights 1/(2 c), and 1 - n/c at m (Julier &
-/// Uhlmann 2004, with no negative weight).
+/// channel after channel, which is the same as all at once because their noises are independent. A gain that reads states adds to
+/// f_i half of sum_k q (dG_i/dx_k) G_k (Stratonovich); an R that does is taken at the mean.
 ///
 /// With `since`, C = cov(x, x at the last sample) and u = cov(x, integral of w) beside them, C = P and u = 0 after a sample:
 ///   C' = A C,  u' = A u + G q         and of a map C <- cov(f(x), x), u <- G q

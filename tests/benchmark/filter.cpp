@@ -1,34 +1,16 @@
 // What the likelihood of a filter costs, in likelihoods of the same model without a disturbance, by the same executor: chains of
 // masses, a white force on the last one; thread processor time, measured in turns, medians of the ratios of each turn.
-#include <ctime>
-
 #include <algorithm>
 #include <cstdio>
 #include <functional>
 
 #include "cases.hpp"
+#include "processor_time.hpp"
 #include "program/moments.hpp"
 
 using namespace benchmark_cases;
 
 namespace {
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double timed(std::function<void()> const& work) {
-  double const begin = cpu_seconds();
-  work();
-  return cpu_seconds() - begin;
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 struct Simulated {
   Simulator simulator;
@@ -80,13 +62,13 @@ void compare(int masses, int channels, MomentRule rule) {
   Simulated plain(source, experiment, 64), filter(filtered(source, masses, rule), experiment, 64);
   plain(parameters);
   filter(parameters);
-  int const times = std::max(1, static_cast<int>(0.01 / timed([&] { plain(parameters); })));
+  int const times = std::max(1, static_cast<int>(0.01 / processor_time::of([&] { plain(parameters); })));
   std::vector<double> ratios, microseconds;
   for (int round = 0; round < 15; ++round) {
-    double const one = timed([&] {
+    double const one = processor_time::of([&] {
       for (int i = 0; i < times; ++i) plain(parameters);
     });
-    double const other = timed([&] {
+    double const other = processor_time::of([&] {
       for (int i = 0; i < times; ++i) filter(parameters);
     });
     ratios.push_back(other / one);
@@ -94,7 +76,7 @@ void compare(int masses, int channels, MomentRule rule) {
   }
   std::printf("%2d states, %2d of filter, %d channels, %s: %6.2f times a value, %8.1f us\n", 2 * masses,
               filter.simulator.program().registers.states, channels, rule == MomentRule::linearised ? "extended " : "unscented",
-              median(ratios), median(microseconds));
+              processor_time::median(ratios), processor_time::median(microseconds));
   std::fflush(stdout);
 }
 

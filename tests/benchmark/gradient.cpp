@@ -1,8 +1,6 @@
 // What a value with its gradient, by tangents or by the adjoint, or with the normal equations of its residuals costs, in values of
 // the same executor: thread processor time, measured in turns, medians of the ratios of each turn. An argument: systems whose names
 // begin so.
-#include <ctime>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -12,28 +10,12 @@
 #include <string>
 
 #include "cases.hpp"
+#include "processor_time.hpp"
 #include "program/tangents.hpp"
 
 using namespace benchmark_cases;
 
 namespace {
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double timed(std::function<void()> const& work) {
-  double const begin = cpu_seconds();
-  work();
-  return cpu_seconds() - begin;
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 struct Simulated {
   Simulator simulator;
@@ -90,24 +72,25 @@ void compare(std::string const& name, SimulationSource const& source, Experiment
     bool const large = source.states() * (count + 1) > 300;  // takes minutes to compile
     if (large && kind != Kind::adjoint) continue;
     std::optional<Simulated> with;
-    double const compiling = timed([&] { with.emplace(differentiated(source, count, kind), experiment, width, executor); });
-    double const first_batch = timed([&] { (*with)(parameters); });
+    double const compiling =
+        processor_time::of([&] { with.emplace(differentiated(source, count, kind), experiment, width, executor); });
+    double const first_batch = processor_time::of([&] { (*with)(parameters); });
     std::vector<double> values, ratios;
-    int const times = std::max(1, static_cast<int>(0.01 / timed([&] { value(parameters); })));
+    int const times = std::max(1, static_cast<int>(0.01 / processor_time::of([&] { value(parameters); })));
     for (int round = 0; round < 15; ++round) {
-      double const one = timed([&] {
+      double const one = processor_time::of([&] {
         for (int i = 0; i < times; ++i) value(parameters);
       });
-      double const both = timed([&] {
+      double const both = processor_time::of([&] {
         for (int i = 0; i < times; ++i) (*with)(parameters);
       });
       values.push_back(one / times / width);
       ratios.push_back(both / one);
     }
-    if (first) std::printf(", value %7.3f us", 1e6 * median(values));
+    if (first) std::printf(", value %7.3f us", 1e6 * processor_time::median(values));
     first = false;
-    std::printf(", %s %6.2f values (compiled in %.1f ms, first batch %.1f ms)", names[static_cast<int>(kind)], median(ratios),
-                1e3 * compiling, 1e3 * first_batch);
+    std::printf(", %s %6.2f values (compiled in %.1f ms, first batch %.1f ms)", names[static_cast<int>(kind)],
+                processor_time::median(ratios), 1e3 * compiling, 1e3 * first_batch);
   }
   std::printf("; differences %d\n", 2 * count + 1);
 }
