@@ -3,7 +3,7 @@
 states = 'results/drift/wandering/states.csv'
 true(x) = 200*(1 - 0.1/(1 + exp(-(x - 40)/0.2)))
 
-set terminal svg size 760,300 dynamic noenhanced font 'Helvetica,12' name 'stiffness' background rgb '#ffffff'
+set terminal svg size 760,330 dynamic noenhanced font 'Helvetica,12' name 'stiffness' background rgb '#ffffff'
 set datafile separator ','
 set datafile commentschars '#'
 set border 3 lw 1 lc rgb '#66717d'
@@ -13,7 +13,7 @@ set offsets 0,0,0,0
 set lmargin at screen 0.11
 set rmargin at screen 0.98
 set tmargin at screen 0.88
-set bmargin at screen 0.18
+set bmargin at screen 0.2
 set key at screen 0.98, screen 0.98 right top horizontal samplen 2 textcolor rgb '#1f2933'
 set xlabel 'time [s]' textcolor rgb '#1f2933'
 set ylabel 'k [10³ N/m]' textcolor rgb '#1f2933'

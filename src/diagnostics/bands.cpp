@@ -44,17 +44,17 @@ Band normal_band(std::vector<std::vector<double>> const& means, std::vector<std:
   for (std::size_t i = 0; i < out.mean.size(); ++i) {
     centres.clear();
     widths.clear();
-    double variance = 0;
     for (std::size_t d = 0; d < means.size(); ++d) {
       if (i >= means[d].size() || !std::isfinite(means[d][i]) || !std::isfinite(sds[d][i])) continue;
       centres.push_back(means[d][i]);
       widths.push_back(sds[d][i]);
-      variance += sds[d][i] * sds[d][i];
     }
     if (centres.empty() || !std::isfinite(out.mean[i])) continue;
-    out.sd[i] = std::sqrt(out.sd[i] * out.sd[i] + variance / static_cast<double>(centres.size()));
-    out.lower[i] = normal_mixture_quantile(centres, widths, 0.025);
-    out.upper[i] = normal_mixture_quantile(centres, widths, 0.975);
+    NormalMixture const mixture = normal_mixture(centres, widths);
+    out.mean[i] = mixture.mean;
+    out.sd[i] = mixture.sd;
+    out.lower[i] = mixture.lower;
+    out.upper[i] = mixture.upper;
   }
   return out;
 }

@@ -18,7 +18,7 @@ struct ImproperReference {
 
   /// A value between bounds, which may be infinite, in a unit of `unit` each.
   double draw(double lower, double upper, double unit, Stream& stream) const;
-  /// Of `normal`, at a place of the sampler's coordinate. Nothing is asked of `decades`.
+  /// The normal density at a place of the sampler's coordinate; of `decades` only its value at the centre is used.
   double log_density(double theta) const;
 
   friend bool operator==(ImproperReference const&, ImproperReference const&) = default;

@@ -41,8 +41,9 @@ struct ModelSource {
   /// Their covariances; absent where the states are known.
   std::optional<Moments> moments;
 
-  /// A channel that sums this, and when its records are computed.
+  /// A channel that sums this and corrects the states.
   ChannelSource channel(std::size_t index, std::vector<NodeId> sums) const;
+  /// When a record of its sample is computed.
   int recorded_with(std::size_t channel) const { return moments ? static_cast<int>(channel) : before_channels; }
   /// The variance that random states give to an expression of them, to first order; 0 where they are known.
   NodeId variance(Graph& graph, NodeId expression) const;

@@ -45,12 +45,12 @@ class Output {
     std::shared_ptr<StartState const> start;  // absent unless free
     int samples = 0;                          // up to the last scored one
     std::size_t first = 0, count = 0;         // its places
-    bool predicts = false;                    // states are random and known from no sample: a draw of them is added
+    bool predicts = false;                    // a draw of the random states is added, given the rows of `corrects`
   };
   int records_per_sample() const { return static_cast<int>(compiled_->records.size()); }
   LaneArray parameters(ConstLanes points, int experiment) const;
   LaneArray records(ConstLanes points, int experiment, std::vector<Outcome>& outcome) const;
-  /// Of one lane after the other what random states add to the centres at its places.
+  /// Adds to the centres, lane by lane, one draw of the random states, from streams that are always the same.
   void add_spread(ConstLanes records, Part const& part, int first, Lanes out) const;
   void add_noise(LaneArray const& records, Part const& part, int channel, std::vector<double>& out) const;
 

@@ -40,8 +40,8 @@ class Trajectory {
     /// them, each sample by itself: bands of one sample are right, paths along several are not. Empty for quantities that are
     /// known. noisy_spread[c]: sds of the samples of a channel about `values`, that of the noise included; empty as above.
     std::vector<std::vector<std::vector<double>>> random, spread, noisy_spread;
-    /// Draws of a quantity.
     bool is_random(std::size_t q) const { return q < random.size() && !random[q].empty(); }
+    /// Draws of a quantity: `random` where states are, else `values`.
     std::vector<std::vector<double>> const& drawn(std::size_t q) const { return is_random(q) ? random[q] : values[q]; }
     std::vector<std::vector<double>>& drawn(std::size_t q) { return is_random(q) ? random[q] : values[q]; }
     /// solved[d]: 1, vector d did not fail, whether or not it is defined everywhere.

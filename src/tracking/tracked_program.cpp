@@ -90,7 +90,6 @@ class TrackingWriter {
       source.derivative.push_back(source.map ? graph_.add(graph_.leaf(LeafKind::state, result_.states + j), noise) : noise);
     }
     source.initial.assign(source.derivative.size(), graph_.constant(0));
-    derivative_ = source.derivative;
     for (Channel const& channel : model_.channels) {
       NodeId const sd = put(channel.noise.arguments[1]);
       channels_.push_back({put(channel.noise.arguments[0]), graph_.multiply(sd, sd)});
@@ -111,11 +110,9 @@ class TrackingWriter {
   void add_transition() {
     NodeId const zero = graph_.constant(0);
     for (int i = 0; i < result_.states; ++i) {
-      NodeId const at_rest = graph_.substitute(derivative_[static_cast<std::size_t>(i)], [&](NodeId leaf) -> std::optional<NodeId> {
-        return graph_[leaf].leaf_kind == LeafKind::disturbance ? std::optional(zero) : std::nullopt;
-      });
+      NodeId const rule = source_.derivative[static_cast<std::size_t>(i)];  // of the mean, as the filter moves it
       std::vector<NodeId> slopes;
-      for (int l = 0; l < result_.size(); ++l) slopes.push_back(finite_slope(graph_, at_rest, graph_.leaf(LeafKind::state, l)));
+      for (int l = 0; l < result_.size(); ++l) slopes.push_back(finite_slope(graph_, rule, graph_.leaf(LeafKind::state, l)));
       for (int k = 0; k < result_.size(); ++k) {
         NodeId sum = zero;
         for (int l = 0; l < result_.size(); ++l) {
@@ -177,7 +174,6 @@ class TrackingWriter {
   std::span<TrackedParameter const> tracked_;
   Graph graph_;
   std::vector<NodeId> parameter_values_;
-  std::vector<NodeId> derivative_;
   std::vector<NormalChannel> channels_;
   RandomStates random_;
   SimulationSource source_;

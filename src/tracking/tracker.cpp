@@ -57,27 +57,6 @@ UserError diverged(Experiment const& experiment, int index) {
 
 }  // namespace
 
-Experiment slice(Experiment const& experiment, int begin, int end, int lags) {
-  Experiment part;
-  part.name = experiment.name;
-  part.time_unit = experiment.time_unit;
-  part.first_row = experiment.first_row + begin;
-  part.time.assign(experiment.time.begin() + begin, experiment.time.begin() + end);
-  for (InputSignal const& input : experiment.inputs) part.inputs.push_back(input.view(begin, end - begin));
-  auto const cut = [&](auto const& values) {
-    return values.empty() ? values : std::decay_t<decltype(values)>(values.begin() + begin, values.begin() + end);
-  };
-  for (std::size_t c = 0; c < experiment.measured.size(); ++c) {
-    part.measured.push_back(cut(experiment.measured[c]));
-    std::vector<double> before;
-    for (int back = 1; back <= lags; ++back) before.push_back(measured_sample(experiment, static_cast<int>(c), begin - back));
-    part.history.push_back(std::move(before));
-  }
-  part.scored = cut(experiment.scored);
-  for (auto const& flags : experiment.has_lags) part.has_lags.push_back(cut(flags));
-  return part;
-}
-
 std::vector<double> moments_of(TrackedProgram const& program, StatePrior const& states, TrackedPrior const& parameters) {
   std::vector<double> moments(static_cast<std::size_t>(program.moments));
   for (int i = 0; i < program.size(); ++i) {
@@ -123,7 +102,6 @@ int Tracker::take_some(Experiment const& experiment, int from, int to, Sink cons
   int const first = begins ? from : from - 1;
   Experiment part = slice(experiment, first, to, std::min(most_lags, experiment.first_row + first));
   if (!begins) part.scored.front() = 0;  // it has corrected the moments
-  // A simulation of a single row has no step.
   LaneArray records;
   bool const fine =
       records_along(program_, solver_, execution_, part, parameters_of(program_, options_.intensities, moments_), records);
@@ -214,7 +192,8 @@ std::pair<double, double> Tracker::value_of(int parameter, double mean, double v
 }
 
 /// The parameters become those of the prior again; the states given the parameters stay as the rows have made them. With
-/// x = m + G (theta - mu) + r, r of covariance P - G C', and theta ~ N(mu0, P0):
+/// x = m + G (theta - mu) + r, r of covariance P - G C', and theta ~ N(mu0, P0),
+///   m <- m + G (mu0 - mu),  P <- P - G C' + G P0 G',  C <- G P0.
 void Tracker::settle() {
   int const n = program_.states, p = program_.tracked;
   if (n == 0 || p == 0) return;
@@ -243,9 +222,7 @@ Alarm Tracker::respond(Experiment const& experiment, int index, DetectedJump con
   alarm.time = experiment.time[static_cast<std::size_t>(index)];
   // times_ ends with the row before this one, which is the rows_ - 1st.
   auto const back = static_cast<std::size_t>(rows_ - 1 - jump.row);
-  auto const& [row, time] = times_[times_.size() - 1 - std::min(back, times_.size() - 1)];
-  alarm.onset_row = row;
-  alarm.onset_time = time;
+  alarm.onset_row = times_[times_.size() - 1 - std::min(back, times_.size() - 1)].first;
   alarm.statistic = jump.statistic;
   alarm.other = jump.other;
   alarm.other_statistic = jump.other_statistic;

@@ -39,7 +39,7 @@ struct TrackingOptions {
 struct Alarm {
   int parameter = 0;  // of the tracked ones
   int row = 0, onset_row = 0;
-  double time = 0, onset_time = 0;
+  double time = 0;
   double statistic = 0;  // z
   double before = 0, before_sd = 0, after = 0, after_sd = 0;
   int other = -1;  // a parameter that explains it nearly as well
@@ -80,7 +80,7 @@ class Tracker {
   Alarm respond(Experiment const& experiment, int index, DetectedJump const& jump);
   double& moment(int i, int j) { return moments_[static_cast<std::size_t>(program_.place(i, j))]; }
   double variance(int i) const { return moments_[static_cast<std::size_t>(program_.place(i, i))]; }
-  /// SI value and sd of a tracked parameter whose coordinate has this mean and variance; `others` are where they are now.
+  /// SI value and sd of a tracked parameter whose coordinate has this mean and variance; the other parameters are where they are now.
   std::pair<double, double> value_of(int parameter, double mean, double variance) const;
   void values_now(std::vector<double>& mean, std::vector<double>& sd);
 
@@ -95,12 +95,8 @@ class Tracker {
   int settling_ = 0;                           // rows left
   std::vector<std::pair<int, double>> times_;  // of the rows that a jump may have come after: row of the file, time
   TrackedRow row_;
-  Alarm alarm_;
   std::vector<double> scratch_;
 };
-
-/// Rows [begin, end) of an experiment, with the rows before them as what a map looks back to, at most `lags`.
-Experiment slice(Experiment const& experiment, int begin, int end, int lags);
 
 /// Means and covariances as the program has them.
 std::vector<double> moments_of(TrackedProgram const& program, StatePrior const& states, TrackedPrior const& parameters);

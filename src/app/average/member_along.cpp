@@ -100,17 +100,6 @@ void cut(std::vector<Value>& values, std::size_t first, std::size_t count) {
   values.resize(count);
 }
 
-Experiment cut(Experiment experiment, std::size_t first, std::size_t count) {
-  cut(experiment.time, first, count);
-  for (InputSignal& input : experiment.inputs) input = input.view(static_cast<int>(first), static_cast<int>(count));
-  for (std::vector<double>& channel : experiment.measured) cut(channel, first, count);
-  cut(experiment.scored, first, count);
-  experiment.first_row += static_cast<int>(first);
-  experiment.history.clear();
-  for (std::vector<std::uint8_t>& channel : experiment.has_lags) cut(channel, first, count);
-  return experiment;
-}
-
 }  // namespace
 
 MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int e, Model const& units) {
@@ -168,7 +157,7 @@ void cut_to_common_rows(std::vector<MemberAlong>& members) {
   for (MemberAlong& each : members) {
     auto const skipped = static_cast<std::size_t>(first - each.experiment.first_row);
     if (skipped == 0 && count == each.experiment.time.size()) continue;
-    each.experiment = cut(std::move(each.experiment), skipped, count);
+    each.experiment = slice(each.experiment, static_cast<int>(skipped), static_cast<int>(skipped + count));
     for (MemberQuantity& quantity : each.quantities) {
       for (auto* all : {&quantity.values, &quantity.noisy, &quantity.noise_mean, &quantity.noise_variance})
         for (std::vector<double>& trajectory : *all) cut(trajectory, skipped, count);

@@ -42,19 +42,12 @@ bool same_response(Trajectory const& trajectory, Trajectory::Result const& coars
 }
 
 /// Rows that no likelihood reads are not simulated, where they could fail.
-Experiment up_to_last_scored(Experiment experiment) {
+Experiment up_to_last_scored(Experiment const& experiment) {
   auto const last = std::find_if(experiment.scored.rbegin(), experiment.scored.rend(), [](std::uint8_t each) { return each != 0; });
   auto const scored = static_cast<std::size_t>(experiment.scored.rend() - last);
   std::size_t const rows = std::max<std::size_t>(scored, 2);  // two make a step
   if (scored == 0 || rows >= experiment.time.size()) return experiment;
-  experiment.time.resize(rows);
-  experiment.scored.resize(rows);
-  for (InputSignal& input : experiment.inputs) input = input.view(0, static_cast<int>(rows));
-  for (auto& channel : experiment.measured)
-    if (!channel.empty()) channel.resize(rows);
-  for (auto& channel : experiment.has_lags)
-    if (!channel.empty()) channel.resize(rows);
-  return experiment;
+  return slice(experiment, 0, static_cast<int>(rows));
 }
 
 /// What is made, before it is.

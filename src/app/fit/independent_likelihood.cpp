@@ -149,7 +149,7 @@ class IndependentLikelihood : public FitLikelihood {
 
   std::optional<Prediction> states(Draws const& draws, int e) const override {
     // Particles are not smoothed, and may be of models whose noise has no moments that a filter could carry.
-    if (!model().filtered() || compiled_->filter == FilterRule::particle) return std::nullopt;
+    if (!model().filtered()) return std::nullopt;
     auto const& smoothing = smoothing_.get([&] { return compile_smoothing(compiled_); });
     LaneArray const columns = spread(draws, 100);
     LaneArray parameters(static_cast<int>(model().parameters.size()), columns.width());

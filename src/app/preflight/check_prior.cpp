@@ -242,18 +242,20 @@ PriorDraws draw_prior(Preflight const& preflight) {
   }
   prior.noise = listed(noise);
   // What the prior predicts knows nothing of the record.
-  std::vector<Experiment> unread;
-  for (Experiment const& each : preflight.experiments) unread.push_back(each.unread());
+  std::vector<Experiment> along = preflight.experiments;
   std::optional<Output> free;
-  if (preflight.model().filtered()) free.emplace(preflight.output_along(unread));
+  if (preflight.model().filtered()) {
+    for (Experiment& each : along) each = each.unread();
+    free.emplace(preflight.output_along(along));
+  }
   Output const& stated = free ? *free : preflight.output();
   LaneArray const values = space.values_of_declared(declared);
   prior.points = LaneArray(stated.point_rows(), count);
   for (int r = 0; r < values.rows(); ++r)
     for (int w = 0; w < count; ++w) prior.points(r, w) = values(r, w);
   stated.start(prior.points);
-  prior.simulations = simulate_prior(preflight.session, preflight.what, preflight.compiled, preflight.space,
-                                     free ? unread : preflight.experiments, stated, theta, prior.points);
+  prior.simulations =
+      simulate_prior(preflight.session, preflight.what, preflight.compiled, preflight.space, along, stated, theta, prior.points);
   return prior;
 }
 

@@ -15,16 +15,10 @@ constexpr int enough_candidates = 12;         // fewer than that cost more than 
 constexpr double most_work = 1.2e9;           // operations of the equations at the steps of all trajectories: about a second
 
 // The experiment up to its so many scored rows: enough to look ahead, and done in a second.
-Experiment shortened_to_scored(Experiment experiment) {
+Experiment shortened_to_scored(Experiment const& experiment) {
   std::size_t rows = 0, counted = 0;
   while (rows < experiment.time.size() && counted < Preflight::most_scored) counted += experiment.scored[rows++] != 0;
-  if (rows == experiment.time.size()) return experiment;
-  experiment.time.resize(rows);
-  experiment.scored.resize(rows);
-  for (InputSignal& input : experiment.inputs) input = input.view(0, static_cast<int>(rows));
-  for (auto& channel : experiment.measured)
-    if (!channel.empty()) channel.resize(rows);
-  return experiment;
+  return slice(experiment, 0, static_cast<int>(rows));
 }
 
 // Whether states switch an equation from one branch to another that does not begin where the first ends. A fixed step that passes

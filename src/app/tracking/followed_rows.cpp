@@ -81,7 +81,11 @@ std::vector<std::string> FollowedRows::next(std::size_t most) {
         header_ += *text + '\n';
         bool const says_more = text->starts_with('#') || text->starts_with("sep=") || text->starts_with("\xef\xbb\xbf#");
         header_found_ = !blank && !says_more;
-      } else if (!blank) {
+        one_column_ = text->find_first_of(",;\t") == std::string::npos;
+      } else if (blank) {
+        if (one_column_) ++blanks_;  // a row, with its sample missing, where another follows
+      } else {
+        for (; blanks_ > 0; --blanks_) rows.emplace_back();
         rows.push_back(std::move(*text));
       }
     }

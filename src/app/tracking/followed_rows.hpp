@@ -16,7 +16,7 @@ class FollowedRows {
 
   /// The lines of the header, up to the one with the names.
   std::string const& header() const { return header_; }
-  /// Whole lines with rows, at least one and at most `most`, as soon as there are any; nothing at the end or on an interruption.
+  /// Whole lines with rows, at least one and about `most`, as soon as there are any; nothing at the end or on an interruption.
   /// A last line without a line end is a row once nothing can follow it.
   std::vector<std::string> next(std::size_t most);
 
@@ -27,9 +27,10 @@ class FollowedRows {
 
   std::string name_;
   int file_ = -1;
-  bool waits_, ended_ = false, header_found_ = false;
+  bool waits_, ended_ = false, header_found_ = false, one_column_ = false;
   std::string header_, pending_;
   std::size_t at_ = 0;
+  int blanks_ = 0;  // since the last row
 };
 
 }  // namespace sysid

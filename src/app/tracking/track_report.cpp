@@ -53,8 +53,8 @@ ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
 
 ReportTable parameter_table(GatheredTrack const& gathered) {
   ReportTable table{"parameters",
-                    "At the first row that was tracked and at the last one, with their sds.",
-                    {"parameter", "unit", fmt::format("row {}", gathered.first_row), fmt::format("row {}", gathered.last_row)},
+                    "Once the first rows have settled the states, and at the last row, with their sds.",
+                    {"parameter", "unit", fmt::format("from row {}", gathered.first_row), fmt::format("row {}", gathered.last_row)},
                     {}};
   for (std::size_t q = gathered.states; q < gathered.states + gathered.tracked; ++q)
     table.rows.push_back({gathered.units.names[q], gathered.units.units[q], with_sd(gathered.first_mean[q], gathered.first_sd[q]),
@@ -102,10 +102,7 @@ void GatheredTrack::add(TrackedRow const& row) {
   if (rows == 0) first_row = row.row;
   if (rows == 0 || row.settling) first_mean = declared(row.mean), first_sd = declared(row.sd);
   last_row = row.row;
-  if (row.settling)
-    ++settling;
-  else
-    squared += row.squared, samples += row.samples;
+  if (!row.settling) squared += row.squared, samples += row.samples;
   if (row.alarm != nullptr) alarms.push_back(*row.alarm);
   if (rows++ % stride == 0) {
     time.push_back(row.time);

@@ -18,7 +18,7 @@ struct GatheredTrack {
   std::string file, digest;
   std::optional<Unit> time_unit;
   double threshold = 0;
-  std::int64_t rows = 0, samples = 0, settling = 0;
+  std::int64_t rows = 0, samples = 0;
   int first_row = 0, last_row = 0;
   double squared = 0;  // of the rows that did not settle
   std::vector<Alarm> alarms;

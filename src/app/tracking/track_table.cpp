@@ -52,7 +52,7 @@ TrackedUnits units_of(Model const& model, std::vector<TrackedParameter> const& t
 }
 
 TrackTable::TrackTable(std::filesystem::path const& folder, TrackedUnits const& units, std::string const& head, bool follows)
-    : units_(units), path_(folder / "track.csv"), written_(follows ? path_ : partial_path(path_)), follows_(follows) {
+    : units_(units), path_(folder / tracked_rows), written_(follows ? path_ : partial_path(path_)), follows_(follows) {
   file_ = ::open(written_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0) fail();
   lines_ = head + "# units =";

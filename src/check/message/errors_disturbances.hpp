@@ -19,7 +19,7 @@ Diagnostic unit_of_intensity(Span argument, std::string const& name, std::string
 Diagnostic law_reads(Span law, std::string const& name, std::string const& what);
 /// argument: "intensity"; parameters: that it reads.
 Diagnostic law_never_positive(Span declaration, std::string const& name, std::string const& argument, Names const& parameters);
-/// A mean that is not 0, bounds, or a distribution that is no normal one.
+/// A mean that is not 0.
 Diagnostic mean_of_disturbance(Span law, std::string const& name);
 Diagnostic bounds_of_disturbance(Span law, std::string const& name);
 Diagnostic rate_of_disturbance(ast::Reference const& reference);

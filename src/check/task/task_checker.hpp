@@ -56,15 +56,13 @@ class TaskChecker {
   std::optional<Model> as_fitted(FitTask const& task, Model const& model);
   // The errors of the inputs of the experiments that a fit predicts.
   std::vector<double> predicted_input_errors(FitTask const& fit, std::vector<ExperimentUse> const& experiments);
-  // `filter = particle`: no back end has it yet.
-  void refuse_particle(ast::Option const& option, FilterRule& rule);
   // Of a back end that compares simulations.
   void suit_distance(SelectTask const& task);
   // Errors of inputs, of which a regression of terms knows nothing.
   void refuse_input_errors(std::vector<ExperimentUse> const& experiments);
   void suit_kalman(FitTask const& task, Model const& model);
   // Noise that the filter takes.
-  void suit_noise(FilterRule rule, Model const& fitted);
+  void suit_noise(Model const& fitted);
   // The option, where it was stated and no model has had a use for it.
   void report_needless_filter();
 

@@ -66,19 +66,11 @@ std::vector<std::string> available_filters() {
 void TaskChecker::filter(ast::Option const& option, FilterRule& rule) {
   filter_ = option.span;
   std::string const given = as_word(option.value).value_or("");
-  if (auto const found = find_filter(given))
-    rule = *found;
-  else
-    diagnostics_.add(errors::option_choice(option.value.span, "filter", given, available_filters()));
-  filter_needed_ = !find_filter(given);  // nothing more is said of a word that is none
-  refuse_particle(option, rule);
-}
-
-void TaskChecker::refuse_particle(ast::Option const& option, FilterRule& rule) {
-  if (rule != FilterRule::particle) return;
-  diagnostics_.add(errors::particle_filter_missing(option.value.span));
-  rule = FilterRule::automatic;
-  filter_needed_ = true;
+  auto const found = find_filter(given);
+  filter_needed_ = !found || *found == FilterRule::particle;  // refused here: nothing more is said of it
+  if (!found) return diagnostics_.add(errors::option_choice(option.value.span, "filter", given, available_filters()));
+  if (filter_needed_) return diagnostics_.add(errors::particle_filter_missing(option.value.span));
+  rule = *found;
 }
 
 void TaskChecker::report_needless_filter() {
@@ -142,9 +134,9 @@ std::optional<Model> TaskChecker::as_fitted(FitTask const& task, Model const& mo
   return std::nullopt;
 }
 
-void TaskChecker::suit_noise(FilterRule rule, Model const& fitted) {
+void TaskChecker::suit_noise(Model const& fitted) {
   for (Channel const& channel : fitted.channels)
-    if (rule != FilterRule::particle && !channel.noise.row->gaussian)
+    if (!channel.noise.row->gaussian)
       diagnostics_.add_once(
           errors::noise_of_filter(channel.span, channel.name, std::string(channel.noise.row->name), tree_.subject.span));
 }
@@ -155,7 +147,7 @@ std::vector<double> TaskChecker::predicted_input_errors(FitTask const& fit, std:
   predicted.experiments = experiments;
   predicted.input_errors = input_errors(experiments, model);
   if (predicted.input_errors.empty() || diagnostics_.has_errors(before_)) return {};
-  if (auto const fitted = as_fitted(predicted, model)) suit_noise(fit.filter, *fitted);
+  if (auto const fitted = as_fitted(predicted, model)) suit_noise(*fitted);
   return predicted.input_errors;
 }
 
@@ -189,7 +181,7 @@ void TaskChecker::suit_filter(FitTask& task, Model const& model) {
   if (!as_whole || !as_whole->filtered()) return;
   Model const& fitted = *as_whole;
   filter_needed_ = true;
-  suit_noise(task.filter, fitted);
+  suit_noise(fitted);
   suit_kalman(task, fitted);
   if (task.start.kind != StartRule::Kind::estimated) return;
   for (State const& state : fitted.states) {

@@ -66,12 +66,8 @@ class Pooled {
     }
     double const nan = std::numeric_limits<double>::quiet_NaN();
     if (means_.empty()) return append(nan, nan, nan, nan);
-    auto const count = static_cast<double>(means_.size());
-    double mean = 0, variance = 0;
-    for (double const each : means_) mean += each / count;
-    for (std::size_t d = 0; d < means_.size(); ++d)
-      variance += ((means_[d] - mean) * (means_[d] - mean) + sds_[d] * sds_[d]) / count;
-    append(mean, std::sqrt(variance), normal_mixture_quantile(means_, sds_, 0.025), normal_mixture_quantile(means_, sds_, 0.975));
+    NormalMixture const mixture = normal_mixture(means_, sds_);
+    append(mixture.mean, mixture.sd, mixture.lower, mixture.upper);
   }
 
   void append(double mean, double sd, double lower, double upper) {
@@ -87,6 +83,14 @@ class Pooled {
 };
 
 }  // namespace
+
+NormalMixture normal_mixture(std::vector<double> const& means, std::vector<double> const& sds) {
+  auto const count = static_cast<double>(means.size());
+  double mean = 0, variance = 0;
+  for (double const each : means) mean += each / count;
+  for (std::size_t d = 0; d < means.size(); ++d) variance += ((means[d] - mean) * (means[d] - mean) + sds[d] * sds[d]) / count;
+  return {mean, std::sqrt(variance), normal_mixture_quantile(means, sds, 0.025), normal_mixture_quantile(means, sds, 0.975)};
+}
 
 double normal_mixture_quantile(std::vector<double> const& means, std::vector<double> const& sds, double probability) {
   double const z = standard_normal_quantile(probability);

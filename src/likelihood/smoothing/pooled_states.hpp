@@ -13,6 +13,13 @@ namespace sysid {
 /// memory, the number depends on the length alone.
 std::vector<Band> pooled_states(Smoother const& smoother, ConstLanes parameters);
 
+/// The mixture with equal weights of normal distributions: mean, sd by the law of total variance, quantiles of 2.5 and 97.5 %.
+struct NormalMixture {
+  double mean, sd, lower, upper;
+};
+/// Not empty.
+NormalMixture normal_mixture(std::vector<double> const& means, std::vector<double> const& sds);
+
 /// The x where sum_d P(mean_d + sd_d Z <= x)/D is the probability; at sd = 0 the distribution is a step. Not empty.
 double normal_mixture_quantile(std::vector<double> const& means, std::vector<double> const& sds, double probability);
 

@@ -65,7 +65,7 @@ std::vector<fs::path> files_of_result(fs::path const& folder) {
 
 }  // namespace
 
-bool holds_result(fs::path const& folder) { return !files_of_result(folder).empty(); }
+bool holds_result(fs::path const& folder) { return !files_of_result(folder).empty() || fs::exists(folder / tracked_rows); }
 
 void require_no_result(fs::path const& folder) {
   if (holds_result(folder))
@@ -84,6 +84,7 @@ void remove_summary(fs::path const& folder) {
 void remove_result(fs::path const& folder) {
   remove_summary(folder);
   for (fs::path const& file : files_of_result(folder)) remove_file(file);
+  remove_file(folder / tracked_rows);
 }
 
 void remove_partial(fs::path const& folder) {
@@ -96,7 +97,7 @@ void remove_partial(fs::path const& folder) {
     }
   };
   look(folder, [&](std::string const& name) {
-    return is_result_file(name, task_of(folder)) || name == "checkpoint.cbor" || name == "claim";
+    return is_result_file(name, task_of(folder)) || name == "checkpoint.cbor" || name == "claim" || name == tracked_rows;
   });
   look(folder / "figures", &is_figure_file);
   for (fs::path const& file : left) remove_file(file);

@@ -10,6 +10,9 @@
 
 namespace sysid {
 
+/// The table of `track`, which grows while rows arrive: a result as soon as it is there, and not written by `write_result`.
+inline constexpr char const* tracked_rows = "track.csv";
+
 /// True when the folder holds a result of before. A checkpoint is none.
 bool holds_result(std::filesystem::path const& folder);
 

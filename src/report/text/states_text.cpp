@@ -24,8 +24,8 @@ StateSize size_of(PredictedQuantity const& quantity) {
 ReportTable states_table(Report const& report) {
   ReportTable table{
       "States and disturbances",
-      "Given all samples of the record. rms: of the mean along the record; sd: of what it is not known by, parameters "
-      "and states together, its rms. Where the two are alike, the record hardly tells the quantity.",
+      "Given all samples of the record. rms: root mean square of the mean along the record; sd: that of the posterior sd, "
+      "parameters and states together. Where sd is about as large as rms, the record says little about the quantity.",
       {"quantity", "unit", "rms", "sd"},
       {}};
   bool const several = report.states.size() > 1;

@@ -1,11 +1,8 @@
 // A target without its improper priors: what the data and the proper priors say of a place.
 #pragma once
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <span>
 #include <vector>
 
-#include "core/numeric/elementary.hpp"
 #include "likelihood/improper_reference.hpp"
 #include "likelihood/target.hpp"
 
@@ -16,7 +13,7 @@ namespace sysid::unbounded {
 /// improper parameters.
 class ProperPriors : public Target {
  public:
-  explicit ProperPriors(Target const& target, std::vector<ImproperReference> const& references)
+  ProperPriors(Target const& target, std::vector<ImproperReference> const& references)
       : target_(target), references_(references) {}
 
   int dimension() const override { return target_.dimension(); }
@@ -30,7 +27,7 @@ class ProperPriors : public Target {
     double known = 0;
     for (ImproperReference const& each : references_) {
       for (int w = 0; w < theta.width(); ++w) at_centres(each.coordinate, w) = each.centre;
-      known -= elementary::log(each.width) + 0.5 * elementary::log(2 * std::numbers::pi);
+      known += each.log_density(each.centre);
     }
     target_.log_reference(at_centres, out);
     for (double& each : out) each -= known;

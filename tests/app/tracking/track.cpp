@@ -213,4 +213,10 @@ TEST_CASE("lines of a followed file come whole, blank ones and the header apart"
   CHECK(rows.next(10) == std::vector<std::string>{"5;"});
   CHECK(rows.next(10).empty());
   CHECK(rows.header() == "# made\nsep=;\na;b\n");
+
+  // Of one column a blank line is a row whose sample is missing, unless it ends the file, as in a file that is read whole.
+  write_file(path, "a\n1\n\n3\n\n");
+  FollowedRows column(path, false);
+  CHECK(column.next(10) == std::vector<std::string>{"1", "", "3"});
+  CHECK(column.next(10).empty());
 }
