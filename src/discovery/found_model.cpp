@@ -145,7 +145,7 @@ class ModelText {
     std::string out;
     if (discrete())
       out += fmt::format("time discrete{}\n",
-                         dictionary().measured.step ? fmt::format(" {:.17g} [s]", *dictionary().measured.step) : "");
+                         dictionary().measured.step ? fmt::format(" {} [s]", *dictionary().measured.step) : "");
     for (ast::DictionaryStatement const& statement : dictionary().tree.statements)
       if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement); time != nullptr && reads_time_)
         out += fmt::format("time {}{}\n", time->time.name.text,
