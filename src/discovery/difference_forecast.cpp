@@ -18,6 +18,7 @@ namespace {
 constexpr int settling_rows = 50;
 constexpr int drawn_runs = 50;
 constexpr double beyond_expected = 2;  // of the errors that add up along a free run
+constexpr double rounding = 1e-9;      // of that sd
 constexpr double worth_a_word = 0.1;   // of the sd of what is measured
 
 using Samples = std::vector<std::vector<double>>;  // [state][row]
@@ -38,7 +39,9 @@ class DifferenceRun {
     measured_.resize(dictionary.states.size());
     for (std::size_t c = 0; c < dictionary.channels.size(); ++c)
       measured_[static_cast<std::size_t>(dictionary.channels[c].state)] = experiment.measured[c];
-    for (regression::Symbol const& symbol : dictionary.symbols) lags_ = std::max(lags_, symbol.lag);
+    std::vector<NodeId> roots;
+    for (Equation const& each : equations_) roots.insert(roots.end(), each.roots.begin(), each.roots.end());
+    for (regression::Symbol const& symbol : regression::symbols_below(dictionary, roots)) lags_ = std::max(lags_, symbol.lag);
   }
 
   Samples const& measured() const { return measured_; }
@@ -84,13 +87,10 @@ class DifferenceRun {
     }
     for (int i = begin; i < rows_; ++i) {
       auto const row = static_cast<std::size_t>(i);
-      // An equation may read what another gives at the same sample: in as many rounds as there are equations all are there.
-      for (Equation const& each : equations_) samples[static_cast<std::size_t>(each.state)][row] = missing;
       for (std::size_t e = 0; e < equations_.size(); ++e)
         if (stream != nullptr) errors[e][row] = equations_[e].noise_sd * stream->normal();
-      for (std::size_t round = 0; round < equations_.size(); ++round)
-        for (std::size_t e = 0; e < equations_.size(); ++e)
-          samples[state(e)][row] = value(e, i, samples, coefficients[e]) + carried(e, i, errors[e]) + errors[e][row];
+      for (std::size_t e = 0; e < equations_.size(); ++e)
+        samples[state(e)][row] = value(e, i, samples, coefficients[e]) + carried(e, i, errors[e]) + errors[e][row];
     }
     return samples;
   }
@@ -168,7 +168,8 @@ std::vector<DifferenceErrors> difference_errors(regression::Dictionary const& di
   std::size_t const count = dictionary.equations.size();
   std::vector<DifferenceErrors> out(count);
   std::vector<std::vector<double>> measured(count);
-  std::vector<MeanSquare> one_step(count), free_run(count), expected(count);
+  std::vector<MeanSquare> one_step(count), free_run(count);
+  std::vector<std::vector<MeanSquare>> drawn(count, std::vector<MeanSquare>(drawn_runs));
   for (std::size_t k = 0; k < experiments.size(); ++k) {
     DifferenceRun run(dictionary, discovery, experiments[k]);
     Samples const ahead = run.one_step();
@@ -190,14 +191,23 @@ std::vector<DifferenceErrors> difference_errors(regression::Dictionary const& di
       Stream stream({seed, Purpose::prediction, k, static_cast<std::uint64_t>(draw)});
       Samples const noisy = run.free_run(*begin, &stream);
       for (std::size_t e = 0; e < count; ++e)
-        each_row(e, *begin, [&](std::size_t i, double) { expected[e].add(noisy[run.state(e)][i] - free[run.state(e)][i]); });
+        each_row(e, *begin, [&](std::size_t i, double) {
+          drawn[e][static_cast<std::size_t>(draw)].add(noisy[run.state(e)][i] - free[run.state(e)][i]);
+        });
     }
   }
   for (std::size_t e = 0; e < count; ++e) {
     if (!measured[e].empty()) out[e].sd = sd_of(measured[e]);
     if (one_step[e].count > 0) out[e].one_step = one_step[e].root();
     if (free_run[e].count > 0) out[e].free_run = free_run[e].root();
-    if (expected[e].count > 0) out[e].expected = expected[e].root();
+    out[e].own_noise = discovery.equations[e].own_noise;
+    if (free_run[e].count == 0) continue;
+    std::vector<double> sizes;
+    for (MeanSquare const& each : drawn[e]) sizes.push_back(each.root());
+    out[e].diverging =
+        static_cast<int>(std::count_if(sizes.begin(), sizes.end(), [](double size) { return !std::isfinite(size); }));
+    std::sort(sizes.begin(), sizes.end());  // the median: few that diverge make no expectation
+    out[e].expected = sizes[sizes.size() / 2];
   }
   return out;
 }
@@ -205,24 +215,41 @@ std::vector<DifferenceErrors> difference_errors(regression::Dictionary const& di
 Findings forecast_findings(CheckedDictionary const& dictionary, std::vector<DifferenceErrors> const& errors,
                            std::string const& held_out) {
   Findings findings;
+  auto const lost = [&](std::string message, std::string help) {
+    findings.push_back({FindingCode::free_run_lost, Severity::warning, {held_out}, std::move(message), std::move(help)});
+  };
+  auto const percent = [](double part, double of) { return significant(100 * part / of, 3); };
   for (std::size_t e = 0; e < errors.size(); ++e) {
     DifferenceErrors const& each = errors[e];
-    if (!each.free_run || !(*each.free_run > std::max(beyond_expected * each.expected, worth_a_word * each.sd))) continue;
     std::string const& target = dictionary.equations[e].text;
-    bool const finite = std::isfinite(*each.free_run);
-    findings.push_back(
-        {FindingCode::free_run_lost,
-         Severity::warning,
-         {held_out},
-         finite
-             ? fmt::format("the rms error of a free run of `{}` on {} is {} % of the standard deviation of its samples; the errors "
-                           "of the equation and of its coefficients explain {} %",
-                           target, held_out, significant(100 * *each.free_run / each.sd, 3),
-                           significant(100 * each.expected / each.sd, 3))
-             : fmt::format("a free run of `{}` on {} does not stay finite", target, held_out),
-         "the equation predicts the next sample, but not the motion: look for missing terms or lags; where the samples are noisy "
-         "and "
-         "follow each other fast, use a differential equation"});
+    if (each.one_step && *each.one_step > std::max(beyond_expected * each.own_noise, rounding * each.sd)) {
+      lost(fmt::format("the error of `{}` one sample ahead on {} is {} times that on the rows of the discovery", target, held_out,
+                       significant(*each.one_step / each.own_noise, 3)),
+           "the equation does not hold on these rows: look for missing terms, and for another amplitude or input");
+      continue;
+    }
+    if (each.free_run && !std::isfinite(*each.free_run)) {
+      lost(fmt::format("a free run of `{}` on {} does not stay finite", target, held_out),
+           "the equation predicts the next sample only: leave out terms that grow fast, or look for missing ones");
+      continue;
+    }
+    if (each.diverging > 0)
+      findings.push_back(
+          {FindingCode::draws_not_bounded,
+           Severity::warning,
+           {held_out},
+           fmt::format("{} of {} drawn free runs of `{}` on {} do not stay finite", each.diverging, drawn_runs, target, held_out),
+           "a term destabilises the motion where the record has few samples: leave it out, or use a record of larger "
+           "amplitude"});
+    if (!each.free_run || !each.expected || !(*each.free_run > std::max(beyond_expected * *each.expected, worth_a_word * each.sd)))
+      continue;
+    lost(
+        fmt::format("the rms error of a free run of `{}` on {} is {} % of the standard deviation of its samples; the errors of the "
+                    "equation and of its coefficients explain {} %",
+                    target, held_out, percent(*each.free_run, each.sd), percent(*each.expected, each.sd)),
+        "the equation predicts the next sample, but not the motion: look for missing terms or lags; where the samples are noisy "
+        "and "
+        "follow each other fast, use a differential equation");
   }
   return findings;
 }

@@ -17,7 +17,9 @@ struct DifferenceErrors {
   double sd = 0;                   // of what is measured
   std::optional<double> one_step;  // nothing where no row has all samples before it
   std::optional<double> free_run;  // nothing where no run can begin; infinite where one does not stay finite
-  double expected = 0;             // of the free run, if the equations are right: by their errors and those of the coefficients
+  int diverging = 0;               // of 50 runs that are drawn so
+  double own_noise = 0;            // of the equation, on the rows of the task
+  std::optional<double> expected;  // of the free run, if the equations are right: by their errors and those of the coefficients
 };
 
 /// A free run begins behind 50 rows, or a quarter of them, which tell the errors of samples before, and goes on by its own samples

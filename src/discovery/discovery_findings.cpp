@@ -44,6 +44,12 @@ constexpr Row rows[] = {
     {Kind::not_white, Severity::warning, FindingCode::residual_correlated,
      "add lags or terms, or allow a longer moving average: `spike_slab(moving_average = 8)`; until then the coefficients are "
      "biased"},
+    {Kind::short_runs, Severity::warning, FindingCode::residual_correlated,
+     "use a part of the record without gaps: if the noise is correlated, the coefficients are biased"},
+    {Kind::input_left, Severity::warning, FindingCode::input_in_residuals,
+     "add that lag of the input to the terms, or that power of it: until then the coefficients are biased"},
+    {Kind::explains_nothing, Severity::warning, FindingCode::unexplained_residual,
+     "add terms or lags, or use a record in which the target depends on them more clearly"},
     {Kind::other_rule, Severity::warning, FindingCode::input_rule,
      "if the input followed that rule, write it in the data block and run again: the present terms and coefficients may be wrong"},
     {Kind::smoothed, Severity::note, FindingCode::derivative_smoothed,

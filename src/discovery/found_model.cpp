@@ -21,6 +21,8 @@ namespace {
 constexpr double prior_width = 10;
 /// And never narrower than this part of the coefficient: what the form of derivatives may be wrong by.
 constexpr double least_width = 0.1;
+/// Of coefficients of a moving average, which is of use only where it is invertible.
+constexpr double widest_average = 0.1;
 /// Either way from the noise that the regression took; upwards as many times what the equation leaves at least, where that is more.
 constexpr double noise_factor = 10, residual_factor = 3;
 
@@ -144,8 +146,8 @@ class ModelText {
   std::string declarations() const {
     std::string out;
     if (discrete())
-      out += fmt::format("time discrete{}\n",
-                         dictionary().measured.step ? fmt::format(" {} [s]", *dictionary().measured.step) : "");
+      out +=
+          fmt::format("time discrete{}\n", dictionary().measured.step ? fmt::format(" {} [s]", *dictionary().measured.step) : "");
     for (ast::DictionaryStatement const& statement : dictionary().tree.statements)
       if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement); time != nullptr && reads_time_)
         out += fmt::format("time {}{}\n", time->time.name.text,
@@ -292,7 +294,9 @@ class ModelText {
       std::vector<double> const& average = source_.discovery.equations[e].moving_average;
       for (std::size_t k = 0; k < average.size(); ++k) {
         std::string const name = fresh(fmt::format("c{}_{}", k + 1, identifier(channel)), taken_);
-        parameters += fmt::format("parameter {} ~ normal({}, sd = 0.3)  # of the noise\n", name, rounded(average[k]));
+        double const width = std::min(widest_average, prior_width * source_.discovery.equations[e].moving_average_sd[k]);
+        parameters +=
+            fmt::format("parameter {} ~ normal({}, sd = {})  # of the noise\n", name, rounded(average[k]), rounded(width));
         mean += fmt::format(" + {}*lag(residual({}), {})", name, channel, k + 1);
       }
       std::string const name = fresh("noise_" + identifier(channel), taken_);

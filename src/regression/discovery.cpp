@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
+#include "core/numeric/elementary.hpp"
 #include "regression/choice/triangle.hpp"
 #include "regression/column/dependence.hpp"
 #include "regression/input_rules.hpp"
@@ -16,6 +19,13 @@ namespace {
 
 /// Choice and whitening go on until a support repeats; at most this often, should two take turns.
 constexpr int most_choices = 5;
+/// Steps for coefficients and moving average together, for each choice of terms: until none moves by this part of its sd.
+constexpr int most_whitenings = 50;
+constexpr double settled_step = 0.02;
+/// Rows that follow one another, below which a moving average of the noise is hardly seen, nor that it is missing.
+constexpr Eigen::Index shortest_runs = 10;
+/// Residual of all terms, of the target: rounding.
+constexpr double exact_below = 1e-10;
 /// Residual against noise from which on something is missing in the dictionary, and the least share that makes it worth a word.
 constexpr double settled_probability = 0.99, settled_sd = 0.05;  // of the coefficient
 constexpr double unexplained_above = 2;
@@ -133,11 +143,8 @@ class Finder {
       return spread(least_squares(problem_of(equation_, on, usable_), all_of(usable_.size())), usable_, count);
     };
     whitened_ = columns;
-    if (projection_.reweightings() == 0) {
-      Choice choice = select();
-      if (projection_.residual_size() == ResidualSize::unknown) found_.own_noise = choice.chosen.noise_sd;
-      return choice;
-    }
+    if (NoiseOfEquation const* noise = projection_.noise_of_equation()) return choose_with(*noise, columns, select, fitted);
+    if (projection_.reweightings() == 0) return select();
     // First with all terms, whose sum is well determined where single coefficients are not; then with those chosen.
     whitened_ = projection_.whitened(index_, fitted(columns), 0);
     whitened_ = projection_.whitened(index_, fitted(whitened_), 0);
@@ -149,11 +156,69 @@ class Finder {
       choice = iterated(select(), select, own);
     }
     found_.own_noise = own * choice.chosen.noise_sd;
-    if (projection_.residual_size() == ResidualSize::unknown) {
-      found_.own_noise = choice.chosen.noise_sd;
-      found_.moving_average = projection_.moving_average(index_, spread(choice.chosen, usable_, count));
-    }
     return choice;
+  }
+
+  /// With a moving average of each order in turn, as the terms and the average that fit one another depend on where one begins:
+  /// terms chosen in white noise hold the average's own expansion, and leave nothing for it. The order with the least
+  ///
+  ///   n log(squares/n) + log determinant + (k + q) log n + 2 log C(J, k)                    k of J terms; Schwarz 1978
+  ///
+  /// which counts that the k terms were chosen; no more orders are tried once two have been worse than the best.
+  template <class Select, class Fitted>
+  Choice choose_with(NoiseOfEquation const& noise, Columns const& columns, Select const& select, Fitted const& fitted) {
+    auto const count = static_cast<Eigen::Index>(equation_.terms.size());
+    auto const usable = static_cast<double>(usable_.size());
+    Eigen::VectorXd const all_terms = fitted(columns);
+    bool const exact = (columns.known - columns.terms * all_terms).norm() < exact_below * columns.known.norm();
+    std::optional<Choice> best;
+    Columns best_whitened;
+    double least = 0;
+    int worse = 0;
+    for (int const order : noise.orders()) {
+      if ((exact && order > 0 && best) || 10 * order > columns.known.size()) break;
+      whitened_ = noise.whitened(index_, all_terms, order);
+      if (whitened_.known.size() <= whitened_.terms.cols()) break;
+      whitened_ = noise.whitened(index_, fitted(whitened_), order);
+      Choice choice = select();
+      for (int round = 0; round < most_choices && order > 0; ++round) {
+        std::vector<int> const before = choice.chosen.terms;
+        Eigen::VectorXd weights = spread(choice.chosen, usable_, count);
+        Eigen::VectorXd last = choice.chosen.coefficient;
+        for (int k = 0; k < most_whitenings; ++k) {
+          whitened_ = noise.whitened(index_, weights, order);
+          Support const refitted = least_squares(problem_of(equation_, whitened_, usable_), before);
+          weights = spread(refitted, usable_, count);
+          bool const settled =
+              ((refitted.coefficient - last).array().abs() <= settled_step * refitted.covariance.diagonal().array().sqrt()).all();
+          last = refitted.coefficient;
+          if (settled) break;
+        }
+        choice = select();
+        if (choice.chosen.terms == before) break;
+      }
+      EquationErrors const left = noise.errors(index_, spread(choice.chosen, usable_, count), order);
+      auto const size = static_cast<double>(choice.chosen.terms.size());
+      auto const rows = static_cast<double>(left.errors.size());
+      double const score =
+          rows * elementary::log(std::max(left.squares, std::numeric_limits<double>::min()) / rows) + left.log_determinant +
+          (size + order) * elementary::log(rows) +
+          2 * (elementary::lgamma(usable + 1) - elementary::lgamma(size + 1) - elementary::lgamma(usable - size + 1));
+      if (best && !(score < least)) {
+        if (++worse == 2) break;
+        continue;
+      }
+      least = score;
+      best = std::move(choice);
+      best_whitened = whitened_;
+      found_.moving_average = left.average;
+      found_.moving_average_sd = left.average_sd;
+      found_.own_noise = std::sqrt(left.squares / std::max(1.0, rows - size - order));
+      if (!exact) errors_ = left.errors;
+      runs_ = left.runs;
+    }
+    whitened_ = std::move(best_whitened);
+    return std::move(*best);
   }
 
   /// Choices and whitenings in turns until a support repeats.
@@ -217,7 +282,7 @@ class Finder {
     for (Concern& near : near_dependence(equation_, whitened_, found_.chosen.terms))
       if (std::any_of(near.terms.begin(), near.terms.end(), [&](int j) { return !is_settled(j); }))
         found_.concerns.push_back(std::move(near));
-    if (projection_.residual_size() == ResidualSize::unknown) check_independence(whitened_residual);
+    if (projection_.noise_of_equation() != nullptr) check_errors();
     if (projection_.residual_size() == ResidualSize::one) {
       Columns const by_channels = found_.own_noise > 0 ? projection_.whitened(index_, weights_, 0) : whitened_;
       Eigen::VectorXd against_noise = by_channels.known;
@@ -252,6 +317,49 @@ class Finder {
     found_.concerns.push_back(std::move(concern));
   }
 
+  // Errors of a difference equation: independent of each other, and of the inputs before them.
+  void check_errors() {
+    if (errors_.size() == 0) return;
+    if (errors_.size() < shortest_runs * runs_) {
+      Concern concern{.kind = Concern::Kind::short_runs, .value = static_cast<double>(errors_.size()) / runs_};
+      concern.clause = fmt::format(
+          "missing samples leave {:.1f} rows in sequence on average: correlation of the noise is hardly seen", concern.value);
+      found_.concerns.push_back(std::move(concern));
+    }
+    Eigen::Index const rows = errors_.size(), most = std::min(lags, rows / 4);
+    double portmanteau = 0;
+    double const squares = errors_.squaredNorm();
+    for (Eigen::Index lag = 1; lag <= most; ++lag) {
+      double const r = errors_.head(rows - lag).dot(errors_.tail(rows - lag)) / squares;
+      portmanteau += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
+    }
+    // Once in a million: Wilson and Hilferty 1931.
+    double const part = 2 / (9.0 * static_cast<double>(std::max<Eigen::Index>(most, 1))), root = 1 - part + 4.753 * std::sqrt(part);
+    double const limit = static_cast<double>(most) * root * root * root;
+    if (most >= 3 && portmanteau > limit) {
+      Concern concern{.kind = Concern::Kind::not_white, .value = portmanteau};
+      concern.clause =
+          fmt::format("the residual is not white: its chi-squared over {} lags is {:.0f}, that of white noise below {:.0f}", most,
+                      portmanteau, limit);
+      found_.concerns.push_back(std::move(concern));
+    }
+    if (auto const trace = projection_.noise_of_equation()->input_in(index_, errors_)) {
+      Concern concern{.kind = Concern::Kind::input_left, .input = trace->input, .value = trace->correlation};
+      concern.clause =
+          fmt::format("the residual is correlated with {} (correlation {:.2f})",
+                      fmt::format("{} {}", trace->square ? "its square" : "its sample",
+                                  trace->lag == 0 ? "in the same row"
+                                                  : fmt::format("{} {} before", trace->lag, trace->lag == 1 ? "row" : "rows")),
+                      trace->correlation);
+      found_.concerns.push_back(std::move(concern));
+    }
+    if (found_.chosen.terms.empty()) {
+      Concern concern{.kind = Concern::Kind::explains_nothing};
+      concern.clause = "no term of the dictionary explains the target";
+      found_.concerns.push_back(std::move(concern));
+    }
+  }
+
   // Independent rows are what sds and probabilities count on.
   void check_independence(Eigen::VectorXd const& residual) {
     Eigen::Index const rows = residual.size();
@@ -264,16 +372,7 @@ class Finder {
       portmanteau += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
     }
     double const worth = 1 + 2 * sum;
-    if (portmanteau < far_from_white) return;
-    if (projection_.residual_size() == ResidualSize::unknown) {
-      Concern concern{.kind = Concern::Kind::not_white, .value = portmanteau};
-      concern.clause =
-          fmt::format("the residual is not white: its chi-squared over {} lags is {:.0f}, that of white noise below {:.0f}", lags,
-                      portmanteau, far_from_white);
-      found_.concerns.push_back(std::move(concern));
-      return;
-    }
-    if (worth < correlated_above) return;
+    if (portmanteau < far_from_white || worth < correlated_above) return;
     Concern concern{.kind = Concern::Kind::correlated, .value = worth};
     concern.clause =
         fmt::format("the residual is correlated from window to window: {} windows are equivalent to about {:.0f} independent ones",
@@ -288,6 +387,8 @@ class Finder {
   FoundEquation found_;
   std::vector<int> usable_;
   Columns whitened_;
+  int runs_ = 1;             // of rows that follow one another
+  Eigen::VectorXd errors_;   // of a difference equation; empty where they are rounding
   Eigen::VectorXd weights_;  // [J], those that whitened_ was last whitened with
 };
 

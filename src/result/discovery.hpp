@@ -69,7 +69,7 @@ struct DifferenceForecast {
   std::string target, unit;
   double sd = 0;                             // of what is measured
   std::optional<double> one_step, free_run;  // root mean square errors; a run that does not stay finite: infinite
-  double expected = 0;                       // of the free run, if the equation is right
+  std::optional<double> expected;            // of the free run, if the equation is right
 };
 
 struct DiscoveryReport {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/numeric/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 using namespace sysid::regression;
@@ -34,25 +35,75 @@ struct Series {
 
 }  // namespace
 
-TEST_CASE("divided by its own polynomial a moving average is what it was made of, run by run") {
-  std::vector<double> const c = {0.9, -0.3, 0.1};
-  Series const series(1, c, {40, 2, 25});
-  CHECK((MovingAverage{c}.divided(series.v, series.runs) - series.e).cwiseAbs().maxCoeff() < 1e-12);
-  CHECK((MovingAverage{}.divided(series.v, series.runs) - series.v).cwiseAbs().maxCoeff() == 0);
+TEST_CASE("what a moving average is made of is found again where the errors before a run are forgotten") {
+  std::vector<double> const c = {0.5, -0.3, 0.1};
+  Series const series(1, c, {400, 2, 250});
+  MovingAverage::Errors const e = MovingAverage{c}.errors(series.v, series.runs);
+  CHECK((e.in_runs - series.e).tail(60).cwiseAbs().maxCoeff() < 1e-6);
+  CHECK(e.squares() <= series.e.squaredNorm());  // with errors of 0 before the runs they are those of the series
+  CHECK((MovingAverage{}.errors(series.v, series.runs).in_runs - series.v).cwiseAbs().maxCoeff() == 0);
 }
 
-TEST_CASE("slopes are the derivatives of -e by the coefficients") {
+TEST_CASE("squares and determinant of whitened rows are those of the covariance of a moving average") {
+  // sd 1: the covariance of v is banded, 1 + c_1^2 + c_2^2, c_1 + c_1 c_2, c_2.
+  std::vector<double> const c = {0.7, 0.2};
+  Series const series(4, c, {30, 9, 1});
+  double squares = 0, determinant = 0;
+  for (Run const& run : series.runs) {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(run.count, run.count);
+    for (Eigen::Index i = 0; i < run.count; ++i)
+      for (Eigen::Index k = 0; k < run.count; ++k) {
+        double const lags[] = {1 + 0.49 + 0.04, 0.7 + 0.14, 0.2};
+        if (std::abs(i - k) < 3) covariance(i, k) = lags[std::abs(i - k)];
+      }
+    Eigen::MatrixXd const lower = *cholesky(covariance);
+    Eigen::VectorXd const v = series.v.segment(run.first, run.count);
+    squares += v.dot(Eigen::VectorXd(solve_cholesky(lower, v)));
+    determinant += 2 * lower.diagonal().array().log().sum();
+  }
+  MovingAverage const average{c};
+  CHECK(average.errors(series.v, series.runs).squares() == doctest::Approx(squares).epsilon(1e-12));
+  CHECK(average.turned(average.divided(series.v, series.runs), series.runs).squaredNorm() ==
+        doctest::Approx(squares).epsilon(1e-12));
+  CHECK(average.log_determinant(series.runs) == doctest::Approx(determinant).epsilon(1e-12));
+}
+
+TEST_CASE("rows that are freed do not know what came before a run") {
+  MovingAverage const average{{0.7, 0.2}};
+  Series const series(4, {0.7, 0.2}, {30, 9, 2});
+  Eigen::VectorXd moved = series.v;
+  for (Run const& run : series.runs) {
+    moved(run.first) += 0.7 * 5 + 0.2 * 3;  // e_-1 = 5, e_-2 = 3
+    moved(run.first + 1) += 0.2 * 5;
+  }
+  auto const freed = [&](Eigen::VectorXd const& v) { return average.freed(average.divided(v, series.runs), series.runs); };
+  CHECK(freed(moved).rows() == 28 + 7);
+  CHECK((freed(moved) - freed(series.v)).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("slopes are the derivatives of -e by the coefficients, with the errors before the runs held") {
   std::vector<double> const c = {0.5, 0.2};
   Series const series(2, {0.7, -0.1}, {30, 20});
-  Eigen::VectorXd const e = MovingAverage{c}.divided(series.v, series.runs);
+  MovingAverage::Errors const e = MovingAverage{c}.errors(series.v, series.runs);
   Eigen::MatrixXd const slopes = MovingAverage{c}.slopes(e, series.runs);
+  auto const by_hand = [&](std::vector<double> const& other) {
+    Eigen::VectorXd out = series.v;
+    for (std::size_t r = 0; r < series.runs.size(); ++r)
+      for (Eigen::Index i = 0; i < series.runs[r].count; ++i)
+        for (Eigen::Index k = 1; k <= 2; ++k) {
+          Eigen::Index const first = series.runs[r].first;
+          out(first + i) -= other[static_cast<std::size_t>(k - 1)] *
+                            (i >= k ? out(first + i - k) : e.before(k - i - 1, static_cast<Eigen::Index>(r)));
+        }
+    return out;
+  };
+  CHECK((by_hand(c) - e.in_runs).cwiseAbs().maxCoeff() < 1e-12);
   double const step = 1e-6;
   for (std::size_t k = 0; k < c.size(); ++k) {
     std::vector<double> more = c, less = c;
     more[k] += step;
     less[k] -= step;
-    Eigen::VectorXd const by_difference =
-        (MovingAverage{less}.divided(series.v, series.runs) - MovingAverage{more}.divided(series.v, series.runs)) / (2 * step);
+    Eigen::VectorXd const by_difference = (by_hand(less) - by_hand(more)) / (2 * step);
     CHECK((slopes.col(static_cast<Eigen::Index>(k)) - by_difference).cwiseAbs().maxCoeff() < 1e-7);
   }
 }
@@ -78,4 +129,26 @@ TEST_CASE("an estimate stays invertible where the series is a difference, whose 
   MovingAverage const found = fitted_moving_average(difference.v, difference.runs, {{-1.5}});  // a start that is not invertible
   CHECK(found.coefficients[0] < -0.9);
   CHECK(found.coefficients[0] > -1);
+}
+
+TEST_CASE("runs of seven rows show the coefficient as well as one of their length in all, without bias") {
+  double sum = 0, mean = 0;
+  int const series = 40;
+  double const c = 0.7;
+  for (int k = 0; k < series; ++k) {
+    // Each run is cut out of a longer series: what came before it goes on in it.
+    Series const made(200 + static_cast<std::uint64_t>(k), {c}, {1500});
+    std::vector<Run> runs;
+    Eigen::VectorXd v(1500 / 10 * 7);
+    for (Eigen::Index r = 0; r < 150; ++r) {
+      runs.push_back({7 * r, 7});
+      v.segment(7 * r, 7) = made.v.segment(10 * r + 3, 7);
+    }
+    double const off = fitted_moving_average(v, runs, {{0}}).coefficients[0] - c;
+    mean += off / series;
+    sum += off * off / series;
+  }
+  double const spread = std::sqrt(sum - mean * mean);
+  CHECK(std::abs(mean) < 4 * spread / std::sqrt(series));
+  CHECK(spread < 0.06);  // of one run sqrt((1 - c^2)/1050) = 0.022; seven rows show less of a zero at 0.7
 }

@@ -93,14 +93,52 @@ void check_records(Noise const& noise, std::string const& selector) {
   MESSAGE(selector << ", e " << noise.equation << ", moving average " << noise.average << ", measurement " << noise.measurement
                    << ": " << exact << " of 20 exact, " << inside << " of " << all << " coefficients within 2 sds, rms error "
                    << std::sqrt(squares / all) << " sds");
-  CHECK(exact >= 19);
-  CHECK(inside >= 0.89 * all);  // 95.4 % of 100 are expected: fewer than 89 once in a thousand
+  CHECK(exact >= (noise.equation > 0.1 ? 17 : 19));  // in large noise a false term of four sds comes in once in thirty records
+  CHECK(inside >= 0.89 * all);                       // 95.4 % of 100 are expected: fewer than 89 once in a thousand
 }
 
 }  // namespace
 
 TEST_CASE("five terms among 56 are found in white and in coloured noise, with coefficients within their sds") {
-  for (double const average : {0.0, 0.6, -0.7}) check_records({.equation = 0.05, .average = average}, "spike_slab");
+  for (double const average : {0.0, 0.6, -0.7})
+    for (double const size : {0.05, 0.3}) check_records({.equation = size, .average = average}, "spike_slab");
+}
+
+TEST_CASE("more lags than the equation has do not take the place of its moving average") {
+  int exact = 0, inside = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Stream force({seed, Purpose::input, 0, 0}), error({seed, Purpose::noise, 0, 0});
+    std::string csv = "u,y\n";
+    double y = 0, e = 0, u = 0;
+    for (int i = 0; i < 1050; ++i) {
+      double const next = 0.3 * error.normal();
+      y = 0.6 * y + 0.5 * u + next + 0.7 * e;
+      e = next;
+      u = force.normal();
+      if (i >= 50) csv += fmt::format("{:.17g},{}\n", u, i % 40 == 39 ? "NA" : fmt::format("{:.17g}", y));
+    }
+    Found const found(csv, "spike_slab", "1, lags(y, 1..4), lags(u, 0..4)");
+    if (found.kept.size() != 2 || !found.kept.contains("lag(y, 1)") || !found.kept.contains("lag(u, 1)")) continue;
+    ++exact;
+    json const& own = found.kept.at("lag(y, 1)");
+    inside += std::abs(own.at("coefficient").get<double>() - 0.6) < 2.6 * own.at("sd").get<double>() ? 1 : 0;
+  }
+  CHECK(exact >= 9);
+  CHECK(inside >= exact - 1);
+}
+
+TEST_CASE("a lag of the input that is missing in the terms is seen in the errors") {
+  std::string csv = "u,y\n";
+  std::vector<double> u, y = {0, 0, 0, 0};
+  Stream force({1, Purpose::input, 0, 0}), error({1, Purpose::noise, 0, 0});
+  for (std::size_t i = 0; i < 1004; ++i) u.push_back(force.normal());
+  for (std::size_t i = 4; i < u.size(); ++i) {
+    y.push_back(0.6 * y[i - 1] + 0.5 * u[i - 1] + 0.5 * u[i - 4] + 0.05 * error.normal());
+    csv += fmt::format("{:.17g},{:.17g}\n", u[i], y[i]);
+  }
+  Found const missing(csv, "spike_slab"), whole(csv, "spike_slab", "1, lags(y, 1..2), lags(u, 0..5)");
+  CHECK(missing.out.find("input_in_residuals") != std::string::npos);
+  CHECK(whole.out.find("the checks pass") != std::string::npos);
 }
 
 TEST_CASE("forward selection finds them as well") {

@@ -148,11 +148,9 @@ class Discover {
     for (std::size_t e = 0; e < errors.size(); ++e) {
       DictionaryEquation const& equation = dictionary_.equations[e];
       double const scale = equation.unit ? equation.unit->scale : 1;
-      auto const declared = [scale](double value) { return value / scale; };
-      discovery.forecasts.push_back({equation.text, equation.unit ? equation.unit->text : "", declared(errors[e].sd),
-                                     errors[e].one_step ? std::optional(declared(*errors[e].one_step)) : std::nullopt,
-                                     errors[e].free_run ? std::optional(declared(*errors[e].free_run)) : std::nullopt,
-                                     declared(errors[e].expected)});
+      auto const declared = [scale](std::optional<double> value) { return value ? std::optional(*value / scale) : std::nullopt; };
+      discovery.forecasts.push_back({equation.text, equation.unit ? equation.unit->text : "", errors[e].sd / scale,
+                                     declared(errors[e].one_step), declared(errors[e].free_run), declared(errors[e].expected)});
     }
     Findings of_forecast = forecast_findings(dictionary_, errors, discovery.forecast_rows);
     findings.insert(findings.end(), of_forecast.begin(), of_forecast.end());
@@ -269,7 +267,8 @@ class Discover {
         Finding finding = finding_of(concern, found.equations.size() > 1 ? equation.name : "", std::move(names));
         if (concern.input >= 0) {
           std::string const& input = dictionary_.measured.inputs[static_cast<std::size_t>(concern.input)].name;
-          finding.names = {input, std::string(rule_name(concern.rule))};
+          finding.names = {input};
+          if (concern.kind == regression::Concern::Kind::other_rule) finding.names.emplace_back(rule_name(concern.rule));
           finding.message = fmt::format("input {}: {}", input, finding.message);
         }
         if (std::find(findings.begin(), findings.end(), finding) == findings.end()) findings.push_back(std::move(finding));

@@ -81,8 +81,10 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
   std::optional<Unit> coefficient;
   if (equation.unit && term.unit) {
     coefficient = divide(*equation.unit, *term.unit);
-    coefficient->scale = 1;  // as its words say
-    coefficient->text = scope_.units().words(*coefficient);
+    if (coefficient->text.empty()) {  // of a term without a unit it is that of the target, as written
+      coefficient->scale = 1;         // as its words say
+      coefficient->text = scope_.units().words(*coefficient);
+    }
   }
   if (!term.written.coefficient.empty()) {
     ParameterInfo& named = parameter_of(term.written.coefficient);

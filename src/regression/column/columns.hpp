@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,7 +25,40 @@ struct Columns {
 enum class ResidualSize {
   one,         // of `whitened`: its sd is 1
   propagated,  // as noise of the channels passes through the form: by drawing it
-  unknown,     // the noise is that of the equation, and estimated with it
+  unknown,     // the noise is that of the equation, and estimated with it: noise_of_equation
+};
+
+/// The errors of an equation in discrete time, whose noise is a moving average of them.
+struct EquationErrors {
+  Eigen::VectorXd errors;       // row by row
+  double squares = 0;           // their sum of squares, with those before the first rows
+  double log_determinant = 0;   // of their covariance: twice the log likelihood is -n log(squares/n) - this
+  int runs = 0;                 // of rows that follow one another
+  std::vector<double> average;  // coefficients of the moving average
+  std::vector<double> average_sd;
+};
+
+/// An input that an equation's errors are correlated with.
+struct InputTrace {
+  int input = 0, lag = 0;
+  bool square = false;     // it is its square
+  double correlation = 0;  // of n samples, more than the limit over sqrt(n)
+};
+
+/// What forms have whose noise is that of the equation.
+class NoiseOfEquation {
+ public:
+  virtual ~NoiseOfEquation() = default;
+  /// Orders of the moving average to choose from, rising.
+  virtual std::vector<int> orders() const = 0;
+  /// Rows whose errors are independent and of one sd, as far as the moving average of this order at these coefficients [J] goes,
+  /// with what its own coefficients and unknown errors before the first rows do to them taken out: fewer rows than the columns
+  /// have.
+  virtual Columns whitened(int equation, Eigen::VectorXd const& coefficients, int order) const = 0;
+  virtual EquationErrors errors(int equation, Eigen::VectorXd const& coefficients, int order) const = 0;
+  /// The largest correlation of the errors with samples of inputs up to 25 rows before, and with their squares; nothing where none
+  /// is larger than 5.5/sqrt(n), which chance exceeds once in 10^5 records.
+  virtual std::optional<InputTrace> input_in(int equation, Eigen::VectorXd const& errors) const = 0;
 };
 
 /// The columns of every equation on all experiments, stacked.
@@ -43,8 +77,8 @@ class Projection {
   /// How often whitening depends on coefficients and is worth repeating; 0: never.
   virtual int reweightings() const = 0;
   virtual ResidualSize residual_size() const = 0;
-  /// Coefficients of the moving average that the residual at these coefficients is taken for; empty: white, or the form has none.
-  virtual std::vector<double> moving_average(int, Eigen::VectorXd const&) const { return {}; }
+  /// Of ResidualSize::unknown; else null.
+  virtual NoiseOfEquation const* noise_of_equation() const { return nullptr; }
   /// Noise sd taken per channel, as given or estimated; empty: the form takes none.
   virtual std::vector<double> const& noise_sd() const = 0;
   /// Half-width of windows in samples; 0 for forms on samples.

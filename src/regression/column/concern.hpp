@@ -27,6 +27,9 @@ struct Concern {
     unexplained,       // value: residual sd over that expected of the measurement noise: an input or a term is missing
     correlated,        // value: how many rows are worth one independent one
     not_white,         // of a difference equation; value: chi-squared over some lags
+    short_runs,        // the same: missing samples leave few rows that follow one another; value: how many in the mean
+    input_left,        // the same: its errors depend on `input`; value: the correlation
+    explains_nothing,  // no term is chosen
     other_rule,        // input, rule: the residual is far smaller with it; value: by which factor the squares
     smoothed,          // terms that needed a smoothed derivative inside the weak form
     missing,           // value: share of windows lost to missing samples

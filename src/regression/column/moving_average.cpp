@@ -1,8 +1,9 @@
-// Gauss-Newton steps, halved until they lower the squares and keep the noise invertible.
+// Recursions run by run; Gauss-Newton steps, halved until they lower the squares and keep the noise invertible.
 #include "regression/column/moving_average.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/numeric/elementary.hpp"
 #include "linear_algebra/decompositions.hpp"
@@ -11,15 +12,16 @@ namespace sysid::regression {
 namespace {
 
 constexpr int most_rounds = 100, most_halvings = 30;
-constexpr double enough = 1e-12;  // part of the squares that a round gains
+constexpr double enough = 1e-9;  // in twice the log likelihood, that a round gains
+constexpr double shift = 1e-6;
+constexpr double nearest_zero = 0.995;  // a zero of C nearer to the circle than this forgets too slowly to be told from it
 constexpr double moved_out = 0.97;
-constexpr double nearly_double = 0.995;  // a zero of C nearer to the circle than this forgets too slowly to be told from it
 
 /// Whether all zeros of C lie outside the unit circle: by the step-down recursion of Levinson, whose numbers are then below 1.
 bool is_invertible(std::vector<double> c) {
   for (std::size_t q = c.size(); q > 0; --q) {
     double const reflection = c[q - 1];
-    if (!(std::abs(reflection) < nearly_double)) return false;
+    if (!(std::abs(reflection) < nearest_zero)) return false;
     std::vector<double> lower(q - 1);
     for (std::size_t k = 0; k + 1 < q; ++k) lower[k] = (c[k] - reflection * c[q - 2 - k]) / (1 - reflection * reflection);
     c = std::move(lower);
@@ -27,51 +29,158 @@ bool is_invertible(std::vector<double> c) {
   return true;
 }
 
-}  // namespace
-
-Eigen::MatrixXd MovingAverage::divided(Eigen::MatrixXd const& v, std::span<Run const> runs) const {
-  Eigen::MatrixXd e = v;
-  auto const order = static_cast<Eigen::Index>(coefficients.size());
-  for (Eigen::Index j = 0; j < v.cols(); ++j)
-    for (Run const& run : runs)
-      for (Eigen::Index i = 1; i < run.count; ++i)
-        for (Eigen::Index k = 1; k <= std::min(order, i); ++k)
-          e(run.first + i, j) -= coefficients[static_cast<std::size_t>(k - 1)] * e(run.first + i - k, j);
-  return e;
+/// v divided by C in one run, from e = 0 before it.
+Eigen::MatrixXd divided_by(std::vector<double> const& c, Eigen::MatrixXd v) {
+  auto const order = static_cast<Eigen::Index>(c.size());
+  for (Eigen::Index i = 1; i < v.rows(); ++i)
+    for (Eigen::Index k = 1; k <= std::min(order, i); ++k) v.row(i) -= c[static_cast<std::size_t>(k - 1)] * v.row(i - k);
+  return v;
 }
 
-Eigen::MatrixXd MovingAverage::slopes(Eigen::VectorXd const& e, std::span<Run const> runs) const {
-  Eigen::MatrixXd lagged = Eigen::MatrixXd::Zero(e.size(), static_cast<Eigen::Index>(coefficients.size()));
-  for (Eigen::Index k = 1; k <= lagged.cols(); ++k)
-    for (Run const& run : runs)
-      if (run.count > k) lagged.col(k - 1).segment(run.first + k, run.count - k) = e.segment(run.first, run.count - k);
-  return divided(lagged, runs);
+/// What errors of 1 before a run, the last one first, do to its e. [count x q]
+Eigen::MatrixXd responses(std::vector<double> const& c, Eigen::Index count) {
+  auto const order = static_cast<Eigen::Index>(c.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(count, order);
+  for (Eigen::Index j = 0; j < order; ++j)  // e_-1-j
+    for (Eigen::Index i = 0; i < count && i + j < order; ++i) out(i, j) = -c[static_cast<std::size_t>(i + j)];
+  return divided_by(c, std::move(out));
+}
+
+/// The decompositions of R above I, one for each length of a run.
+class Starts {
+ public:
+  explicit Starts(std::vector<double> const& c) : c_(c) {}
+  OrthogonalTriangular const& operator()(Eigen::Index count) {
+    auto const known = of_.find(count);
+    if (known != of_.end()) return known->second;
+    auto const order = static_cast<Eigen::Index>(c_.size());
+    Eigen::MatrixXd both(count + order, order);
+    both << responses(c_, count), Eigen::MatrixXd::Identity(order, order);
+    return of_.emplace(count, OrthogonalTriangular(both)).first->second;
+  }
+
+ private:
+  std::vector<double> const& c_;
+  std::map<Eigen::Index, OrthogonalTriangular> of_;
+};
+
+/// Rows above zeros, one for each error before a run.
+Eigen::MatrixXd with_zeros(Eigen::MatrixXd const& rows, Eigen::Index order) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows.rows() + order, rows.cols());
+  out.topRows(rows.rows()) = rows;
+  return out;
+}
+
+}  // namespace
+
+MovingAverage::Errors MovingAverage::errors(Eigen::VectorXd const& v, std::span<Run const> runs) const {
+  Errors out{v, Eigen::MatrixXd::Zero(order(), static_cast<Eigen::Index>(runs.size()))};
+  if (coefficients.empty()) return out;
+  Starts starts(coefficients);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    Run const& run = runs[r];
+    Eigen::VectorXd const from_zero = divided_by(coefficients, v.segment(run.first, run.count));
+    Eigen::VectorXd const before = -starts(run.count).solve(with_zeros(from_zero, order()));
+    out.in_runs.segment(run.first, run.count) = from_zero + responses(coefficients, run.count) * before;
+    out.before.col(static_cast<Eigen::Index>(r)) = before;
+  }
+  return out;
+}
+
+Eigen::MatrixXd MovingAverage::slopes(Errors const& e, std::span<Run const> runs) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(e.in_runs.size(), order());
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    Run const& run = runs[r];
+    Eigen::MatrixXd lagged(run.count, order());
+    for (Eigen::Index k = 1; k <= order(); ++k)
+      for (Eigen::Index i = 0; i < run.count; ++i)
+        lagged(i, k - 1) = i >= k ? e.in_runs(run.first + i - k) : e.before(k - i - 1, static_cast<Eigen::Index>(r));
+    out.middleRows(run.first, run.count) = divided_by(coefficients, std::move(lagged));
+  }
+  return out;
+}
+
+Eigen::MatrixXd MovingAverage::turned(Eigen::MatrixXd const& columns, std::span<Run const> runs) const {
+  if (coefficients.empty()) return columns;
+  Eigen::MatrixXd out(columns.rows(), columns.cols());
+  Starts starts(coefficients);
+  for (Run const& run : runs)
+    out.middleRows(run.first, run.count) =
+        starts(run.count).turned(with_zeros(columns.middleRows(run.first, run.count), order())).bottomRows(run.count);
+  return out;
+}
+
+Eigen::MatrixXd MovingAverage::divided(Eigen::MatrixXd const& columns, std::span<Run const> runs) const {
+  Eigen::MatrixXd out = columns;
+  for (Run const& run : runs)
+    out.middleRows(run.first, run.count) = divided_by(coefficients, columns.middleRows(run.first, run.count));
+  return out;
+}
+
+Eigen::MatrixXd MovingAverage::freed(Eigen::MatrixXd const& columns, std::span<Run const> runs) const {
+  if (coefficients.empty()) return columns;
+  Eigen::Index rows = 0, first = 0;
+  for (Run const& run : runs) rows += std::max<Eigen::Index>(0, run.count - order());
+  Eigen::MatrixXd out(rows, columns.cols());
+  std::map<Eigen::Index, OrthogonalTriangular> decomposed;
+  for (Run const& run : runs) {
+    Eigen::Index const left = run.count - order();
+    if (left <= 0) continue;
+    auto const place = decomposed.try_emplace(run.count, responses(coefficients, run.count)).first;
+    out.middleRows(first, left) = place->second.turned(columns.middleRows(run.first, run.count)).bottomRows(left);
+    first += left;
+  }
+  return out;
+}
+
+double MovingAverage::log_determinant(std::span<Run const> runs) const {
+  if (coefficients.empty()) return 0;
+  Starts starts(coefficients);
+  double sum = 0;
+  for (Run const& run : runs) {
+    Eigen::MatrixXd const triangle = starts(run.count).triangle();
+    for (Eigen::Index k = 0; k < triangle.rows(); ++k) sum += 2 * elementary::log(std::abs(triangle(k, k)));
+  }
+  return sum;
 }
 
 MovingAverage fitted_moving_average(Eigen::VectorXd const& v, std::span<Run const> runs, MovingAverage from) {
   MovingAverage best = std::move(from);
-  int const order = static_cast<int>(best.coefficients.size());
+  Eigen::Index const order = best.order();
+  auto const rows = static_cast<double>(v.size());
   for (int round = 0; round < most_rounds && !is_invertible(best.coefficients); ++round) {
     double factor = 1;
     for (double& each : best.coefficients) each *= factor *= moved_out;
   }
-  Eigen::VectorXd e = best.divided(v, runs);
-  double squares = e.squaredNorm();
-  for (int round = 0; round < most_rounds && order > 0 && squares > 0; ++round) {
-    Eigen::VectorXd const step = OrthogonalTriangular(best.slopes(e, runs)).solve(e);
+  MovingAverage::Errors e = best.errors(v, runs);
+  double determinant = best.log_determinant(runs);
+  for (int round = 0; round < most_rounds && order > 0 && e.squares() > 0; ++round) {
+    Eigen::VectorXd rise(order);  // of the determinant
+    for (Eigen::Index k = 0; k < order; ++k) {
+      MovingAverage other = best;
+      other.coefficients[static_cast<std::size_t>(k)] += shift;
+      rise(k) = (other.log_determinant(runs) - determinant) / shift;
+    }
+    Eigen::MatrixXd const slopes = best.turned(best.slopes(e, runs), runs);
+    OrthogonalTriangular const decomposed(slopes);
+    Eigen::MatrixXd const root = solve_upper(decomposed.triangle(), Eigen::MatrixXd::Identity(order, order));
+    Eigen::VectorXd const step =
+        decomposed.solve(best.turned(e.in_runs, runs)) - e.squares() / (2 * rows) * (root * (root.transpose() * rise));
     double factor = 1, gain = 0;
     for (int halving = 0; halving < most_halvings && gain == 0; ++halving, factor /= 2) {
       MovingAverage next = best;
       for (Eigen::Index k = 0; k < order; ++k) next.coefficients[static_cast<std::size_t>(k)] += factor * step(k);
       if (!is_invertible(next.coefficients)) continue;
-      Eigen::VectorXd const left = next.divided(v, runs);
-      if (!(left.squaredNorm() < squares)) continue;
-      gain = squares - left.squaredNorm();
+      MovingAverage::Errors left = next.errors(v, runs);
+      double const its_determinant = next.log_determinant(runs);
+      double const lower = rows * elementary::log(e.squares() / left.squares()) + determinant - its_determinant;
+      if (!(lower > 0)) continue;
+      gain = lower;
       best = std::move(next);
-      e = left;
-      squares -= gain;
+      e = std::move(left);
+      determinant = its_determinant;
     }
-    if (gain <= enough * squares) break;
+    if (gain <= enough) break;
   }
   return best;
 }
