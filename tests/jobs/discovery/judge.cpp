@@ -66,7 +66,7 @@ class Shooting {
     for (std::size_t n = first(segment) + 1; n < first(segment + 1); ++n) {
       Row const &before = data_.rows[n - 1], &after = data_.rows[n];
       auto const rate = [&](Row const& x, Row& slope, double t) {
-        if (++calls > 200000) throw std::runtime_error("too many steps");
+        if (++calls > 30000) throw std::runtime_error("too many steps");
         std::copy(x.begin(), x.end(), values.begin());
         for (std::size_t i = 0; i < inputs_; ++i)
           values[data_.states + i] =
@@ -78,7 +78,7 @@ class Shooting {
           if (!(std::abs(each) < 1e8)) throw std::runtime_error("not finite");
       };
       try {
-        odeint::integrate_adaptive(odeint::make_controlled(1e-11, 1e-11, odeint::runge_kutta_dopri5<Row>()), rate, state, before[0],
+        odeint::integrate_adaptive(odeint::make_controlled(1e-10, 1e-10, odeint::runge_kutta_dopri5<Row>()), rate, state, before[0],
                                    after[0], (after[0] - before[0]) / 4);
       } catch (std::exception const&) {
         return {};
@@ -134,7 +134,7 @@ class Shooting {
       return sum;
     };
     double best = objective(fit, weights);
-    for (int round = 0; round < 60 && std::isfinite(best); ++round) {
+    for (int round = 0; round < 40 && std::isfinite(best); ++round) {
       for (std::size_t n = 0; n < weights.size(); ++n)
         for (std::size_t i = 0; i < data_.states; ++i) weights[n][i] /= std::sqrt(std::max(squares[i] / rows, 1e-32));
       std::vector<Row> matrix;

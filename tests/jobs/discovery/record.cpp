@@ -2,7 +2,7 @@
 // Runge-Kutta-Fehlberg 7(8) with relative and absolute tolerances of 1e-12, restarted at each sample so that inputs are smooth
 // within a step.
 //
-//   record TABLE NAME KIND LEVEL SEED DIGITS [SAMPLES]
+//   record TABLE NAME KIND LEVEL SEED DIGITS [SAMPLES [2]]
 //
 // to the standard output as CSV. KIND: `times`, each sample times 1 + LEVEL*normal; `plus`, each sample plus LEVEL times the
 // standard deviation of its channel times normal. DIGITS: significant digits of all numbers, of time as well. Inputs are recorded
@@ -33,13 +33,21 @@ struct System {
   double span = 0;
   std::vector<std::string> states, inputs;
   std::vector<bool> held;  // inputs: until the next sample; else interpolated
-  State start;
+  State start, again;
   std::vector<std::string> input_texts, equations;
 };
 
 std::string trimmed(std::string text) {
   auto const first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+/// STATE = VALUE, STATE = VALUE
+State read_start(std::istringstream& words) {
+  State start;
+  std::string one;
+  while (std::getline(words, one, ',')) start.push_back(std::atof(one.substr(one.find('=') + 1).c_str()));
+  return start;
 }
 
 System read_system(char const* table, std::string const& wanted) {
@@ -69,13 +77,13 @@ System read_system(char const* table, std::string const& wanted) {
     } else if (first.back() == '\'') {
       out.states.push_back(first.substr(0, first.size() - 1));
       out.equations.push_back(line.substr(line.find('=') + 1));
+    } else if (first == "again") {
+      words >> first;
+      out.again = read_start(words);
     } else {
-      std::string skipped, starts, one;
       out.samples = std::atoi(first.c_str());
-      words >> skipped >> skipped >> out.span >> skipped;
-      std::getline(words, starts);
-      std::istringstream each(starts);
-      while (std::getline(each, one, ',')) out.start.push_back(std::atof(one.substr(one.find('=') + 1).c_str()));
+      words >> first >> first >> out.span >> first;
+      out.start = read_start(words);
     }
   }
   if (out.states.empty() || out.start.size() != out.states.size()) throw std::runtime_error("no such system: " + wanted);
@@ -139,7 +147,11 @@ void add_noise(std::vector<State>& states, std::string const& kind, double level
 int main(int count, char** arguments) try {
   if (count < 7) return std::fprintf(stderr, "record TABLE NAME times|plus LEVEL SEED DIGITS [SAMPLES]\n"), 2;
   System system = read_system(arguments[1], arguments[2]);
-  if (count > 7) system.samples = std::atoi(arguments[7]);
+  if (count > 7 && std::atoi(arguments[7]) > 0) system.samples = std::atoi(arguments[7]);
+  if (count > 8) {
+    if (system.again.size() != system.states.size()) throw std::runtime_error("it has no second record");
+    system.start = system.again;
+  }
   Record const record(system);
   std::vector<State> states = record.states();
   add_noise(states, arguments[3], std::atof(arguments[4]), std::strtoull(arguments[5], nullptr, 10));
