@@ -12,6 +12,7 @@ struct dictionary_line_tag : resumes_behind_statement {};
 constexpr x3::rule<dictionary_line_tag, ast::DictionaryStatement> dictionary_line = wanted::dictionary_statement;
 constexpr x3::rule<struct dictionary_statement_tag, ast::DictionaryStatement> dictionary_statement = wanted::dictionary_statement;
 constexpr x3::rule<struct quantity_tag, ast::Declared> quantity = wanted::name;
+constexpr x3::rule<struct dictionary_discrete_tag, ast::DiscreteTimeDeclaration> dictionary_discrete = "a declaration of time";
 constexpr x3::rule<struct dictionary_time_tag, ast::TimeDeclaration> dictionary_time = "a declaration of time";
 constexpr x3::rule<struct dictionary_inputs_tag, ast::InputDeclaration> dictionary_inputs = "a declaration of inputs";
 constexpr x3::rule<struct measured_state_tag, ast::DictionaryState> measured_state = wanted::name;
@@ -26,11 +27,13 @@ constexpr auto prime_of_state = [](auto& context) { ++x3::_val(context).primes; 
 auto const dictionary_def = located[keyword("dictionary") > name[to(&ast::Dictionary::name)] > -text[to(&ast::Dictionary::title)] >
                                     opening_brace > *(dictionary_line[append(&ast::Dictionary::statements)] | '\n' | ';') > '}'];
 auto const dictionary_line_def = (!(x3::lit('\n') | ';' | '}' | x3::eoi)) > dictionary_statement[take] > end_of_statement;
-auto const dictionary_statement_def = dictionary_time[take] | dictionary_inputs[take] | dictionary_states[take] |
-                                      dictionary_parameter[take] | dictionary_definition[take] | function_definition[take] |
-                                      dictionary_list[take] | coefficient_units[take];
+auto const dictionary_statement_def = dictionary_discrete[take] | dictionary_time[take] | dictionary_inputs[take] |
+                                      dictionary_states[take] | dictionary_parameter[take] | dictionary_definition[take] |
+                                      function_definition[take] | dictionary_list[take] | coefficient_units[take];
 
 auto const quantity_def = located[name[to(&ast::Declared::name)] >> -unit[to(&ast::Declared::unit)]];
+auto const dictionary_discrete_def = located[word("time") >> word("discrete") >>
+                                             (&end_of_statement | (&digit >> expression[to(&ast::DiscreteTimeDeclaration::step)]))];
 auto const dictionary_time_def = located[word("time") > quantity[to(&ast::TimeDeclaration::time)]];
 auto const dictionary_inputs_def = located[word("input") > quantity[append(&ast::InputDeclaration::names)] >
                                            *(',' > quantity[append(&ast::InputDeclaration::names)])];
@@ -53,7 +56,8 @@ auto const dictionary_list_def =
 auto const coefficient_units_def = located[word("coefficients") > equals > unit[append(&ast::CoefficientUnits::units)] >
                                            *(',' > unit[append(&ast::CoefficientUnits::units)])];
 
-BOOST_SPIRIT_DEFINE(dictionary, dictionary_line, dictionary_statement, quantity, dictionary_time, dictionary_inputs, measured_state,
-                    dictionary_states, dictionary_parameter, dictionary_definition, dictionary_list, coefficient_units)
+BOOST_SPIRIT_DEFINE(dictionary, dictionary_line, dictionary_statement, quantity, dictionary_discrete, dictionary_time,
+                    dictionary_inputs, measured_state, dictionary_states, dictionary_parameter, dictionary_definition,
+                    dictionary_list, coefficient_units)
 
 }  // namespace sysid::grammar

@@ -173,8 +173,10 @@ std::vector<Word> const& words_of(WordKind kind) {
 std::vector<Word> settings_of(std::string_view owner) {
   Words all;
   for (SettingRow const& row : setting_rows(owner)) all.push_back(setting_word(row));
-  if (regression::find_selector(owner) != nullptr)
+  if (regression::find_selector(owner) != nullptr) {
     all.push_back({WordKind::setting, "derivatives", "derivatives = weak", "how derivatives of the record are formed"});
+    for (SettingRow const& row : regression::form_of_samples().settings) all.push_back(setting_word(row));
+  }
   if (!all.empty()) return all;
   if (DistributionRow const* row = find_distribution(owner)) {
     for (ArgumentRow const& argument : row->arguments)

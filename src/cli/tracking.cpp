@@ -28,7 +28,7 @@ std::string read_rows(std::string const& text, TrackOptions& options) {
   std::string const rest = dots == std::string::npos ? "" : text.substr(dots + 2);
   auto const last = rest.empty() ? std::optional(0) : row_number(rest);
   if (dots == std::string::npos || !first || !last || (*last > 0 && *last <= *first))
-    return fmt::format("rows are a range such as 501..1500 or 501.., counted from 1, not `{}`", text);
+    return fmt::format("invalid rows `{}`: rows are a range such as 501..1500 or 501.., counted from 1", text);
   options.first_row = *first;
   options.last_row = *last;
   return "";
@@ -46,7 +46,9 @@ std::string read_drift(std::string const& text, DriftOption& drift) {
     good = unit && unit->dimension == unit_atom("s")->dimension;
     if (good) time = unit->scale;
   }
-  if (!good) return fmt::format("a drift is a part from 0 to 1 in 1000 rows, or in a time: 0.01, 0.01/h, 0.05/day; not `{}`", text);
+  if (!good)
+    return fmt::format("invalid drift `{}`: a drift is a fraction from 0 to 1 in 1000 rows, or in a time: 0.01, 0.01/h, 0.05/day",
+                       text);
   drift = {relative, time};
   return "";
 }
@@ -55,7 +57,7 @@ std::string refuse_no_rate(std::string const& text) {
   double rate = 0;
   auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
   if (error == std::errc() && end == text.data() + text.size() && rate > 0 && rate <= 0.1) return "";
-  return fmt::format("a rate of false alarms is a number of at most 0.1 per row, not `{}`", text);
+  return fmt::format("invalid rate `{}`: a rate of false alarms is a number of at most 0.1 per row", text);
 }
 
 struct Options : ResultOptions {
@@ -91,11 +93,12 @@ Work declare_track(CLI::App& verb) {
       ->type_name("CSV")
       ->check(refuse_no_path);
   verb.add_flag("--follow", track.follow, "wait for rows that are appended to the file, until Ctrl-C");
-  verb.add_flag("--at-rest", track.at_rest, "the first row is in the model's initial values");
+  verb.add_flag("--at-rest", track.at_rest, "the states have the model's initial values at the first row");
   verb.add_option("--parameters", track.parameters, "parameters to track, separated by commas (default: all in equations)")
       ->delimiter(',')
       ->type_name("NAMES");
-  verb.add_option("--drift", options->drift, "sd of a parameter's change, as a part of it, in 1000 rows or a time (0.05/day)")
+  verb.add_option("--drift", options->drift,
+                  "sd of a parameter's change, as a fraction of its value, in 1000 rows or a time (0.05/day)")
       ->type_name("DRIFT")
       ->check([&track](std::string const& text) { return read_drift(text, track.drift); })
       ->default_str("0.01");
@@ -103,11 +106,11 @@ Work declare_track(CLI::App& verb) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"extended", "unscented"}))
       ->default_str("extended");
-  verb.add_option("--false-alarms", track.false_alarms, "most false alarms per row")
+  verb.add_option("--false-alarms", track.false_alarms, "upper limit of the false-alarm probability per row")
       ->type_name("RATE")
       ->check(refuse_no_rate)
       ->default_str("1e-5");
-  verb.add_option("--window", track.window, "rows looked back for a change")
+  verb.add_option("--window", track.window, "how many rows back a change is looked for")
       ->type_name("N")
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();

@@ -211,15 +211,14 @@ void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
       named.push_back(
           fmt::format("row {}, {:.0f} sds", of.data().first_row + static_cast<int>(place), std::fabs(of.sized.values[place])));
   if (places.size() > most_named) named.push_back("...");
-  findings.push_back(
-      {FindingCode::samples_far_off, Severity::warning, of.names(),
-       fmt::format("{} of {} {} far from all others ({})", counted(places.size(), "sample"), of.name(),
-                   places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
-       of.model().filtered()
-           ? "check these rows: empty the cells that are not measurements; if they are, something happened there that "
-             "the disturbance does not describe"
-           : "check these rows: empty the cells that are not measurements, or use noise with heavy "
-             "tails: `student_t(y, 4, scale = sigma)`"});
+  findings.push_back({FindingCode::samples_far_off, Severity::warning, of.names(),
+                      fmt::format("{} of {} {} far from all others ({})", counted(places.size(), "sample"), of.name(),
+                                  places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
+                      of.model().filtered()
+                          ? "check these rows: empty the cells that are not measurements; if they are, the disturbance does not "
+                            "describe the motion there"
+                          : "check these rows: empty the cells that are not measurements, or use noise with heavy "
+                            "tails: `student_t(y, 4, scale = sigma)`"});
 }
 
 void check_size(ScoredChannel const& of, bool with_outliers, int together, FitLine& line, Findings& findings) {

@@ -43,6 +43,9 @@ constexpr Row rows[] = {
      "look for an input that was not recorded or a state that is missing, or add terms"},
     {Kind::correlated, Severity::warning, FindingCode::residual_correlated,
      "use a longer record, or add the terms that are missing: the sds are underestimated and the probabilities overconfident"},
+    {Kind::not_white, Severity::warning, FindingCode::residual_correlated,
+     "add lags or terms, or allow a longer moving average: `spike_slab(moving_average = 8)`; until then the coefficients are "
+     "biased"},
     {Kind::other_rule, Severity::warning, FindingCode::input_rule,
      "if the input followed that rule, write it in the data block and run again: the present terms and coefficients may be wrong"},
     {Kind::smoothed, Severity::note, FindingCode::derivative_smoothed,

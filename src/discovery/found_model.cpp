@@ -70,6 +70,7 @@ class ModelText {
 
   std::string text(std::string const& name, std::string const& title) {
     std::string out = fmt::format("model {} \"{}\" {{\n", name, title);
+    if (discrete()) return out + declarations() + "\n" + definitions() + coefficients() + "\n" + predictions() + "}\n";
     out += declarations() + initial_values() + "\n" + definitions() + coefficients() + "\n" + equations() + "\n" + observations();
     return out + "}\n";
   }
@@ -79,6 +80,7 @@ class ModelText {
 
  private:
   CheckedDictionary const& dictionary() const { return source_.dictionary; }
+  bool discrete() const { return dictionary().numbers.discrete; }
 
   std::vector<NodeId> roots() const {
     std::vector<NodeId> all;
@@ -141,6 +143,9 @@ class ModelText {
 
   std::string declarations() const {
     std::string out;
+    if (discrete())
+      out += fmt::format("time discrete{}\n",
+                         dictionary().measured.step ? fmt::format(" {} [s]", *dictionary().measured.step) : "");
     for (ast::DictionaryStatement const& statement : dictionary().tree.statements)
       if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement); time != nullptr && reads_time_)
         out += fmt::format("time {}{}\n", time->time.name.text,
@@ -149,6 +154,7 @@ class ModelText {
       Quantity const& input = dictionary().measured.inputs[i];
       out += fmt::format("input {}{}\n", input.name, in_brackets(input.unit_text()));
     }
+    if (discrete()) return out;
     for (Quantity const& state : dictionary().states)
       out += fmt::format("state {}{}\n", state.name, in_brackets(state.unit_text()));
     return out;
@@ -200,9 +206,10 @@ class ModelText {
                            unparse(*parameter->value));
       if (auto const* definition = std::get_if<ast::Definition>(&statement);
           definition != nullptr && used_.contains(definition->name.name.text))
-        out += fmt::format(
-            "{} {}{} = {}\n", definition->kind == ast::DefinitionKind::constant ? "constant" : "let", definition->name.name.text,
-            definition->name.unit ? fmt::format(" [{}]", unparse(*definition->name.unit)) : "", unparse(definition->value));
+        out += fmt::format("{} {}{} = {}\n", definition->kind == ast::DefinitionKind::constant ? "constant" : "let",
+                           definition->name.name.text,
+                           definition->name.unit ? fmt::format(" [{}]", unparse(*definition->name.unit)) : "",
+                           unparse(discrete() ? of_measured(definition->value) : definition->value));
     }
     for (ast::FunctionDefinition const* function : all_functions())
       if (functions_.contains(function->name.text)) out += unparse(ast::File{{*function}});
@@ -227,22 +234,75 @@ class ModelText {
     return out;
   }
 
+  /// The terms of an equation times their coefficients; nothing where it has none.
+  std::optional<ast::Expression> right_side(std::size_t e) const {
+    DictionaryEquation const& equation = dictionary().equations[e];
+    std::optional<ast::Expression> sum;
+    for (int const index : structure_.equations[e]->terms) {
+      auto const j = static_cast<std::size_t>(index);
+      if (equation.terms[j].in_target) continue;
+      ast::Expression term = times(tree::reference(names_[e][j], 0, {}), equation.terms[j].tree);
+      sum = sum ? tree::binary("+", std::move(*sum), std::move(term), {}) : std::move(term);
+    }
+    return sum;
+  }
+
   std::string equations() const {
     std::string out;
     for (std::size_t e = 0; e < structure_.equations.size(); ++e) {
       DictionaryEquation const& equation = dictionary().equations[e];
-      std::optional<ast::Expression> sum;
-      for (int const index : structure_.equations[e]->terms) {
-        auto const j = static_cast<std::size_t>(index);
-        if (equation.terms[j].in_target) continue;
-        ast::Expression term = times(tree::reference(names_[e][j], 0, {}), equation.terms[j].tree);
-        sum = sum ? tree::binary("+", std::move(*sum), std::move(term), {}) : std::move(term);
-      }
+      auto const sum = right_side(e);
       std::string const left = unparse(equation.tree), right = unparse(sum ? *sum : tree::number(0, {}));
       bool const turned = left.starts_with('-');  // no statement begins so
       out += fmt::format("{} = {}\n", turned ? right : left, turned ? left : right);
     }
     return out;
+  }
+
+  /// In discrete time the samples that were measured, where the dictionary has a state.
+  ast::Expression of_measured(ast::Expression tree) const {
+    std::vector<ast::Expression*> states;
+    each_expression(tree, [&](ast::Expression& part) {
+      if (auto const* reference = std::get_if<ast::Reference>(&part.node); reference != nullptr && channel_of(reference->name.text))
+        states.push_back(&part);
+    });
+    for (ast::Expression* state : states) {
+      std::size_t const channel = *channel_of(std::get<ast::Reference>(state->node).name.text);
+      *state = tree::call({{}, "measured"}, {tree::reference(dictionary().measured.channels[channel].name, 0, {})}, {});
+    }
+    return tree;
+  }
+  /// The channel that measures a state; nothing for other names.
+  std::optional<std::size_t> channel_of(std::string const& state) const {
+    std::vector<regression::Channel> const& channels = dictionary().numbers.channels;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      if (dictionary().states[static_cast<std::size_t>(channels[c].state)].name == state) return c;
+    return std::nullopt;
+  }
+
+  /// Each sample from those before it, with the errors of the samples before where the noise is a moving average of them.
+  std::string predictions() {
+    std::string parameters, observed;
+    for (std::size_t e = 0; e < structure_.equations.size(); ++e) {
+      std::size_t const c = *channel_of(dictionary().equations[e].text);
+      std::string const& channel = dictionary().measured.channels[c].name;
+      Quantity const& state = dictionary().states[static_cast<std::size_t>(dictionary().numbers.channels[c].state)];
+      auto const sum = right_side(e);
+      std::string mean = unparse(of_measured(sum ? *sum : tree::number(0, {})));
+      std::vector<double> const& average = source_.discovery.equations[e].moving_average;
+      for (std::size_t k = 0; k < average.size(); ++k) {
+        std::string const name = fresh(fmt::format("c{}_{}", k + 1, identifier(channel)), taken_);
+        parameters += fmt::format("parameter {} ~ normal({}, sd = 0.3)  # of the noise\n", name, rounded(average[k]));
+        mean += fmt::format(" + {}*lag(residual({}), {})", name, channel, k + 1);
+      }
+      std::string const name = fresh("noise_" + identifier(channel), taken_);
+      double const sd = structure_.equations[e]->noise_sd, size = motion_of(source_.data, c, 0).size[0];
+      double const low = sd > 1e-9 * size ? sd / noise_factor : 1e-9 * size, high = sd > 1e-9 * size ? noise_factor * sd : size;
+      parameters += fmt::format("parameter {}{} ~ log_uniform({}, {})\n", name, in_brackets(state.unit_text()),
+                                rounded(from_si(state.unit, low)), rounded(from_si(state.unit, high)));
+      observed += fmt::format("observe {}{} ~ normal({}, sd = {})\n", channel, in_brackets(state.unit_text()), mean, name);
+    }
+    return parameters + observed;
   }
 
   double residual_over_noise() const {

@@ -70,14 +70,16 @@ std::string FoundSource::text(std::vector<FoundStructure> const& structures) con
   }
   for (ExperimentUse const& use : unused_parts(file, what, 4 * rows_of_start + 1))
     unseen += (unseen.empty() ? "" : ", ") + data_name(file.data[static_cast<std::size_t>(use.data)], use.part);
-  std::string const start = later ? ", start = rest" : "";
+  std::string const start = later && !dictionary.numbers.discrete ? ", start = rest" : "";
   if (structures.size() > 1) {
     out += fmt::format("candidates structures {{\n{}\n}}\n\n", fmt::join(models, "\n"));
     out += fmt::format("selection = select structures to {} with abc_smc(particles = 1000){}, seed = {}\n", uses, start, seed);
   }
   out += fmt::format("posterior = fit {} to {} with mh{}, seed = {}\n", task.name, uses, start, seed);
   out += fmt::format("fitted = predict posterior on {} with draws(200){}, seed = {}\n", uses, start, seed);
-  if (!unseen.empty())
+  if (!unseen.empty() && dictionary.numbers.discrete)  // where it begins is told by the samples before
+    out += fmt::format("forecast = predict posterior on {} with draws(200), seed = {}\n", unseen, seed);
+  else if (!unseen.empty())
     out += fmt::format("forecast = predict posterior on {} with draws(200), start = estimated(rows = {}), seed = {}\n", unseen,
                        rows_of_start, seed);
   Diagnostics diagnostics;

@@ -44,9 +44,11 @@ std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, Unsave
   auto const modules = load_modules(*read.tree, source, found, unsaved);
   auto const fitting = fitting_backends(), selecting = selecting_backends();
   auto const discovering = settings_of(regression::selectors()), derivatives = settings_of(regression::forms());
+  regression::Form const& samples = regression::form_of_samples();
   std::optional<CheckedFile> file;
   if (!found.has_errors())
-    file = check(elaborate(*read.tree, modules, found), {fitting, selecting, discovering, derivatives}, found);
+    file = check(elaborate(*read.tree, modules, found),
+                 {fitting, selecting, discovering, derivatives, {.name = samples.name, .settings = samples.settings}}, found);
   if (!complete) keep_independent(*read.tree, read.unread, source, found);
   for (Diagnostic const& each : found.all()) diagnostics.add(each);
   return complete ? std::move(file) : std::nullopt;

@@ -13,7 +13,7 @@ constexpr DisturbanceLawRow rows[] = {
     {"white", "white(intensity = q)", "white noise; the unit of its intensity is that of the disturbance squared, times seconds",
      white_arguments, false},
     {"ornstein_uhlenbeck", "ornstein_uhlenbeck(sd = s, time = T)",
-     "stationary noise of a standard deviation whose correlation falls to 1/e within a time", ornstein_uhlenbeck_arguments, true},
+     "correlated noise of standard deviation s, correlation exp(-t/T)", ornstein_uhlenbeck_arguments, true},
 };
 
 }  // namespace

@@ -138,7 +138,11 @@ class Finder {
       return spread(least_squares(problem_of(equation_, on, usable_), all_of(usable_.size())), usable_, count);
     };
     whitened_ = columns;
-    if (projection_.reweightings() == 0) return select();
+    if (projection_.reweightings() == 0) {
+      Choice choice = select();
+      if (projection_.residual_size() == ResidualSize::unknown) found_.own_noise = choice.chosen.noise_sd;
+      return choice;
+    }
     // First with all terms, whose sum is well determined where single coefficients are not; then with those chosen.
     whitened_ = projection_.whitened(index_, fitted(columns), 0);
     whitened_ = projection_.whitened(index_, fitted(whitened_), 0);
@@ -150,6 +154,10 @@ class Finder {
       choice = iterated(select(), select, own);
     }
     found_.own_noise = own * choice.chosen.noise_sd;
+    if (projection_.residual_size() == ResidualSize::unknown) {
+      found_.own_noise = choice.chosen.noise_sd;
+      found_.moving_average = projection_.moving_average(index_, spread(choice.chosen, usable_, count));
+    }
     return choice;
   }
 
@@ -214,7 +222,8 @@ class Finder {
     for (Concern& near : near_dependence(equation_, whitened_, found_.chosen.terms))
       if (std::any_of(near.terms.begin(), near.terms.end(), [&](int j) { return !is_settled(j); }))
         found_.concerns.push_back(std::move(near));
-    if (projection_.calibrated()) {
+    if (projection_.residual_size() == ResidualSize::unknown) check_independence(whitened_residual);
+    if (projection_.residual_size() == ResidualSize::one) {
       Columns const by_channels = found_.own_noise > 0 ? projection_.whitened(index_, weights_, 0) : whitened_;
       Eigen::VectorXd against_noise = by_channels.known;
       for (int const j : found_.chosen.terms)
@@ -260,7 +269,16 @@ class Finder {
       portmanteau += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
     }
     double const worth = 1 + 2 * sum;
-    if (portmanteau < far_from_white || worth < correlated_above) return;
+    if (portmanteau < far_from_white) return;
+    if (projection_.residual_size() == ResidualSize::unknown) {
+      Concern concern{.kind = Concern::Kind::not_white, .value = portmanteau};
+      concern.clause =
+          fmt::format("the residual is not white: its chi-squared over {} lags is {:.0f}, that of white noise below {:.0f}", lags,
+                      portmanteau, far_from_white);
+      found_.concerns.push_back(std::move(concern));
+      return;
+    }
+    if (worth < correlated_above) return;
     Concern concern{.kind = Concern::Kind::correlated, .value = worth};
     concern.clause =
         fmt::format("the residual is correlated from window to window: {} windows are equivalent to about {:.0f} independent ones",
@@ -315,12 +333,13 @@ Discovery discover(Dictionary const& dictionary, std::span<Experiment const> exp
     int const index = static_cast<int>(e);
     discovery.equations.push_back(Finder(dictionary.equations[e], *projection, index, method).find());
     FoundEquation& found = discovery.equations.back();
-    if (found.found && !(method.interrupted && method.interrupted()))
+    if (found.found && !dictionary.discrete && !(method.interrupted && method.interrupted()))
       if (auto concern = better_rule(dictionary, experiments, method, index, projection->columns(index), found))
         found.concerns.push_back(std::move(*concern));
     discovery.interrupted = discovery.interrupted || (method.interrupted && method.interrupted());
   }
-  if (!projection->calibrated()) check_against_noise(dictionary, experiments, method, *projection, discovery);
+  if (projection->residual_size() == ResidualSize::propagated)
+    check_against_noise(dictionary, experiments, method, *projection, discovery);
   return discovery;
 }
 

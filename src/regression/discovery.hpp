@@ -50,7 +50,8 @@ struct FoundEquation {
   double explained = 0;    // 1 - |residual|^2 / |known|^2 on the chosen support, as projected; of projections, not of the motion
   double noise_ratio = 0;  // whitened residual sd; 1: as the measurement noise has it; 0: the form cannot say
   double own_noise = 0;    // sd, at a sample, of what the known side is off by itself (Projection::own_noise); its unit
-  int rows = 0;            // windows or samples used
+  std::vector<double> moving_average;  // of that noise, its coefficients; empty: white, or the form has none
+  int rows = 0;                        // windows or samples used
   int iterations = 0;
   bool converged = true, exact = true;
   Concerns concerns;

@@ -1,6 +1,7 @@
 // The ways to have derivatives, one line each.
 #include "core/setting/table.hpp"
 #include "regression/column/columns.hpp"
+#include "regression/column/difference.hpp"
 #include "regression/column/sampled.hpp"
 #include "regression/weak/weak.hpp"
 
@@ -20,10 +21,15 @@ Form const form_rows[] = {
     {"measured", "each derivative is measured in its own channel", {}, &no_refusal, &measured::project},
 };
 
+Form const samples{"samples", "terms of samples before, the noise a moving average", difference::settings(), &no_refusal,
+                   &difference::project};
+
 }  // namespace
 
 std::span<Form const> forms() { return form_rows; }
 
-Form const* find_form(std::string_view name) { return row_named(form_rows, name); }
+Form const& form_of_samples() { return samples; }
+
+Form const* find_form(std::string_view name) { return name == samples.name ? &samples : row_named(form_rows, name); }
 
 }  // namespace sysid::regression

@@ -5,6 +5,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/setting/table.hpp"
 #include "regression/choice/ard.hpp"
+#include "regression/choice/forward.hpp"
 #include "regression/choice/reversible_jump.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/choice/spike_slab.hpp"
@@ -23,6 +24,8 @@ SelectorRow const selector_rows[] = {
      &no_refusal, &ard::choose},
     {"threshold", "removes the term with the smallest contribution, repeatedly", "contribution", threshold::settings(), &no_refusal,
      &threshold::choose},
+    {"forward", "takes the term that explains most of what is left, repeatedly", "error reduction ratio", forward::settings(),
+     &no_refusal, &forward::choose},
 };
 
 }  // namespace

@@ -55,12 +55,21 @@ struct DiscoveredEquation {
   std::string equation;  // "m*y'' - x = -20 y' - 1e4 y"; empty: none was found
   std::vector<DiscoveredTerm> terms;
   std::vector<DiscoveredSupport> supports;
-  double explained = 0;    // share of the projections, not of the motion
-  double noise_ratio = 0;  // residual over measurement noise; 0: not known
-  double own_noise = 0;    // sd, at a sample, of what the equation is off by itself; 0: none was found
-  std::string unit;        // of the target, in which own_noise is
+  double explained = 0;                // share of the projections, not of the motion
+  double noise_ratio = 0;              // residual over measurement noise; 0: not known
+  double own_noise = 0;                // sd, at a sample, of what the equation is off by itself; 0: none was found
+  std::string unit;                    // of the target, in which own_noise is
+  std::vector<double> moving_average;  // of that error in discrete time; empty: white
   int rows = 0;
   bool exact = true, converged = true;
+};
+
+/// How well the difference equation of a target predicts rows that its choice did not use, in `unit`.
+struct DifferenceForecast {
+  std::string target, unit;
+  double sd = 0;                             // of what is measured
+  std::optional<double> one_step, free_run;  // root mean square errors; a run that does not stay finite: infinite
+  double expected = 0;                       // of the free run, if the equation is right
 };
 
 struct DiscoveryReport {
@@ -80,7 +89,9 @@ struct DiscoveryReport {
   };
   std::vector<Excluded> excluded;              // of the dictionary, before the record was looked at
   std::optional<ValidationReport> validation;  // by simulation; absent: it was left out, or there is nothing to simulate
-  std::string source;                          // of the model that was found; empty: none
+  std::string forecast_rows;                   // "bench.test"; empty: no row was held out, or the equations are differential ones
+  std::vector<DifferenceForecast> forecasts;
+  std::string source;  // of the model that was found; empty: none
 };
 
 }  // namespace sysid

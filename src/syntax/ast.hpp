@@ -375,8 +375,8 @@ struct CoefficientUnits : Located {
   friend bool operator==(CoefficientUnits const&, CoefficientUnits const&) = default;
 };
 
-using DictionaryStatement = std::variant<TimeDeclaration, InputDeclaration, DictionaryStates, DictionaryParameter, Definition,
-                                         FunctionDefinition, DictionaryList, CoefficientUnits>;
+using DictionaryStatement = std::variant<TimeDeclaration, DiscreteTimeDeclaration, InputDeclaration, DictionaryStates,
+                                         DictionaryParameter, Definition, FunctionDefinition, DictionaryList, CoefficientUnits>;
 
 /// `dictionary restoring "which restoring force?" { ... }`.
 struct Dictionary : Located {

@@ -123,7 +123,7 @@ TEST_CASE("a random initial value has a mean and a variance") {
   CHECK(model.filtered());
 }
 
-TEST_CASE("the noise of a disturbance may be multiplied by anything but itself") {
+TEST_CASE("the noise of a disturbance may be multiplied by anything but white noise") {
   std::string text = disturbed_oscillator;
   text.replace(text.find(" + w"), 4, " + abs(y')/1 [m/s]*w + k*y*w/1 [N]");
   CHECK(messages("model m {\ndisturbance w [N] ~ white(intensity = 4)\n" + text + "}\n").empty());

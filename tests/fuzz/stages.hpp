@@ -99,7 +99,8 @@ inline void text(std::string const& bytes) {
   auto const modules = load_modules(*tree, source, diagnostics);
   look_at(diagnostics, source);
   if (diagnostics.has_errors()) return;
-  auto const file = check(elaborate(*tree, modules, diagnostics), {backends, selectors, term_selectors, derivatives}, diagnostics);
+  auto const file = check(elaborate(*tree, modules, diagnostics),
+                          {backends, selectors, term_selectors, derivatives, {"samples", {}}}, diagnostics);
   if (!file && !diagnostics.has_errors()) fault("a refusal without a message");
   look_at(diagnostics, source);
   if (!file) return;

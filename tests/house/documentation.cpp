@@ -333,3 +333,8 @@ TEST_CASE("links lead to files and headings that exist") {
   }
   CHECK(count > 10);
 }
+
+TEST_CASE("the README is the only page at the top") {
+  for (fs::directory_entry const& entry : fs::directory_iterator(root))
+    if (entry.path().extension() == ".md") CHECK(entry.path().filename() == "README.md");
+}

@@ -296,3 +296,32 @@ TEST_CASE("exact data leave the chains one set of terms, and nothing that is not
   CHECK(kept(choice) == std::vector<int>{0, 2});
   for (TermChoice const& term : choice.terms) CHECK(std::isfinite(term.mean));
 }
+
+TEST_CASE("error reduction ratios are what terms add to the share of the squares that is explained") {
+  LinearProblem const p = problem(11, 80, {1, 0, 0.4, 0, 0, 0.2}, 0.1);
+  Choice const choice = choose(p, "forward");
+  CHECK(kept(choice) == std::vector<int>{0, 2, 5});
+  double sum = 0;
+  for (int const term : kept(choice)) sum += choice.terms[static_cast<std::size_t>(term)].measure;
+  Support const support = least_squares(p, kept(choice));
+  double const left = support.noise_sd * support.noise_sd * (80 - 3);
+  CHECK(sum == doctest::Approx(1 - left / p.known.squaredNorm()).epsilon(1e-10));
+  CHECK(kept(choose(p, "forward", {{"least_ratio", 0.05}})) == std::vector<int>{0, 2});
+}
+
+TEST_CASE("forward selection drops the term that two others made needless") {
+  // The first column is nearly the sum of the second and the third, which the known side is made of.
+  Stream stream({5, Purpose::test, 0, 0});
+  LinearProblem p;
+  p.terms.resize(60, 4);
+  p.known.resize(60);
+  for (int i = 0; i < 60; ++i) {
+    double const a = stream.normal(), b = stream.normal();
+    p.terms.row(i) << a + b + 0.3 * stream.normal(), a, b, stream.normal();
+    p.known(i) = a + b + 0.01 * stream.normal();
+  }
+  p.always = {0, 0, 0, 0};
+  Choice const choice = choose(p, "forward");
+  CHECK(choice.terms[0].measure > 0.8);  // it was taken first
+  CHECK(kept(choice) == std::vector<int>{1, 2});
+}

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/session/preconditions.hpp"
+#include "app/session/resolved.hpp"
 #include "app/session/provenance.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
@@ -137,9 +138,9 @@ void preflight_select(Session& session, Task const& task, TaskDataList const& da
 
 void preflight_discover(Session& session, Task const& task, TaskDataList const& data, TaskPage& page) {
   DiscoverTask const& what = std::get<DiscoverTask>(task.what);
-  page.what = fmt::format("discover {} from {} with {}, derivatives = {}",
-                          session.file.dictionaries[static_cast<std::size_t>(what.dictionary)].name,
-                          data_names(session.file, what.experiments), what.selector, what.form);
+  CheckedDictionary const& dictionary = session.file.dictionaries[static_cast<std::size_t>(what.dictionary)];
+  page.what = fmt::format("discover {} from {} with {}", dictionary.name, data_names(session.file, what.experiments),
+                          method_text(dictionary, what));
   cover(session, data.front(), page);
   check_bands(page);
   check_rules(page);

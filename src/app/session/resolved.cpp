@@ -101,14 +101,22 @@ std::string resolved_select(Session const& session, Task const& task, SelectTask
       seed);
 }
 
+std::string method_text(CheckedDictionary const& dictionary, DiscoverTask const& what) {
+  return dictionary.numbers.discrete ? what.selector : fmt::format("{}, derivatives = {}", what.selector, what.form);
+}
+
 std::string resolved_discover(Session const& session, Task const& task, DiscoverTask const& what, std::uint64_t seed) {
+  CheckedDictionary const& dictionary = session.file.dictionaries[static_cast<std::size_t>(what.dictionary)];
   std::string selector = settings_text(what.selector, what.selector_settings);
-  std::string const derivatives = "derivatives = " + settings_text(what.form, what.form_settings);
+  std::string derivatives = "derivatives = " + settings_text(what.form, what.form_settings);
+  if (dictionary.numbers.discrete) {  // settings of the noise stand among those of the selector
+    std::string const own = settings_text(what.form, what.form_settings);
+    derivatives = own.substr(what.form.size() + 1, own.size() - what.form.size() - 2);
+  }
   if (selector.ends_with(')'))
     selector.insert(selector.size() - 1, ", " + derivatives);
   else
     selector += "(" + derivatives + ")";
-  CheckedDictionary const& dictionary = session.file.dictionaries[static_cast<std::size_t>(what.dictionary)];
   std::string noise;
   for (std::size_t c = 0; c < what.noise.size(); ++c) {
     if (!what.noise[c]) continue;

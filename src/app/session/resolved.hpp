@@ -9,6 +9,8 @@ std::string resolved_fit(Session const& session, Task const& task, FitTask const
 
 std::string resolved_select(Session const& session, Task const& task, SelectTask const& what, std::uint64_t seed);
 
+/// "spike_slab, derivatives = weak"; in discrete time the selector alone.
+std::string method_text(CheckedDictionary const& dictionary, DiscoverTask const& what);
 std::string resolved_discover(Session const& session, Task const& task, DiscoverTask const& what, std::uint64_t seed);
 
 /// That text as files that run in the folder of the results: data are named from there, and modules that lie beside the user's file

@@ -16,6 +16,7 @@
 #include "core/text/number.hpp"
 #include "diagnostics/verdict.hpp"
 #include "discovery/coefficient_names.hpp"
+#include "discovery/difference_forecast.hpp"
 #include "discovery/discovery_findings.hpp"
 #include "discovery/discovery_verdict.hpp"
 #include "discovery/excluded_terms.hpp"
@@ -68,7 +69,7 @@ class Discover {
                              .seed = seed_};
     std::vector<FoundStructure> structures = best_structures(found, what_.top);
     std::optional<Validation> validation;
-    if (what_.refit && !structures.empty()) {
+    if (what_.refit && !structures.empty() && !dictionary_.numbers.discrete) {
       validation = validate_structures(source, structures, held_out(), method.interrupted);
       if (validation->interrupted) throw Interrupted();
       structures = validation->order;
@@ -95,8 +96,8 @@ class Discover {
     Report report;
     report.version = SYSID_VERSION;
     report.task = task_.name;
-    report.what = fmt::format("discover {} from {} with {}, derivatives = {}", dictionary_.name,
-                              data_names(session_.file, what_.experiments), what_.selector, what_.form);
+    report.what = fmt::format("discover {} from {} with {}", dictionary_.name, data_names(session_.file, what_.experiments),
+                              method_text(dictionary_, what_));
     report.verb = verb_of(task_);
     report.lags = data_lag(dictionary_.measured);
     report.seed = seed_;
@@ -112,6 +113,7 @@ class Discover {
     DiscoveryReport discovery = described(found, selector);
     add_findings(found, validation ? &validation->report : nullptr, report.findings);
     say_once(report.findings);
+    if (dictionary_.numbers.discrete && !structures.empty()) add_forecasts(found, discovery, report.findings);
     if (validation) {
       temper_by_simulation(validation->report, report.findings);
       report.findings.insert(report.findings.end(), validation->findings.begin(), validation->findings.end());
@@ -124,7 +126,7 @@ class Discover {
     report.tables = discovery_tables(discovery);
     report.settings = {{"selector", what_.selector}};
     for (auto const& [name, value] : what_.selector_settings.all()) report.settings.emplace_back(name, value);
-    report.settings.emplace_back("derivatives", what_.form);
+    if (!dictionary_.numbers.discrete) report.settings.emplace_back("derivatives", what_.form);
     for (auto const& [name, value] : what_.form_settings.all()) report.settings.emplace_back(name, value);
     report.resolved_text = resolved_discover(session_, task_, what_, seed_);
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
@@ -136,6 +138,26 @@ class Discover {
       session_.notices << fmt::format("{}: the model that was found is `{}`\n", task_.name,
                                       (session_.result_folder(task_) / "found.sysid").string());
     return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  // Of the chosen difference equations, on the parts of the data that were not used.
+  void add_forecasts(regression::Discovery const& found, DiscoveryReport& discovery, Findings& findings) const {
+    std::vector<ExperimentData> const unused = held_out();
+    if (unused.empty()) return;
+    for (ExperimentData const& each : unused)
+      discovery.forecast_rows += (discovery.forecast_rows.empty() ? "" : ", ") + each.experiment.name;
+    std::vector<DifferenceErrors> const errors = difference_errors(dictionary_.numbers, found, experiments_of(unused), seed_);
+    for (std::size_t e = 0; e < errors.size(); ++e) {
+      DictionaryEquation const& equation = dictionary_.equations[e];
+      double const scale = equation.unit ? equation.unit->scale : 1;
+      auto const declared = [scale](double value) { return value / scale; };
+      discovery.forecasts.push_back({equation.text, equation.unit ? equation.unit->text : "", declared(errors[e].sd),
+                                     errors[e].one_step ? std::optional(declared(*errors[e].one_step)) : std::nullopt,
+                                     errors[e].free_run ? std::optional(declared(*errors[e].free_run)) : std::nullopt,
+                                     declared(errors[e].expected)});
+    }
+    Findings of_forecast = forecast_findings(dictionary_, errors, discovery.forecast_rows);
+    findings.insert(findings.end(), of_forecast.begin(), of_forecast.end());
   }
 
   // By simulation where that has validated a structure.
@@ -198,6 +220,7 @@ class Discover {
     out.explained = found.explained;
     out.noise_ratio = found.noise_ratio;
     out.unit = equation.unit ? equation.unit->text : "";
+    out.moving_average = found.moving_average;
     out.own_noise = found.own_noise / (equation.unit ? equation.unit->scale : 1);
     out.rows = found.rows;
     out.exact = found.exact;

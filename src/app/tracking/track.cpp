@@ -52,7 +52,7 @@ class Tracking {
     else
       whole();
     if (gathered_.rows == 0)
-      throw no_tracking(fmt::format("there are no rows from {} on to be tracked", fit_.options.first_row), "choose other --rows");
+      throw no_tracking(fmt::format("the file has no rows from row {} on", fit_.options.first_row), "choose other --rows");
     table_.finish();
     return std::move(gathered_);
   }
@@ -92,7 +92,7 @@ class Tracking {
     gathered_.digest = record.digest;
     Experiment const experiment = cut(record, block, model(), 0, {StartRule::Kind::rest, 0});
     gathered_.time_unit = experiment.time_unit;
-    if (experiment.time.size() < 2) throw no_tracking("there is a single row to be tracked", "choose more --rows");
+    if (experiment.time.size() < 2) throw no_tracking("tracking needs at least two rows", "choose more --rows");
     take(experiment, 0);
   }
 
@@ -101,7 +101,7 @@ class Tracking {
     for (InputSignal const& input : signals_of_rules())
       if (row_of(input.rule()).degree > 1)
         throw no_tracking(
-            fmt::format("an input that is read by `{}` needs samples that are still to come", rule_name(input.rule())),
+            fmt::format("the input rule `{}` needs later samples, so the record cannot be followed", rule_name(input.rule())),
             "write `hold zero_order` or `hold linear` in the data block to follow a record");
     bool const standard_input = fit_.options.record == "-";
     auto const path = standard_input ? std::filesystem::path("-") : session_.folder() / block_.path;

@@ -31,8 +31,8 @@ std::string changed(double before, double after) {
 ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
   ReportTable table{
       "changes",
-      fmt::format("Where the innovations show that a parameter has jumped: |z| above {:.2f}, by the union bound at most {:g} false "
-                  "alarms per row. After row: the last one before the change. Values with their sds.",
+      fmt::format("Changes of parameters found from the innovations: |z| above {:.2f}, by the union bound at most {:g} false "
+                  "alarms per row. After row: the last row before the change. Values with their sds.",
                   gathered.threshold, rate),
       {"parameter", "unit", "alarm at row", "t [s]", "after row", "before", "now", "z", "or"},
       {}};
@@ -53,7 +53,7 @@ ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
 
 ReportTable parameter_table(GatheredTrack const& gathered) {
   ReportTable table{"parameters",
-                    "Once the first rows have settled the states, and at the last row, with their sds.",
+                    "After the settling rows and at the last row, with their sds.",
                     {"parameter", "unit", fmt::format("from row {}", gathered.first_row), fmt::format("row {}", gathered.last_row)},
                     {}};
   for (std::size_t q = gathered.states; q < gathered.states + gathered.tracked; ++q)
@@ -79,7 +79,7 @@ InnovationSize innovation_size(GatheredTrack const& gathered) {
 ReportTable innovation_table(GatheredTrack const& gathered) {
   InnovationSize const size = innovation_size(gathered);
   return {"innovations",
-          "Their size against what the filter expects, 1 where the model and its noise are right. Where it is off by more than a "
+          "Their rms divided by the expected rms, 1 where the model and its noise are right. Where it is off by more than a "
           "tenth, "
           "sds and the rate of false alarms are not as stated: a disturbance is missing, or the noise has changed.",
           {"samples", "rms / expected", "z", ""},
@@ -200,7 +200,9 @@ void fill_report(Session const& session, TrackedFit const& fit, GatheredTrack co
   report.verdict = gathered.alarms.empty()
                        ? fmt::format("no change found in {} rows", gathered.rows)
                        : fmt::format("{} found in {} rows", counted(gathered.alarms.size(), "change"), gathered.rows);
-  if (innovation_size(gathered).odd()) report.verdict += "; the innovations are not of the size that the fit expects";
+  if (innovation_size(gathered).odd())
+    report.verdict +=
+        fmt::format("; the innovations are {} than expected", innovation_size(gathered).ratio > 1 ? "larger" : "smaller");
 }
 
 }  // namespace sysid

@@ -67,7 +67,7 @@ FittedModel stored_fit(Session const& session, Task const& task, FitTask const& 
     return summary.value("verb", "") == "fit" && summary.at("versions").value("model_sha256", "") == task_digest(session, task);
   });
   if (!same || std::filesystem::exists(checkpoint_path(folder)))
-    throw no_tracking(fmt::format("`{}` holds no finished fit of this text of the model", folder.string()),
+    throw no_tracking(fmt::format("`{}` contains no finished fit of the model as it is written now", folder.string()),
                       "run the fit again: sysid fit FILE --force");
   auto const space = parameter_space(session.file.models[static_cast<std::size_t>(fit.model)], fit.experiments);
   std::vector<std::string> names;
@@ -123,9 +123,9 @@ class FitForTracking {
     result_.fit = &std::get<FitTask>(result_.task->what);
     FittedModel const fitted = stored_fit(session_, *result_.task, *result_.fit, result_.options.result);
     if (fitted.draws.total() < 10)
-      throw no_tracking(
-          fmt::format("`{}` holds an optimum: how sure its parameters are is not known", result_.options.result.string()),
-          "track from a fit that samples: `with mh` or `with nuts`");
+      throw no_tracking(fmt::format("`{}` contains an optimum without draws: the uncertainty of its parameters is not known",
+                                    result_.options.result.string()),
+                        "track from a fit that samples: `with mh` or `with nuts`");
     result_.compiled = session_.compiled(*result_.fit, false, fitted.solver.method, result_.fit->prediction);
     result_.solver = steps_for_tracking(fitted.solver);
     result_.use = use_of(session_, *result_.fit, result_.options.data);
@@ -153,7 +153,7 @@ class FitForTracking {
       if (in_equations(model, p) && is_sampled(p)) possible.push_back(model.parameters[static_cast<std::size_t>(p)].name);
     for (std::string const& name : wanted)
       if (std::find(possible.begin(), possible.end(), name) == possible.end())
-        throw no_tracking(fmt::format("`{}` is no parameter that can be tracked", name),
+        throw no_tracking(fmt::format("`{}` cannot be tracked", name),
                           fmt::format("those in the equations: {}", fmt::join(possible, ", ")));
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {
       Parameter const& parameter = model.parameters[p];
@@ -166,7 +166,7 @@ class FitForTracking {
       }
       result_.tracked.push_back(bounded(static_cast<int>(p)));
     }
-    if (result_.tracked.empty()) throw no_tracking("the fit has no parameter that stands in an equation", "track from another fit");
+    if (result_.tracked.empty()) throw no_tracking("no parameter of the fit occurs in an equation", "track from another fit");
   }
 
   /// Bounds that depend on other parameters are those at the posterior mean, unless a draw lies outside.

@@ -22,6 +22,7 @@ struct Backends {
   std::span<BackendSettings const> selecting;
   std::span<BackendSettings const> discovering;  // selectors of terms, the first is the default
   std::span<BackendSettings const> derivatives;  // forms of derivatives for discovery, likewise
+  BackendSettings samples;                       // in their place in discrete time
 };
 
 }  // namespace sysid

@@ -116,7 +116,7 @@ class DataChecker {
     if (!graph_.is_constant(checked->arguments[0], 0)) return refuse("has a mean other than 0");
     if (checked->lower || checked->upper) return refuse("has bounds");
     auto const sd = graph_.constant_value(checked->arguments[1]);
-    if (!sd || !std::isfinite(*sd)) return refuse("is no number");
+    if (!sd || !std::isfinite(*sd)) return refuse("must have a number as its standard deviation");
     InputErrorUse result{*sd, false, unit, written.span};
     if (unit) return result;
     for (ast::Argument const& argument : law.arguments) {

@@ -32,6 +32,8 @@ std::optional<CheckedDictionary> DictionaryChecker::run() {
   if (failed()) return std::nullopt;
   exclude();
   equations();
+  if (!failed() && out_.numbers.discrete) require_difference_equations();
+  if (!failed()) lay_out_lags();
   if (!failed()) coefficient_units_used();
   if (!failed()) parameters_used();
   if (!failed()) inputs_used();

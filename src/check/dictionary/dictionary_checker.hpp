@@ -82,6 +82,7 @@ class DictionaryChecker {
   void find_orders();
   // Every derivative that is mentioned is a leaf of its own; none is solved for.
   void lay_out();
+  void lay_out_lags();
   void definitions();
   void values();
 
@@ -101,6 +102,10 @@ class DictionaryChecker {
   void add(int index, Candidate const& term, regression::SplitTarget const& split, DictionaryEquation& equation,
            regression::Equation& numbers, std::vector<Candidate const*>& kept);
   void leave_out(int index, Candidate const& term, Unit const& unit);
+
+  // --- dictionary_discrete.cpp
+  // In discrete time: each equation gives one state at the present sample, from what is known by then.
+  void require_difference_equations();
 
   // --- dictionary_unused.cpp
   void coefficient_units_used();

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "check/dictionary/dictionary_checker.hpp"
+#include "check/expression/discrete_step.hpp"
 #include "check/expression/names_used.hpp"
 #include "check/message/errors.hpp"
 #include "check/units/units.hpp"
@@ -10,8 +11,16 @@ namespace sysid {
 
 void DictionaryChecker::declare() {
   ast::TimeDeclaration const* first_time = nullptr;
+  ast::DiscreteTimeDeclaration const* first_discrete = nullptr;
+  each<ast::DiscreteTimeDeclaration>(
+      [&](ast::DiscreteTimeDeclaration const&) { out_.numbers.discrete = scope_.samples().discrete = true; });
   for (ast::DictionaryStatement const& statement : tree_.statements) {
-    if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement)) {
+    if (auto const* discrete = std::get_if<ast::DiscreteTimeDeclaration>(&statement)) {
+      if (first_discrete != nullptr) diagnostics_.add(errors::time_twice(discrete->span, first_discrete->span));
+      if (std::exchange(first_discrete, discrete) != nullptr) continue;
+      out_.measured.dynamics = Dynamics::discrete;
+      out_.measured.step = declared_step(*discrete, scope_);
+    } else if (auto const* time = std::get_if<ast::TimeDeclaration>(&statement)) {
       if (first_time != nullptr) diagnostics_.add(errors::time_twice(time->span, first_time->span));
       if (std::exchange(first_time, time) != nullptr) continue;
       auto const unit = scope_.unit(time->time.unit);
@@ -46,6 +55,10 @@ void DictionaryChecker::declare_input(ast::Declared const& input) {
 
 void DictionaryChecker::declare_state(ast::DictionaryState const& state) {
   auto const unit = scope_.unit(state.unit);
+  if (out_.numbers.discrete && state.primes > 0) {
+    diagnostics_.add(errors::primes_in_discrete_time({{state.span}, state.name, {}, state.primes}));
+    return;
+  }
   if (state.primes == 0) {
     if (!scope_.declare(state.name, {StateSymbol{}, unit, state.name.span})) return;
     states_.emplace_back(state.name.text, StateInfo{unit, state.name.span});
@@ -110,8 +123,17 @@ void DictionaryChecker::find_orders() {
 // Every derivative that is mentioned is a leaf of its own; none is solved for.
 void DictionaryChecker::lay_out() {
   int first = 0;
+  scope_.samples().states = static_cast<int>(states_.size());
   for (std::size_t i = 0; i < states_.size(); ++i) {
     auto& [name, info] = states_[i];
+    if (out_.numbers.discrete) {  // as in a model: what is looked for is the state at the present sample
+      scope_.find(name)->what = StateSymbol{static_cast<int>(i), 0, static_cast<int>(i)};
+      out_.numbers.symbols.push_back({out_.numbers.graph.leaf(LeafKind::unknown, static_cast<int>(i)),
+                                      regression::Symbol::Kind::state, static_cast<int>(i), 0});
+      out_.numbers.states.push_back(name);
+      out_.states.push_back({name, info.unit, info.span});
+      continue;
+    }
     scope_.find(name)->what = StateSymbol{first, info.most_primes + 1, static_cast<int>(i)};
     for (int k = 0; k <= info.most_primes; ++k)
       out_.numbers.symbols.push_back(
@@ -126,6 +148,25 @@ void DictionaryChecker::lay_out() {
           {out_.numbers.graph.leaf(order == 0 ? LeafKind::input : LeafKind::input_rate, static_cast<int>(i)),
            regression::Symbol::Kind::input, static_cast<int>(i), order});
   out_.numbers.symbols.push_back({out_.numbers.graph.leaf(LeafKind::time), regression::Symbol::Kind::time, 0, 0});
+}
+
+// Samples further back are leaves as well.
+void DictionaryChecker::lay_out_lags() {
+  std::vector<NodeId> roots;
+  for (regression::Equation const& equation : out_.numbers.equations) {
+    roots.push_back(equation.known);
+    for (regression::Term const& term : equation.terms) roots.push_back(term.expression);
+  }
+  Graph& graph = out_.numbers.graph;
+  for (NodeId const leaf : graph.reachable(roots)) {
+    Node const& node = graph[leaf];
+    if (node.operation != Operation::leaf || node.lag == 0) continue;
+    regression::Symbol symbol{leaf, regression::Symbol::Kind::time, 0, 0, node.lag};
+    if (node.leaf_kind == LeafKind::previous) symbol.kind = regression::Symbol::Kind::state;
+    if (node.leaf_kind == LeafKind::input) symbol.kind = regression::Symbol::Kind::input;
+    if (symbol.kind != regression::Symbol::Kind::time) symbol.index = node.index;
+    out_.numbers.symbols.push_back(symbol);
+  }
 }
 
 void DictionaryChecker::definitions() {

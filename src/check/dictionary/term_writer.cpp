@@ -14,6 +14,8 @@
 namespace sysid {
 namespace {
 
+constexpr double most_lags = 1000;  // no dictionary has more terms
+
 bool is_reference(ast::Expression const& tree, std::string const& name) {
   auto const* reference = std::get_if<ast::Reference>(&tree.node);
   return reference != nullptr && reference->name.text == name && reference->primes == 0;
@@ -55,6 +57,7 @@ std::vector<WrittenTerm> TermWriter::write(ast::Expression const& item, std::set
 }
 
 std::vector<ast::Expression> TermWriter::expanded(ast::Expression const& item) {
+  if (ast::Call const* call = as_call(item); call != nullptr && is_lag(*call)) return past(*call, item);
   if (ast::Call const* call = as_call(item); call != nullptr && scope_.find_function_definition(call->function.text) == nullptr) {
     if (GeneratorRow const* row = find_generator(call->function.text)) return family(*call, *row, item.span);
     if (find_function(call->function.text) == nullptr) {
@@ -71,6 +74,35 @@ std::vector<ast::Expression> TermWriter::expanded(ast::Expression const& item) {
   return products;
 }
 
+bool TermWriter::is_lag(ast::Call const& call) const {
+  return (call.function.text == "lag" || call.function.text == "lags") &&
+         scope_.find_function_definition(call.function.text) == nullptr;
+}
+
+std::vector<ast::Expression> TermWriter::past(ast::Call const& call, ast::Expression const& item) {
+  auto const* range = call.arguments.size() == 2 ? std::get_if<ast::Box<ast::Binary>>(&call.arguments[1].value.node) : nullptr;
+  if (range == nullptr || (*range)->symbol != "..") return {item};  // one sample, or a mistake that is reported there
+  auto const first = whole(*(*range)->left), last = first ? whole(*(*range)->right) : std::nullopt;
+  if (!first || !last) return {};
+  if (*last < *first || *last - *first > most_lags) {
+    diagnostics_.add(errors::lag_count(call.arguments[1].value.span));
+    return {};
+  }
+  ast::Name const function{{call.function.span}, "lag"};
+  std::vector<ast::Expression> samples;
+  for (int k = *first; k <= *last; ++k)
+    samples.push_back(tree::call(function, {call.arguments[0].value, tree::number(k, call.arguments[1].value.span)}, item.span));
+  return samples;
+}
+
+std::optional<int> TermWriter::whole(ast::Expression const& tree) {
+  auto const value = scope_.expression(tree);
+  auto const number = value && value->kind == Typed::Kind::literal ? scope_.graph().constant_value(value->node) : std::nullopt;
+  if (number && *number == std::floor(*number) && *number >= 0 && *number <= most_lags) return static_cast<int>(*number);
+  if (value) diagnostics_.add(errors::lag_count(tree.span));
+  return std::nullopt;
+}
+
 std::vector<ast::Expression> TermWriter::family(ast::Call const& call, GeneratorRow const& row, Span place) {
   GeneratorOption const& option = row.option;
   std::vector<ast::Expression> arguments;
@@ -79,8 +111,11 @@ std::vector<ast::Expression> TermWriter::family(ast::Call const& call, Generator
   bool given = false, good = true;
   for (ast::Argument const& argument : call.arguments) {
     if (!argument.name) {
-      good = scope_.expression(argument.value) && good;  // said once, not of every term
-      arguments.push_back(argument.value);
+      ast::Call const* inner = as_call(argument.value);
+      bool const lagged = inner != nullptr && is_lag(*inner);
+      std::vector<ast::Expression> values = lagged ? past(*inner, argument.value) : std::vector{argument.value};
+      good = !values.empty() && scope_.expression(values.front()) && good;  // said once, not of every term
+      std::move(values.begin(), values.end(), std::back_inserter(arguments));
       continue;
     }
     if (argument.name->text != option.name || option.kind == GeneratorOption::Kind::none) {

@@ -27,6 +27,10 @@ class TermWriter {
 
  private:
   std::vector<ast::Expression> expanded(ast::Expression const& item);
+  bool is_lag(ast::Call const& call) const;
+  /// `lags(y, 1..3)`, or `lag` with a range: each sample by itself. Anything else as it is.
+  std::vector<ast::Expression> past(ast::Call const& call, ast::Expression const& item);
+  std::optional<int> whole(ast::Expression const& tree);
   std::vector<ast::Expression> family(ast::Call const& call, GeneratorRow const& row, Span place);
   /// Nothing where a free parameter stands otherwise than as one factor.
   std::optional<WrittenTerm> without_coefficient(ast::Expression tree, std::set<std::string> const& free);

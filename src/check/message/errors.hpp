@@ -207,6 +207,10 @@ Diagnostic generator_number(Span span, std::string const& option, int most, std:
 Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters);
 Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter);
 Diagnostic coefficient_inside(Span term, std::string const& text);
+Diagnostic target_of_discrete_time(Span target, std::string const& text, std::string const& state);
+Diagnostic present_in_term(Span term, std::string const& text, std::string const& state);
+Diagnostic state_without_target(Span state, std::string const& name);
+Diagnostic not_in_discrete_time(Span option, std::string const& name, std::string const& dictionary);
 Diagnostic state_without_channel(Span state, std::string const& name);
 Diagnostic derivative_of_nothing(ast::Name const& state, int primes);
 Diagnostic derivative_without_channel(ast::Name const& state, int primes);

@@ -123,6 +123,30 @@ Diagnostic index_in_dictionary(ast::Reference const& reference) {
                      "give each element a name: `state y1 = a[1], y2 = a[2]`"));
 }
 
+Diagnostic target_of_discrete_time(Span target, std::string const& text, std::string const& state) {
+  return about({text},
+               error("E6614", target, fmt::format("`{}` is not a state: in discrete time a target is a state", text),
+                     fmt::format("write `target = {0}`, the present sample; its past is in the terms: `lag({0}, 1)`", state)));
+}
+
+Diagnostic present_in_term(Span term, std::string const& text, std::string const& state) {
+  return about({text, state},
+               error("E6614", term, fmt::format("`{}` reads `{}` at the present sample, which is the target", text, state),
+                     fmt::format("use the samples before it: `lag({0}, 1)`, `lags({0}, 1..2)`", state)));
+}
+
+Diagnostic state_without_target(Span state, std::string const& name) {
+  return about({name}, error("E6615", state, fmt::format("no target gives `{}` at the present sample", name),
+                             fmt::format("add it to the targets, or declare it as an input: `input {}`", name)));
+}
+
+Diagnostic not_in_discrete_time(Span option, std::string const& name, std::string const& dictionary) {
+  return about(
+      {name, dictionary},
+      error("E6616", option, fmt::format("dictionary `{}` is in discrete time: `{}` has no meaning there", dictionary, name),
+            "remove it: terms are formed from samples, and the noise is estimated with them"));
+}
+
 Diagnostic channel_not_measured(Span data, std::string const& block, Span state, std::string const& channel,
                                 Names const& measured) {
   Diagnostic result = about(

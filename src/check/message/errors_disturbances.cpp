@@ -34,37 +34,37 @@ Diagnostic unknown_law(ast::Call const& law, ast::Name const& name, bool discret
   std::string const& given = law.function.text;
   if (discrete)
     return about({given, name.text},
-                 error("E3301", law.function.span, fmt::format("in discrete time `{}` is no law of a disturbance", given),
-                       fmt::format("write `disturbance {} ~ normal(0, sd = s)`: its samples are independent; a model of the past "
-                                   "makes it correlated, as in `y = a*lag(y, 1) + {}`",
+                 error("E3301", law.function.span, fmt::format("`{}` is not a law of a disturbance in discrete time", given),
+                       fmt::format("write `disturbance {} ~ normal(0, sd = s)`: its samples are independent; lags make it "
+                                   "correlated, as in `y = a*lag(y, 1) + {}`",
                                    name.text, name.text)));
   std::string help = guess_or(law_synonyms, given, known, choose(known, "laws"));
   if (given == "normal")
     help =
-        "samples are drawn in discrete time; in continuous time write `white(intensity = q)`, or `ornstein_uhlenbeck(sd = s, "
-        "time = T)` for a disturbance of a standard deviation";
-  return about({given, name.text},
-               error("E3301", law.function.span, fmt::format("in continuous time `{}` is no law of a disturbance", given), help));
+        "`normal` is for discrete time; in continuous time write `white(intensity = q)`, or `ornstein_uhlenbeck(sd = s, time = T)` "
+        "for correlated noise of standard deviation s";
+  return about({given, name.text}, error("E3301", law.function.span,
+                                         fmt::format("`{}` is not a law of a disturbance in continuous time", given), help));
 }
 
 Diagnostic sd_of_white_noise(Span argument, std::string const& name) {
   return about({name},
                error("E3302", argument, "white noise has no standard deviation: that of its samples is infinite",
                      "state its intensity, `white(intensity = q)`; a disturbance of standard deviation s that is correlated "
-                     "over a time T is `ornstein_uhlenbeck(sd = s, time = T)`, or about white noise of intensity `2*s^2*T`"));
+                     "over a time T is `ornstein_uhlenbeck(sd = s, time = T)`, which acts on slow motions as white noise of "
+                     "intensity `2*s^2*T`"));
 }
 
 Diagnostic unit_of_intensity(Span argument, std::string const& name, std::string const& given, std::string const& wanted) {
-  return about(
-      {name},
-      error("E3302", argument, fmt::format("the intensity of `{}` must be in [{}], but this is in [{}]", name, wanted, given),
-            "an intensity is the variance times twice the time of correlation; a disturbance of standard deviation s "
-            "that is correlated over a time T is `ornstein_uhlenbeck(sd = s, time = T)`"));
+  return about({name}, error("E3302", argument,
+                             fmt::format("the intensity of `{}` must be in [{}], but this is in [{}]", name, wanted, given),
+                             "the intensity is the variance of its integral per second; a disturbance of standard deviation s "
+                             "that is correlated over a time T is `ornstein_uhlenbeck(sd = s, time = T)`"));
 }
 
 Diagnostic law_reads(Span law, std::string const& name, std::string const& what) {
-  return about({name}, error("E3303", law, fmt::format("the law of `{}` reads {}", name, what),
-                             "its arguments are expressions of constants and parameters; a factor that changes stands in the "
+  return about({name}, error("E3303", law, fmt::format("the law of `{}` depends on {}", name, what),
+                             "its arguments are expressions of constants and parameters; put a factor that changes into the "
                              "equation, as in `abs(y')*w`"));
 }
 
@@ -74,8 +74,9 @@ Diagnostic law_never_positive(Span declaration, std::string const& name, std::st
 }
 
 Diagnostic mean_of_disturbance(Span law, std::string const& name) {
-  return about({name}, error("E3305", law, fmt::format("the mean of disturbance `{}` must be 0", name),
-                             fmt::format("write `normal(0, sd = s)` and the mean as a parameter of its own: `{} + m`", name)));
+  return about({name},
+               error("E3305", law, fmt::format("the mean of disturbance `{}` must be 0", name),
+                     fmt::format("write `normal(0, sd = s)` and add the mean to the equation as a parameter: `{} + m`", name)));
 }
 
 Diagnostic bounds_of_disturbance(Span law, std::string const& name) {
@@ -85,12 +86,12 @@ Diagnostic bounds_of_disturbance(Span law, std::string const& name) {
 Diagnostic rate_of_disturbance(ast::Reference const& reference) {
   return about({reference.name.text, primed(reference)},
                error("E2007", reference.span, fmt::format("`{}` is a disturbance: it has no time derivative", reference.name.text),
-                     "a smoother disturbance is a state that another one drives, as `state f` in `T*f' + f = w`"));
+                     "for a smoother disturbance declare a state that white noise drives, as `state f` in `T*f' + f = w`"));
 }
 
 Diagnostic white_noise_observed(Span reader, Subject const& what, Span declaration, std::string const& disturbance) {
   Diagnostic diagnostic =
-      error("E3306", reader, fmt::format("{} reads white noise, which has no finite variance", what.words),
+      error("E3306", reader, fmt::format("{} depends on white noise, which has no finite variance", what.words),
             fmt::format("give `{}` a memory, `ornstein_uhlenbeck(sd = s, time = T)`, or use what it reaches only through a state",
                         disturbance));
   diagnostic.secondary.push_back({declaration, "white noise"});
@@ -101,7 +102,8 @@ Diagnostic white_noise_observed(Span reader, Subject const& what, Span declarati
 
 Diagnostic not_linear_in_disturbance(Span declaration, std::string const& disturbance, std::optional<Span> const& part) {
   std::string const help = fmt::format(
-      "white noise may be multiplied by anything but itself; for other functions give it a memory: `{} ~ ornstein_uhlenbeck(sd = "
+      "white noise may be multiplied by anything but white noise; for other functions give it a memory: `{} ~ "
+      "ornstein_uhlenbeck(sd = "
       "s, "
       "time = T)`",
       disturbance);
@@ -113,14 +115,14 @@ Diagnostic not_linear_in_disturbance(Span declaration, std::string const& distur
 Diagnostic unused_disturbance(Span declaration, std::string const& disturbance) {
   return about(
       {disturbance},
-      error("E3308", declaration, fmt::format("no equation and no channel reads disturbance `{}`", disturbance),
+      error("E3308", declaration, fmt::format("disturbance `{}` is not used in any equation or channel", disturbance),
             fmt::format("add it to the equation that it disturbs, as in `m*y'' + k*y = x + {}`, or remove it", disturbance)));
 }
 
 Diagnostic disturbance_beside(Span place, Subject const& disturbance, Subject const& other, std::string const& help) {
   Names names = disturbance.names;
   names.insert(names.end(), other.names.begin(), other.names.end());
-  return about(names, error("E3309", place, fmt::format("{} cannot stand beside {}", disturbance.words, other.words), help));
+  return about(names, error("E3309", place, fmt::format("{} cannot be combined with {}", disturbance.words, other.words), help));
 }
 
 Diagnostic law_of_initial(ast::Call const& law, std::string const& state) {
@@ -134,34 +136,34 @@ Diagnostic law_of_initial(ast::Call const& law, std::string const& state) {
 
 Diagnostic bounds_of_initial(ast::Call const& law, std::string const& state) {
   return about({state},
-               error("E3310", law.span, fmt::format("a random initial value cannot have bounds: that of `{}` has", state),
+               error("E3310", law.span, fmt::format("the random initial value of `{}` cannot have bounds", state),
                      fmt::format("remove them, or estimate the value: `parameter start ~ {}(...)` and `initial {} = start`",
                                  law.function.text, state)));
 }
 
 Diagnostic random_guess(Span initial, std::string const& unknown) {
   return about({unknown}, error("E3310", initial, fmt::format("the first value of `{}` follows from the equations", unknown),
-                                fmt::format("write a value near it, `initial {} = 0`, at which its search begins", unknown)));
+                                fmt::format("write a starting guess, `initial {} = 0`", unknown)));
 }
 
 Diagnostic estimated_and_random_start(Span option, Span initial, std::string const& state) {
   return about({"start", state}, conflict("E3311", option, "estimated", initial, "random",
-                                          fmt::format("the initial value of `{}` is random: it is not estimated besides", state),
+                                          fmt::format("the initial value of `{}` cannot be both random and estimated", state),
                                           "remove the option, or write a value in place of the distribution"));
 }
 
 Diagnostic filter_of_nothing(Span option, std::string const& model) {
   return about({"filter", model},
-               error("E3312", option, fmt::format("model `{}` has nothing random in its states: it needs no filter", model),
+               error("E3312", option, fmt::format("model `{}` has no random states, so it needs no filter", model),
                      "remove the option, or declare what was not measured: `disturbance w [N] ~ white(intensity = q)`"));
 }
 
 Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optional<Span> const& part) {
-  return about(
-      {"filter", "kalman", model},
-      with_place(error("E3313", option, fmt::format("`kalman` needs linear equations and channels, which `{}` has not", model),
-                       "write `filter = extended` or `unscented`, or remove the option: the program then chooses"),
-                 part, "not linear"));
+  return about({"filter", "kalman", model},
+               with_place(error("E3313", option,
+                                fmt::format("`kalman` needs linear equations and channels; those of `{}` are not linear", model),
+                                "write `filter = extended` or `unscented`, or remove the option: the program then chooses"),
+                          part, "not linear"));
 }
 
 Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "check/expression/discrete_step.hpp"
 #include "check/expression/names_used.hpp"
 #include "check/message/errors.hpp"
 #include "check/process/process_expansion.hpp"
@@ -94,19 +95,7 @@ void ModelChecker::declare() {
 void ModelChecker::declare_step(ast::DiscreteTimeDeclaration const& discrete) {
   model_.dynamics = Dynamics::discrete;
   scope_.samples().discrete = true;
-  if (!discrete.step) return;
-  Unit const second = unit_atom("s").value();
-  auto const value = scope_.expression(*discrete.step);
-  if (!value) return;
-  if (value->kind == Typed::Kind::known && value->unit.dimension != second.dimension) {
-    diagnostics_.add(errors::number_of_other_kind(discrete.step->span, {"the time between samples"}, value->unit, second));
-    return;
-  }
-  auto const step = model_.graph.constant_value(adapt(model_.graph, *value, second));
-  if (!step || !(*step > 0))
-    diagnostics_.add(errors::rate_not_positive(discrete.step->span));
-  else
-    model_.step = step;
+  model_.step = declared_step(discrete, scope_);
 }
 
 ModelChecker::StateInfo* ModelChecker::find_state(std::string const& name) {

@@ -239,8 +239,8 @@ void ModelChecker::place_disturbances() {
   errors::Subject const subject = errors::named(declared ? "disturbance" : "the random initial value of", random.name);
   if (!model_.processes.empty())
     diagnostics_.add(errors::disturbance_beside(random.span, subject, {"a Gaussian process"},
-                                                "give the process the range in which it is needed, `gp(..., within = (-1, 1))`: "
-                                                "a finite sum then stands for it"));
+                                                "give the process a range, `gp(..., within = (-1, 1))`: it is then approximated by "
+                                                "a finite sum"));
   if (!model_.unknowns.empty() || !model_.invariants.empty())
     diagnostics_.add(errors::disturbance_beside(
         random.span, subject, {"algebraic unknowns and constraints"},

@@ -93,7 +93,8 @@ class TaskChecker {
   // --- task_discover.cpp
   DiscoverTask discover();
   // `spike_slab(derivatives = weak(...), ...)`.
-  void discover_method(ast::Option const& option, std::string const& key, DiscoverTask& task);
+  void take_settings_of_samples(ast::Call& selector, DiscoverTask& task);
+  void discover_method(ast::Option const& option, std::string const& key, CheckedDictionary const* dictionary, DiscoverTask& task);
   void derivatives(ast::Expression const& tree, DiscoverTask& task);
   // `noise(displacement = 0.1 [mm])`.
   void noise(ast::Call const& call, CheckedDictionary const& dictionary, DiscoverTask& task);

@@ -21,14 +21,30 @@ void TaskChecker::derivatives(ast::Expression const& tree, DiscoverTask& task) {
   if (call != nullptr) options_.settings(*call, row->settings, task.form_settings);
 }
 
-void TaskChecker::discover_method(ast::Option const& option, std::string const& key, DiscoverTask& task) {
+// Settings of the noise stand among those of the selector.
+void TaskChecker::take_settings_of_samples(ast::Call& selector, DiscoverTask& task) {
+  auto const of_samples = [&](ast::Argument const& each) {
+    return each.name && find_setting(backends_.samples.settings, each.name->text) != nullptr;
+  };
+  ast::Call own = selector;
+  std::erase_if(own.arguments, [&](ast::Argument const& each) { return !of_samples(each); });
+  if (!own.arguments.empty()) options_.settings(own, backends_.samples.settings, task.form_settings);
+  std::erase_if(selector.arguments, of_samples);
+}
+
+void TaskChecker::discover_method(ast::Option const& option, std::string const& key, CheckedDictionary const* dictionary,
+                                  DiscoverTask& task) {
+  bool const discrete = dictionary != nullptr && dictionary->numbers.discrete;
   ast::Option selector = option;
   if (auto* call = std::get_if<ast::Box<ast::Call>>(&selector.value.node)) {
+    if (discrete) take_settings_of_samples(**call, task);
     std::vector<ast::Argument>& arguments = (*call)->arguments;
     std::optional<Span> first;
     for (ast::Argument const& argument : arguments) {
       if (!argument.name || argument.name->text != "derivatives") continue;
-      if (first)
+      if (discrete)
+        diagnostics_.add(errors::not_in_discrete_time(argument.span, "derivatives", dictionary->name));
+      else if (first)
         diagnostics_.add(errors::stated_twice(argument.span, *first, errors::named("derivatives")));
       else
         derivatives(argument.value, task);
@@ -71,11 +87,13 @@ DiscoverTask TaskChecker::discover() {
   DiscoverTask task;
   task.selector = backends_.discovering.front().name;
   task.selector_settings = Settings(backends_.discovering.front().settings);
-  task.form = backends_.derivatives.front().name;
-  task.form_settings = Settings(backends_.derivatives.front().settings);
   auto const found = item(tree_.subject, names_.dictionaries, "dictionary");
   CheckedDictionary const* dictionary = found ? &file_.dictionaries[static_cast<std::size_t>(*found)] : nullptr;
   if (found) task.dictionary = *found;
+  bool const discrete = dictionary != nullptr && dictionary->numbers.discrete;
+  BackendSettings const& form = discrete ? backends_.samples : backends_.derivatives.front();
+  task.form = form.name;
+  task.form_settings = Settings(form.settings);
   task.experiments = experiments(dictionary == nullptr ? nullptr : &dictionary->measured, "from");
   if (dictionary != nullptr && !diagnostics_.has_errors(before_)) require_channels(*dictionary, task);
   if (!diagnostics_.has_errors(before_)) refuse_input_errors(task.experiments);
@@ -90,9 +108,10 @@ DiscoverTask TaskChecker::discover() {
       else
         options_.flag(option, key, key == "refit" ? task.refit : task.candidates);
     } else if (key == "noise" && as_call(option.value) != nullptr) {
-      if (options_.fresh(option, key) && dictionary != nullptr) noise(*as_call(option.value), *dictionary, task);
+      if (discrete) diagnostics_.add(errors::not_in_discrete_time(option.span, "noise", dictionary->name));
+      if (options_.fresh(option, key) && dictionary != nullptr && !discrete) noise(*as_call(option.value), *dictionary, task);
     } else {
-      discover_method(option, key, task);
+      discover_method(option, key, dictionary, task);
     }
   }
   return task;

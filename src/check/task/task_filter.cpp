@@ -31,13 +31,13 @@ Refusal refusal_of(Problem const& problem, Model const& model) {
       input);
   switch (problem.kind) {
     case Problem::Kind::rate:
-      return {{fmt::format("the model reads its derivative `{}'`, which errors of samples do not have", input), {input + "'"}},
+      return {{fmt::format("the model uses its derivative `{}'`, but the errors of samples have none", input), {input + "'"}},
               fmt::format(
-                  "declare what the derivative lacks as a disturbance of the model, `disturbance e ~ white(intensity = q)`, and "
+                  "declare the error of the derivative as a disturbance of the model, `disturbance e ~ white(intensity = q)`, and "
                   "write `{}' + e`",
                   input)};
     case Problem::Kind::channel:
-      return {{fmt::format("channel `{}` reads it directly", model.channels[static_cast<std::size_t>(problem.index)].name),
+      return {{fmt::format("channel `{}` depends on it directly", model.channels[static_cast<std::size_t>(problem.index)].name),
                {model.channels[static_cast<std::size_t>(problem.index)].name}},
               cure};
     case Problem::Kind::nonlinear:
@@ -121,7 +121,7 @@ std::optional<Model> TaskChecker::as_fitted(FitTask const& task, Model const& mo
   std::string const& input = model.inputs[static_cast<std::size_t>(problem.input)].name;
   std::optional<Label> place;
   if (problem.kind == Problem::Kind::channel)
-    place = Label{model.channels[static_cast<std::size_t>(problem.index)].span, "reads it"};
+    place = Label{model.channels[static_cast<std::size_t>(problem.index)].span, "depends on it"};
   else if (auto const span = problem.kind == Problem::Kind::nonlinear ? place_of(ruled.graph, problem.node) : std::nullopt)
     place = Label{*span, "not linear in it"};
   Refusal const refusal = refusal_of(problem, model);
@@ -169,8 +169,7 @@ void TaskChecker::refuse_input_errors(std::vector<ExperimentUse> const& experime
     for (DataInputUse const& bound : file_.data[static_cast<std::size_t>(use.data)].inputs)
       if (bound.error)
         return diagnostics_.add(errors::input_error_refused(
-            bound.error->span, bound.input, {"a discovery takes samples of inputs as exact"},
-            Label{tree_.subject.span, "discovered here"},
+            bound.error->span, bound.input, {"`discover` treats inputs as exact"}, Label{tree_.subject.span, "discovered here"},
             "discover from a data block without `error`, then fit the model that was found to this one"));
 }
 

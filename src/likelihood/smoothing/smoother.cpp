@@ -57,7 +57,7 @@ int Smoother::at_once(int width) const {
   if (rows > std::numeric_limits<int>::max())
     throw UserError({Severity::error,
                      "E5003",
-                     fmt::format("the smoothed states of {} samples are more numbers than are kept at once", samples()),
+                     fmt::format("smoothing {} samples needs more memory than the program supports", samples()),
                      std::nullopt,
                      {},
                      "fit a shorter record"});

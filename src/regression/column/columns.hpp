@@ -20,6 +20,13 @@ struct Columns {
   Eigen::MatrixXd terms;
 };
 
+/// How large the residual of a right equation is.
+enum class ResidualSize {
+  one,         // of `whitened`: its sd is 1
+  propagated,  // as noise of the channels passes through the form: by drawing it
+  unknown,     // the noise is that of the equation, and estimated with it
+};
+
 /// The columns of every equation on all experiments, stacked.
 class Projection {
  public:
@@ -35,9 +42,10 @@ class Projection {
   virtual double own_noise(int equation, Eigen::VectorXd const& coefficients) const = 0;
   /// How often whitening depends on coefficients and is worth repeating; 0: never.
   virtual int reweightings() const = 0;
-  /// Whether the residual of `whitened` has sd 1 when the equation is right.
-  virtual bool calibrated() const = 0;
-  /// Noise sd taken per channel, as given or estimated.
+  virtual ResidualSize residual_size() const = 0;
+  /// Coefficients of the moving average that the residual at these coefficients is taken for; empty: white, or the form has none.
+  virtual std::vector<double> moving_average(int, Eigen::VectorXd const&) const { return {}; }
+  /// Noise sd taken per channel, as given or estimated; empty: the form takes none.
   virtual std::vector<double> const& noise_sd() const = 0;
   /// Half-width of windows in samples; 0 for forms on samples.
   virtual int half_width() const = 0;
@@ -58,6 +66,9 @@ struct Form {
 
 /// The ways to have derivatives, in the order in which they are listed; `weak` first, the default.
 std::span<Form const> forms();
+/// The way of dictionaries in discrete time, which have no derivatives.
+Form const& form_of_samples();
+/// One of them by its name; null: none.
 Form const* find_form(std::string_view name);
 
 }  // namespace sysid::regression

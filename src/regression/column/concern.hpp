@@ -26,6 +26,7 @@ struct Concern {
     interchangeable,   // terms of which one is needed, but not which; value: probability that at least one is in
     unexplained,       // value: residual sd over that expected of the measurement noise: an input or a term is missing
     correlated,        // value: how many rows are worth one independent one
+    not_white,         // of a difference equation; value: chi-squared over some lags
     other_rule,        // input, rule: the residual is far smaller with it; value: by which factor the squares
     smoothed,          // terms that needed a smoothed derivative inside the weak form
     missing,           // value: share of windows lost to missing samples

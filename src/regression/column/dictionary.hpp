@@ -19,6 +19,7 @@ struct Symbol {
   Kind kind = Kind::state;
   int index = 0;  // of the state, or of the experiment's input
   int order = 0;  // derivative order: y is 0, y' is 1; of inputs 0 or 1
+  int lag = 0;    // in discrete time, samples back
 };
 
 /// A candidate: the coefficient before `expression` is looked for.
@@ -49,6 +50,7 @@ struct Dictionary {
   std::vector<std::string> states;  // names
   std::vector<Channel> channels;
   std::vector<Equation> equations;
+  bool discrete = false;  // difference equations: each gives a state at the present sample from samples before, which are symbols
 };
 
 /// A target that is affine in its free coefficients, taken apart: `target = sum_j w_j term_j` with target = known + sum_i a_i f_i

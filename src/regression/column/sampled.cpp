@@ -41,7 +41,7 @@ class SampledProjection : public Projection {
   Columns whitened(int equation, Eigen::VectorXd const&, double) const override { return columns(equation); }
   double own_noise(int, Eigen::VectorXd const&) const override { return 0; }
   int reweightings() const override { return 0; }
-  bool calibrated() const override { return false; }
+  ResidualSize residual_size() const override { return ResidualSize::propagated; }
   std::vector<double> const& noise_sd() const override { return noise_sd_; }
   int half_width() const override { return 0; }
   Concerns const& concerns(int equation) const override { return concerns_[static_cast<std::size_t>(equation)]; }

@@ -158,18 +158,8 @@ std::optional<double> nothing_but_noise(std::span<Experiment const> experiments,
 
 }  // namespace
 
-Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment const> experiments, std::span<int const> used) {
+Concerns channel_concerns(Dictionary const& dictionary, std::span<Experiment const> experiments, std::span<int const> used) {
   Concerns concerns;
-  for (Experiment const& experiment : experiments)
-    if (!uniform_step(experiment)) {
-      std::vector<double> const& time = experiment.time;
-      std::size_t const i = unequal_step(time);
-      Concern concern{.kind = Concern::Kind::unequal_steps};
-      concern.clause =
-          fmt::format("the time steps of `{}` are unequal: row {} is {:.6g} s after the row before, the mean step is {:.6g} s",
-                      experiment.name, experiment.first_row + static_cast<int>(i), time[i] - time[i - 1], mean_step(time));
-      concerns.push_back(std::move(concern));
-    }
   for (int const channel : used) {
     auto const c = static_cast<std::size_t>(channel);
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -189,11 +179,35 @@ Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment cons
       concern.clause =
           fmt::format("`{}` is {:.4g} on the whole record: a system at rest gives no information about its equation", name, low);
       concerns.push_back(std::move(concern));
-    } else if (dictionary.channels[c].order == 0 && !dictionary.channels[c].noise_sd && nothing_but_noise(experiments, c)) {
-      Concern concern{.kind = Concern::Kind::at_rest, .channel = channel, .value = low};
-      concern.clause = fmt::format("`{}` contains only white noise in this record: its spectrum is flat", name);
+    }
+  }
+  return concerns;
+}
+
+Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment const> experiments, std::span<int const> used) {
+  Concerns concerns;
+  for (Experiment const& experiment : experiments)
+    if (!uniform_step(experiment)) {
+      Concern concern{.kind = Concern::Kind::unequal_steps};
+      std::vector<double> const& time = experiment.time;
+      std::size_t const i = unequal_step(time);
+      concern.clause =
+          fmt::format("the time steps of `{}` are unequal: row {} is {:.6g} s after the row before, the mean step is {:.6g} s",
+                      experiment.name, experiment.first_row + static_cast<int>(i), time[i] - time[i - 1], mean_step(time));
       concerns.push_back(std::move(concern));
     }
+  Concerns const of_channels = channel_concerns(dictionary, experiments, used);
+  concerns.insert(concerns.end(), of_channels.begin(), of_channels.end());
+  for (int const channel : used) {
+    auto const c = static_cast<std::size_t>(channel);
+    bool const said =
+        std::any_of(of_channels.begin(), of_channels.end(), [&](Concern const& each) { return each.channel == channel; });
+    if (said || dictionary.channels[c].order > 0 || dictionary.channels[c].noise_sd) continue;
+    if (!nothing_but_noise(experiments, c)) continue;
+    Concern concern{.kind = Concern::Kind::at_rest, .channel = channel};
+    concern.clause =
+        fmt::format("`{}` contains only white noise in this record: its spectrum is flat", dictionary.channels[c].name);
+    concerns.push_back(std::move(concern));
   }
   return concerns;
 }

@@ -37,7 +37,9 @@ double fastest_period(std::span<double const> samples, double step);
 /// records without noise keep a covariance.
 std::vector<double> noise_of_channels(Dictionary const& dictionary, std::span<Experiment const> experiments);
 
-/// Fatal concerns that hold for any form: unequal steps, channels at rest. `used`: channels of the equation.
+/// A channel without samples, or one that does not move: fatal. `used`: channels of the equation.
+Concerns channel_concerns(Dictionary const& dictionary, std::span<Experiment const> experiments, std::span<int const> used);
+/// Beside these unequal steps and channels that contain nothing but noise, which no derivative can be had of.
 Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment const> experiments, std::span<int const> used);
 
 /// Whether sample `row` can be used: scored, and none of the channels `used` missing.

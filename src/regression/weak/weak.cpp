@@ -53,7 +53,7 @@ class WeakProjection : public Projection {
 
   Columns const& columns(int equation) const override { return equations_[static_cast<std::size_t>(equation)].columns; }
   int reweightings() const override { return reweightings_; }
-  bool calibrated() const override { return true; }
+  ResidualSize residual_size() const override { return ResidualSize::one; }
   std::vector<double> const& noise_sd() const override { return noise_sd_; }
   int half_width() const override { return half_width_; }
   Concerns const& concerns(int equation) const override { return equations_[static_cast<std::size_t>(equation)].concerns; }

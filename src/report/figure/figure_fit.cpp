@@ -131,8 +131,9 @@ Plot residual_plot(Excerpt const& of, std::string const& unit, Panel panel) {
 }
 
 std::string caption_of_smoothed(PredictedQuantity const& quantity) {
-  return fmt::format("{} given all samples of the record, with the band that holds it with 95 %, parameters and states together{}.",
-                     quantity.name, quantity.average ? "; at each sample the mean from there to the next" : "");
+  return fmt::format(
+      "{} given all samples of the record, with its 95 % band, which includes the uncertainty of states and parameters{}.",
+      quantity.name, quantity.average ? "; at each sample the mean from there to the next" : "");
 }
 
 std::string caption_of(Excerpt const& of, std::string const& name) {

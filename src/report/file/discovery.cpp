@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/text/number.hpp"
@@ -27,6 +28,11 @@ ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation cons
   if (equation.own_noise > 0)
     title += fmt::format(", error of the equation itself {}{} (sd at a sample)", significant(equation.own_noise, 3),
                          unit_after_number(equation.unit));
+  if (!equation.moving_average.empty()) {
+    std::vector<std::string> numbers;
+    for (double const each : equation.moving_average) numbers.push_back(significant(each, 2));
+    title += fmt::format(", a moving average with {}", fmt::join(numbers, ", "));
+  }
   ReportTable table{
       std::move(title),
       "Contribution: root mean square of coefficient times term, divided by that of the explained signal; in the weak "
@@ -85,6 +91,20 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
     for (DiscoveryReport::Excluded const& each : discovery.excluded) excluded.rows.push_back({each.term, each.reason});
     tables.push_back(std::move(excluded));
   }
+  if (!discovery.forecasts.empty()) {
+    ReportTable forecast{
+        "errors of predictions on " + discovery.forecast_rows,
+        "Root mean squares. Expected: of a free run if the equation is right, by its errors and those of its coefficients.",
+        {"target", "unit", "sd of the samples", "one sample ahead", "free run", "expected"},
+        {}};
+    auto const text = [](std::optional<double> const& error) {
+      return !error ? std::string() : std::isfinite(*error) ? significant(*error, 3) : std::string("not finite");
+    };
+    for (DifferenceForecast const& each : discovery.forecasts)
+      forecast.rows.push_back(
+          {each.target, each.unit, significant(each.sd, 3), text(each.one_step), text(each.free_run), text(each.expected)});
+    tables.push_back(std::move(forecast));
+  }
   if (discovery.validation)
     for (ReportTable& table : validation_tables(*discovery.validation)) tables.push_back(std::move(table));
   return tables;
@@ -120,16 +140,28 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
       supports.push_back({{"terms", support.terms}, {"probability", support.probability}, {"log_evidence", support.log_evidence}});
       if (support.probability_error > 0) supports.back()["probability_error"] = support.probability_error;
     }
-    out["equations"].push_back({{"target", equation.target},
-                                {"equation", equation.equation},
-                                {"rows", equation.rows},
-                                {"explained_of_projections", equation.explained},
-                                {"noise_ratio", equation.noise_ratio},
-                                {"own_noise", equation.own_noise},
-                                {"exact", equation.exact},
-                                {"converged", equation.converged},
-                                {"terms", std::move(terms)},
-                                {"supports", std::move(supports)}});
+    Json found = {{"target", equation.target},
+                  {"equation", equation.equation},
+                  {"rows", equation.rows},
+                  {"explained_of_projections", equation.explained},
+                  {"noise_ratio", equation.noise_ratio},
+                  {"own_noise", equation.own_noise},
+                  {"exact", equation.exact},
+                  {"converged", equation.converged},
+                  {"terms", std::move(terms)},
+                  {"supports", std::move(supports)}};
+    if (!equation.moving_average.empty()) found["moving_average"] = equation.moving_average;
+    out["equations"].push_back(std::move(found));
+  }
+  for (DifferenceForecast const& each : discovery.forecasts) {
+    auto const number = [](std::optional<double> const& error) { return error && std::isfinite(*error) ? Json(*error) : Json(); };
+    out["forecasts"].push_back({{"rows", discovery.forecast_rows},
+                                {"target", each.target},
+                                {"unit", each.unit},
+                                {"sd", each.sd},
+                                {"one_step", number(each.one_step)},
+                                {"free_run", number(each.free_run)},
+                                {"expected", number(each.expected)}});
   }
   if (discovery.validation) out["judged"] = validation_json(*discovery.validation);
   return out;

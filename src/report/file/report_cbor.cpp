@@ -267,11 +267,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredTerm, text, unit, name, fate, kept,
                                    mean_sd, contribution, inflation)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredSupport, terms, probability, probability_error, log_evidence)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredEquation, target, equation, terms, supports, explained, noise_ratio, own_noise, unit,
-                                   rows, exact, converged)
+                                   moving_average, rows, exact, converged)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Noise, channel, unit, sd, given)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Excluded, term, reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DifferenceForecast, target, unit, sd, one_step, free_run, expected)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measure, windows, half_width, noise, equations, excluded,
-                                   validation, source)
+                                   validation, forecast_rows, forecasts, source)
 
 // --- calibrations
 

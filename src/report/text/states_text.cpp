@@ -25,7 +25,7 @@ ReportTable states_table(Report const& report) {
   ReportTable table{
       "States and disturbances",
       "Given all samples of the record. rms: root mean square of the mean along the record; sd: that of the posterior sd, "
-      "parameters and states together. Where sd is about as large as rms, the record says little about the quantity.",
+      "parameters and states together. Where sd is about as large as rms, the record hardly determines the quantity.",
       {"quantity", "unit", "rms", "sd"},
       {}};
   bool const several = report.states.size() > 1;

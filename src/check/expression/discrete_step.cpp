@@ -1,0 +1,24 @@
+// A number of seconds, or of a unit that is converted to them.
+#include "check/expression/discrete_step.hpp"
+
+#include "check/message/errors.hpp"
+#include "check/units/units.hpp"
+
+namespace sysid {
+
+std::optional<double> declared_step(ast::DiscreteTimeDeclaration const& discrete, Scope& scope) {
+  if (!discrete.step) return std::nullopt;
+  Unit const second = unit_atom("s").value();
+  auto const value = scope.expression(*discrete.step);
+  if (!value) return std::nullopt;
+  if (value->kind == Typed::Kind::known && value->unit.dimension != second.dimension) {
+    scope.diagnostics().add(errors::number_of_other_kind(discrete.step->span, {"the time between samples"}, value->unit, second));
+    return std::nullopt;
+  }
+  auto const step = scope.graph().constant_value(adapt(scope.graph(), *value, second));
+  if (step && *step > 0) return step;
+  scope.diagnostics().add(errors::rate_not_positive(discrete.step->span));
+  return std::nullopt;
+}
+
+}  // namespace sysid

@@ -1,0 +1,155 @@
+// Modified Gram-Schmidt on the triangle of the problem.
+#include "regression/choice/forward.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numeric/elementary.hpp"
+#include "regression/choice/triangle.hpp"
+
+namespace sysid::regression::forward {
+namespace {
+
+constexpr SettingRow rows[] = {
+    {"least_ratio", SettingKind::real, "0", 0, 1, "",
+     "smallest error reduction ratio of a term that is taken; 0: as many terms as the evidence is largest with"},
+};
+
+/// Supports offered as candidates beside the chosen one.
+constexpr int neighbours = 2;
+/// Part of a column that must be left when those taken are removed from it: less is rounding.
+constexpr double dependent_below = 1e-16;  // of its square
+
+struct Step {
+  int term;
+  double ratio;
+};
+
+class Path {
+ public:
+  explicit Path(LinearProblem const& problem, Triangle const& triangle)
+      : left_(triangle.r), known_(triangle.known), length_(left_.cols()), total_(triangle.total), rest_(triangle.rest) {
+    for (Eigen::Index j = 0; j < left_.cols(); ++j) length_(j) = left_.col(j).squaredNorm();
+    for (Eigen::Index j = 0; j < left_.cols(); ++j)
+      if (problem.always[static_cast<std::size_t>(j)] != 0) take(static_cast<int>(j));
+  }
+
+  /// 0 for a term that is taken, or a sum of those that are.
+  double ratio(Eigen::Index j) const {
+    double const squares = left_.col(j).squaredNorm();
+    if (!(squares > dependent_below * length_(j)) || !(total_ > 0)) return 0;
+    double const product = left_.col(j).dot(known_);
+    return product * product / squares / total_;
+  }
+
+  bool go_on(std::size_t most) {
+    if (taken_.size() >= most) return false;
+    Eigen::Index best = -1;
+    double largest = 0;
+    for (Eigen::Index j = 0; j < left_.cols(); ++j)
+      if (double const each = ratio(j); each > largest) best = j, largest = each;
+    if (best < 0) return false;
+    take(static_cast<int>(best));
+    return true;
+  }
+
+  /// Sum of squared residuals with what is taken.
+  double squares() const { return rest_ + known_.squaredNorm(); }
+  std::vector<Step> const& taken() const { return taken_; }
+  std::vector<int> first(std::size_t count) const {
+    std::vector<int> terms;
+    for (std::size_t k = 0; k < count; ++k) terms.push_back(taken_[k].term);
+    std::sort(terms.begin(), terms.end());
+    return terms;
+  }
+
+ private:
+  void take(int term) {
+    taken_.push_back({term, ratio(term)});
+    Eigen::VectorXd const direction = left_.col(term).normalized();
+    known_ -= direction.dot(known_) * direction;
+    for (Eigen::Index j = 0; j < left_.cols(); ++j) left_.col(j) -= direction.dot(left_.col(j)) * direction;
+    left_.col(term).setZero();
+  }
+
+  Eigen::MatrixXd left_;
+  Eigen::VectorXd known_, length_;
+  double total_, rest_;
+  std::vector<Step> taken_;
+};
+
+}  // namespace
+
+std::span<SettingRow const> settings() { return rows; }
+
+Choice choose(LinearProblem const& problem, Settings const& settings, SelectorContext const&) {
+  Triangle const triangle = reduce(problem);
+  double const least = settings.real("least_ratio");
+  auto const count = static_cast<std::size_t>(problem.terms.cols());
+  auto const always = static_cast<std::size_t>(std::count(problem.always.begin(), problem.always.end(), 1));
+  std::size_t const most = std::max(always, std::min(count, static_cast<std::size_t>(triangle.rows) / 2));
+  auto const evidence = [&](std::vector<int> const& terms) { return default_log_evidence(triangle, problem.always, terms); };
+  Path path(problem, triangle);
+  double const base = path.squares(), rows = triangle.rows - static_cast<double>(always);
+  // With so many terms to choose from, every size being as probable.
+  auto const score = [&](std::size_t terms, double squares) {
+    auto const free = static_cast<double>(count - always), size = static_cast<double>(terms - always);
+    return log_bayes_factor(CoefficientPrior::beta_prime, rows, size, squares, base, rows) + elementary::lgamma(size + 1) +
+           elementary::lgamma(free - size + 1) - elementary::lgamma(free + 1);
+  };
+  std::size_t chosen = path.taken().size();
+  double best = score(chosen, base);
+  while (path.go_on(most)) {
+    std::size_t const size = path.taken().size();
+    if (least > 0) {
+      if (path.taken().back().ratio < least) break;
+      chosen = size;
+    } else if (double const each = score(size, path.squares()); each > best) {
+      best = each;
+      chosen = size;
+    }
+  }
+  std::vector<int> terms = path.first(chosen);
+  for (bool lowered = least == 0; lowered;) {
+    lowered = false;
+    for (std::size_t k = 0; k < terms.size() && !lowered; ++k) {
+      if (problem.always[static_cast<std::size_t>(terms[k])] != 0) continue;
+      std::vector<int> fewer = terms;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(k));
+      if (double const each = score(fewer.size(), residual_squares(triangle, fewer)); each > best) {
+        best = each;
+        terms = std::move(fewer);
+        lowered = true;
+      }
+    }
+  }
+
+  Choice choice;
+  choice.iterations = static_cast<int>(path.taken().size());
+  choice.terms.resize(count);
+  auto const offer = [&](std::vector<int> const& each) {
+    Support support = support_of(triangle, each);
+    support.log_evidence = evidence(each);
+    return support;
+  };
+  choice.chosen = offer(terms);
+  choice.chosen.probability = 1;
+  choice.noise_sd = choice.chosen.noise_sd;
+  for (Step const& step : path.taken()) choice.terms[static_cast<std::size_t>(step.term)].measure = step.ratio;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    auto const i = static_cast<Eigen::Index>(k);
+    TermChoice& term = choice.terms[static_cast<std::size_t>(terms[k])];
+    term.kept = true;
+    term.mean = choice.chosen.coefficient(i);
+    term.sd = std::sqrt(choice.chosen.covariance(i, i));
+  }
+  choice.supports.push_back(choice.chosen);
+  for (int distance = 1; distance <= neighbours; ++distance) {
+    auto const away = static_cast<std::size_t>(distance);
+    if (chosen >= always + away) choice.supports.push_back(offer(path.first(chosen - away)));
+    if (chosen + away <= path.taken().size()) choice.supports.push_back(offer(path.first(chosen + away)));
+  }
+  return choice;
+}
+
+}  // namespace sysid::regression::forward

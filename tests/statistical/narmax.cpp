@@ -1,0 +1,167 @@
+// Difference equations of made records: the terms, the coefficients within their sds, the noise, and what is said where the form is
+// wrong. Records are made here, sample by sample, by the equation alone.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/running.hpp"
+#include "core/numeric/random.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+std::map<std::string, double> const true_coefficients = {
+    {"lag(y, 1)", 0.6}, {"lag(y, 2)", -0.25}, {"lag(u, 1)", 0.5}, {"lag(u, 1)^2", 0.15}, {"lag(y, 1)*lag(u, 2)", -0.1}};
+
+struct Noise {
+  double equation = 0, average = 0, measurement = 0;  // sd of e_i in e_i + average e_i-1; sd of what is added to the samples
+};
+
+std::string record(std::uint64_t seed, int rows, Noise const& noise) {
+  Stream force({seed, Purpose::input, 0, 0}), error({seed, Purpose::noise, 0, 0}), reading({seed, Purpose::noise, 1, 0});
+  std::vector<double> u, y = {0, 0}, e;
+  int const before = 50;
+  for (int i = 0; i < rows + before; ++i) u.push_back(force.normal()), e.push_back(noise.equation * error.normal());
+  for (std::size_t i = 2; i < u.size(); ++i)
+    y.push_back(0.6 * y[i - 1] - 0.25 * y[i - 2] + 0.5 * u[i - 1] + 0.15 * u[i - 1] * u[i - 1] - 0.1 * y[i - 1] * u[i - 2] + e[i] +
+                noise.average * e[i - 1]);
+  std::string csv = "u,y\n";
+  for (std::size_t i = before; i < u.size(); ++i)
+    csv += fmt::format("{:.17g},{:.17g}\n", u[i], y[i] + noise.measurement * reading.normal());
+  return csv;
+}
+
+struct Found {
+  json equation, forecast;
+  int exit = 0;
+  std::string out;
+  std::map<std::string, json> kept;
+
+  Found(std::string const& csv, std::string const& selector,
+        std::string const& terms = "1, polynomial(lags(y, 1..2), lags(u, 0..2), degree = 3)") {
+    TemporaryFolder folder;
+    write_file(folder.path() / "made.csv", csv);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    auto const run =
+        run_text(folder.path() / "made.sysid",
+                 "dictionary narmax {\n  time discrete\n  input u\n  state y = position\n  target = y\n  terms = " + terms +
+                     "\n}\ndata bench { file \"made.csv\"; step 0.1 [s]; input u = u; measure position = y; split train = "
+                     "rows 1..700, test = rows 701..1000 }\nfound = discover narmax from bench.train with " +
+                     selector + ", seed = 1\n",
+                 options);
+    exit = static_cast<int>(run.exit);
+    out = run.out;
+    json const discovery = json::parse(read_file(options.output / "found/summary.json")).at("discovery");
+    equation = discovery.at("equations").at(0);
+    forecast = discovery.at("forecasts").at(0);
+    for (json const& term : equation.at("terms"))
+      if (term.at("kept").get<bool>()) kept.emplace(term.at("term").get<std::string>(), term);
+  }
+
+  bool exact() const {
+    std::set<std::string> names;
+    for (auto const& [name, term] : kept) names.insert(name);
+    std::set<std::string> true_names;
+    for (auto const& [name, value] : true_coefficients) true_names.insert(name);
+    return names == true_names;
+  }
+};
+
+/// Over twenty records of 700 rows: how many are exact, and the part of their coefficients within two sds.
+void check_records(Noise const& noise, std::string const& selector) {
+  int exact = 0, inside = 0, all = 0;
+  double squares = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Found const found(record(seed, 1000, noise), selector);
+    if (!found.exact()) continue;
+    ++exact;
+    for (auto const& [name, value] : true_coefficients) {
+      double const z = (found.kept.at(name).at("coefficient").get<double>() - value) / found.kept.at(name).at("sd").get<double>();
+      inside += std::abs(z) < 2 ? 1 : 0;
+      squares += z * z;
+      ++all;
+    }
+  }
+  MESSAGE(selector << ", e " << noise.equation << ", moving average " << noise.average << ", measurement " << noise.measurement
+                   << ": " << exact << " of 20 exact, " << inside << " of " << all << " coefficients within 2 sds, rms error "
+                   << std::sqrt(squares / all) << " sds");
+  CHECK(exact >= 19);
+  CHECK(inside >= 0.89 * all);  // 95.4 % of 100 are expected: fewer than 89 once in a thousand
+}
+
+}  // namespace
+
+TEST_CASE("five terms among 56 are found in white and in coloured noise, with coefficients within their sds") {
+  for (double const average : {0.0, 0.6, -0.7}) check_records({.equation = 0.05, .average = average}, "spike_slab");
+}
+
+TEST_CASE("forward selection finds them as well") {
+  for (double const average : {0.0, 0.6}) check_records({.equation = 0.05, .average = average}, "forward");
+}
+
+TEST_CASE("noise that is white by order leaves coloured noise to be seen, and biases") {
+  Found const found(record(1, 1000, {.equation = 0.2, .average = 0.9}), "spike_slab(moving_average = 0)");
+  CHECK(found.out.find("residual_correlated") != std::string::npos);
+  double const bias = found.kept.at("lag(y, 1)").at("coefficient").get<double>() - 0.6;
+  CHECK(std::abs(bias) > 3 * found.kept.at("lag(y, 1)").at("sd").get<double>());
+}
+
+TEST_CASE(
+    "a free run on rows that were not used is as good as the errors of the equation allow, and said to be lost where it is not") {
+  Found const found(record(2, 1000, {.equation = 0.05}), "spike_slab");
+  CHECK(found.exit == 0);
+  CHECK(found.forecast.at("free_run").get<double>() == doctest::Approx(found.forecast.at("expected").get<double>()).epsilon(0.25));
+  CHECK(found.forecast.at("one_step").get<double>() == doctest::Approx(0.05).epsilon(0.15));
+  // A spring that hardens is linear as long as the motion is small: rows of small motion do not show the cube.
+  auto const hardening = [](double small) {
+    std::string csv = "u,y\n";
+    Stream force({3, Purpose::input, 0, 0}), error({3, Purpose::noise, 0, 0});
+    double y = 0, before = 0, u = 0;
+    for (int i = 0; i < 1000; ++i) {
+      double const next = 1.2 * y - 0.5 * before + 0.3 * u - 0.02 * y * y * y + 0.01 * error.normal();
+      before = std::exchange(y, next);
+      u = (i < 700 ? small : 3) * force.normal();
+      csv += fmt::format("{:.17g},{:.17g}\n", u, y);
+    }
+    return csv;
+  };
+  std::string const terms = "lags(y, 1..2), lags(u, 0..2), lag(y, 1)^3";
+  Found const small(hardening(0.2), "spike_slab", terms), large(hardening(3), "spike_slab", terms);
+  CHECK_FALSE(small.kept.contains("lag(y, 1)^3"));
+  CHECK(small.out.find("free_run_lost") != std::string::npos);
+  CHECK(large.kept.contains("lag(y, 1)^3"));
+  CHECK(large.out.find("free_run_lost") == std::string::npos);
+}
+
+TEST_CASE("noise of the measurement is a moving average of the difference equation, and is seen where it is taken for white") {
+  std::string csv = "u,y\n";
+  double y = 0, v = 0;
+  Stream force({3, Purpose::input, 0, 0}), reading({3, Purpose::noise, 0, 0});
+  for (int i = 0; i < 1000; ++i) {
+    double const u = force.normal();
+    csv += fmt::format("{:.17g},{:.17g}\n", u, y + 0.05 * reading.normal());
+    v += 0.3 * (u - y - 0.3 * v);
+    y += 0.3 * v;
+  }
+  // y_i = 1.82 y_i-1 - 0.91 y_i-2 + 0.09 u_i-1
+  std::string const terms = "lags(y, 1..2), lags(u, 0..2)";
+  Found const white(csv, "spike_slab(moving_average = 0)", terms), right(csv, "spike_slab", terms);
+  CHECK(white.out.find("residual_correlated") != std::string::npos);
+  CHECK(right.out.find("the checks pass") != std::string::npos);
+  auto const off = [](Found const& found, char const* term, double value) {
+    json const& of = found.kept.at(term);
+    return (of.at("coefficient").get<double>() - value) / of.at("sd").get<double>();
+  };
+  CHECK(off(white, "lag(y, 1)", 1.82) < -5);
+  CHECK(std::abs(off(right, "lag(y, 1)", 1.82)) < 3);
+  CHECK(std::abs(off(right, "lag(y, 2)", -0.91)) < 3);
+  CHECK(std::abs(off(right, "lag(u, 1)", 0.09)) < 3);
+}
