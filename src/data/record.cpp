@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "data/file_errors.hpp"
+#include "data/rounded_times.hpp"
 #include "data/table.hpp"
 #include "data/table_record.hpp"
 
@@ -31,27 +32,33 @@ data_errors::Cell cell(Table const& table, std::size_t index, std::string const&
   return {table.name(), table.rows_before() + row, table.line(row), column};
 }
 
-/// A column without gaps; what: "an input", "the time".
+/// A column without gaps, as its numbers stand there; what: "an input", "the time".
 std::vector<double> complete(Table const& table, ColumnRequest const& request, std::string const& what) {
   std::vector<double> values = table.numbers(request.column, request.mention);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isnan(values[i])) throw UserError(data_errors::missing_value(cell(table, i, request.column), what, request.mention));
-  to_si(values, request);
   return values;
 }
 
-std::vector<double> times(Table const& table, RecordRequest const& request) {
+std::vector<double> times(Table const& table, RecordRequest const& request, bool whole) {
   if (!request.time) {
     std::vector<double> time(static_cast<std::size_t>(table.rows()));
     for (std::size_t i = 0; i < time.size(); ++i)
       time[i] = request.step > 0 ? static_cast<double>(i) * request.step : static_cast<double>(i + 1);  // a running sum would drift
     return time;
   }
-  std::vector<double> time = complete(table, *request.time, "the time");
+  std::vector<double> const written = complete(table, *request.time, "the time");
+  std::vector<double> time = written;
+  to_si(time, *request.time);
   for (std::size_t i = 1; i < time.size() && !request.independent_rows; ++i)
     if (!(time[i] > time[i - 1]))
       throw UserError(
           data_errors::time_not_increasing(cell(table, i, request.time->column), time[i - 1], time[i], request.time->mention));
+  if (whole && !request.independent_rows && time.size() > 2 && unequal_step(time) > 0)
+    if (std::optional<std::vector<double>> equal = equal_times_before_rounding(written)) {
+      time = std::move(*equal);
+      to_si(time, *request.time);
+    }
   return time;
 }
 
@@ -81,10 +88,10 @@ std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostic
     if (read.rows() < 2) throw UserError(data_errors::too_few_rows(read.name(), read.rows(), request.mention));
     return read;
   });
-  return table ? read_record(request, *table, diagnostics) : std::nullopt;
+  return table ? read_record(request, *table, diagnostics, true) : std::nullopt;
 }
 
-std::optional<Record> read_record(RecordRequest const& request, Table const& table, Diagnostics& diagnostics) {
+std::optional<Record> read_record(RecordRequest const& request, Table const& table, Diagnostics& diagnostics, bool whole) {
   if (!request.time && !(request.step > 0) && !request.independent_rows)
     throw InternalError("a record without a time column needs a step");
   bool complete_record = true;
@@ -92,14 +99,17 @@ std::optional<Record> read_record(RecordRequest const& request, Table const& tab
   record.path = request.path;
   record.digest = table.digest();
   record.comments = table.comments();
-  std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(table, request); });
+  std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(table, request, whole); });
   if (!time) complete_record = false;
   // Inputs of independent rows are read at rows alone.
   std::vector<double> rows(static_cast<std::size_t>(table.rows()));
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i + 1);
   for (InputRequest const& input : request.inputs) {
-    std::optional<std::vector<double>> samples =
-        collect(diagnostics, input.mention, [&] { return complete(table, input, "an input"); });
+    std::optional<std::vector<double>> samples = collect(diagnostics, input.mention, [&] {
+      std::vector<double> values = complete(table, input, "an input");
+      to_si(values, input);
+      return values;
+    });
     std::optional<InputSignal> signal;
     if (samples && time)
       signal = collect(diagnostics, input.mention,

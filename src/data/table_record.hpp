@@ -7,7 +7,8 @@
 
 namespace sysid {
 
-/// As `load` does from a file, but of any number of rows.
-std::optional<Record> read_record(RecordRequest const& request, Table const& table, Diagnostics& diagnostics);
+/// As `load` does from a file, but of any number of rows. whole: all rows of the file, whose times may be equal before they were
+/// rounded; rows that arrive one after the other keep the times they came with.
+std::optional<Record> read_record(RecordRequest const& request, Table const& table, Diagnostics& diagnostics, bool whole = false);
 
 }  // namespace sysid

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
+
+#include "core/text/words.hpp"
 
 namespace sysid {
 
@@ -61,9 +64,26 @@ Verdict verdict_of(Findings const& findings) {
   return verdict;
 }
 
-std::string findings_list(Findings const& findings, Surface read_at) {
+std::size_t findings_shown(Report const& report) { return report.verb == "discover" ? 5 : 1000; }
+
+std::string folded_findings(std::span<Finding const> folded) {
+  std::vector<std::string> counts, codes;
+  for (auto const& [severity, name] :
+       {std::pair(Severity::error, "failed check"), {Severity::warning, "warning"}, {Severity::note, "note"}})
+    if (auto const n = std::count_if(folded.begin(), folded.end(), [&](Finding const& each) { return each.severity == severity; });
+        n > 0)
+      counts.push_back(counted(n, name));
+  for (Finding const& each : folded)
+    if (std::find(codes.begin(), codes.end(), word(each.code)) == codes.end()) codes.emplace_back(word(each.code));
+  return fmt::format("{} more ({}): {}", folded.size(), fmt::join(counts, ", "), fmt::join(codes, ", "));
+}
+
+std::string findings_list(Findings const& findings, Surface read_at, std::size_t most) {
   std::string list;
-  for (Finding const& finding : by_weight(findings)) {
+  Findings const weighed = by_weight(findings);
+  std::span<Finding const> const all(weighed);
+  std::span<Finding const> const shown = all.first(std::min(most, all.size()));
+  for (Finding const& finding : shown) {
     char const* const mark = finding.severity == Severity::error     ? "failed"
                              : finding.severity == Severity::warning ? "warning"
                                                                      : "note";
@@ -71,6 +91,7 @@ std::string findings_list(Findings const& findings, Surface read_at) {
     if (!finding.help.empty()) list += fmt::format("    what to do: {}\n", help_at(finding, read_at));
   }
   if (findings.empty()) return list;
+  if (shown.size() < all.size()) list += fmt::format("  {}; `summary.json` has all\n", folded_findings(all.subspan(shown.size())));
   bool const alike =
       std::all_of(findings.begin(), findings.end(), [&](Finding const& each) { return each.code == findings.front().code; });
   if (read_at == Surface::prompt)

@@ -1,6 +1,7 @@
 // All findings of a run in one verdict: whether the numbers can be used, why not, what to do; and the class of the exit code.
 #pragma once
 #include <cstddef>
+#include <span>
 #include <string>
 
 #include "result/check_page.hpp"
@@ -26,9 +27,14 @@ Findings by_weight(Findings findings);
 /// Fails when any finding is an error.
 Verdict verdict_of(Findings const& findings);
 
-/// A line for each finding, by weight, with what to do; then how to learn more, as it is typed where this is read. Each line ends;
-/// empty where there are no findings.
-std::string findings_list(Findings const& findings, Surface read_at);
+/// How many findings of a report are shown before the rest is folded: of a discovery, whose terms have something to say each, five.
+std::size_t findings_shown(Report const& report);
+/// "3 more (1 warning, 2 notes): terms_repeat, windows_missing".
+std::string folded_findings(std::span<Finding const> folded);
+
+/// A line for each finding, by weight, with what to do, the first `most` of them and what the others are; then how to learn more,
+/// as it is typed where this is read. Each line ends; empty where there are no findings.
+std::string findings_list(Findings const& findings, Surface read_at, std::size_t most = 1000);
 
 /// The worst of the findings; note when there are none.
 Severity grade(Report const& report);

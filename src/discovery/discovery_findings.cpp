@@ -21,7 +21,9 @@ using Kind = regression::Concern::Kind;
 constexpr Row rows[] = {
     {Kind::not_measured, Severity::error, FindingCode::not_measured,
      "measure it, leave out the terms that need it, or use `derivatives = weak`"},
-    {Kind::unequal_steps, Severity::error, FindingCode::unequal_steps, "resample the record to equal steps"},
+    {Kind::unequal_steps, Severity::error, FindingCode::unequal_steps,
+     "if it was sampled regularly, write `step` or `rate` in place of `time` in the data block; otherwise resample it to equal "
+     "steps"},
     {Kind::too_few_rows, Severity::error, FindingCode::too_few_rows, "use a longer record, or fewer terms"},
     {Kind::at_rest, Severity::error, FindingCode::record_at_rest,
      "use rows in which it moves, or check that the column is the right one"},

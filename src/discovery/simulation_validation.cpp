@@ -10,6 +10,7 @@
 #include "discovery/coefficient_names.hpp"
 #include "discovery/forecast_errors.hpp"
 #include "discovery/found_equation.hpp"
+#include "discovery/residual_memory.hpp"
 #include "discovery/simulated_structure.hpp"
 #include "discovery/structure_fits.hpp"
 #include "discovery/validation_findings.hpp"
@@ -69,6 +70,7 @@ class Validator {
     Validation out;
     report(out);
     if (any) out.findings = validation_findings(out.report);
+    if (is_validated(order_.front())) add_memory(order_.front(), out.findings);
     return out;
   }
 
@@ -167,6 +169,14 @@ class Validator {
         if (parts[s].first == 0) points.push_back(drawn(m, s));
       scored_[m].bounded = bounded_runs(models_[m], views(m, rows_.records), points, forecast(m));
     }
+  }
+
+  // As the fit of the written model finds it, so that the two agree.
+  void add_memory(std::size_t m, Findings& findings) const {
+    for (ResidualMemory const& each : residual_memory(models_[m], fits_->fit(m), views(m, rows_.records), fits_->segments(),
+                                                      fits_->solver(m), execution_, pool_))
+      findings.push_back(not_white(dictionary_.measured.channels[models_[m].channels[each.channel]].name,
+                                   rows_.records[each.experiment].name, each));
   }
 
   // --- the answer

@@ -11,6 +11,7 @@
 
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "discovery/discovery_verdict.hpp"
 #include "result/discovery.hpp"
 
 namespace sysid {
@@ -19,6 +20,7 @@ namespace {
 constexpr double tolerable_residual = 1.5;  // of the noise
 constexpr double idle_sds = 2;              // a coefficient of the model may be zero
 constexpr double lost_percent = 70;         // of the sd: half of the variance
+constexpr double lost_noises = 3;           // as small an error is no sign, however small the sd is
 constexpr double foretold_percent = 50;     // of the sd, one dominant period ahead
 constexpr double telling_percent = 10;      // noise that has a part in that
 constexpr double small_residual = 0.7;      // of the noise that the regression took
@@ -58,8 +60,9 @@ std::optional<Finding> idle_terms(ValidatedStructure const& best) {
 
 std::optional<Finding> lost_free_run(ValidationReport const& validation) {
   ValidatedStructure const& best = validation.structures.front();
-  std::optional<double> const far = best.percent(&ValidatedChannel::horizon), free = best.percent(&ValidatedChannel::free_run);
-  if (!free || *free < lost_percent) return std::nullopt;
+  FreeRun const run = free_run_of(validation);
+  if (run != FreeRun::lost && run != FreeRun::chaotic) return std::nullopt;
+  std::optional<double> const free = best.percent(&ValidatedChannel::free_run);
   std::string const size = std::isfinite(*free) && *free <= 1e4 ? significant(*free, 3) : "more than 1e4";
   std::string message = fmt::format(
       "the rms error of a free run on {} is {} % of the standard deviation of its samples; the run follows the record for {} s",
@@ -70,7 +73,7 @@ std::optional<Finding> lost_free_run(ValidationReport const& validation) {
       noise = std::max(noise, 100 * (each.noise > 0 ? std::min(each.noise, each.residual) : each.residual) / each.sd);
   if (noise > telling_percent)
     message += fmt::format("; the noise of the record is {} % of that standard deviation", significant(noise, 3));
-  if (far && *far < foretold_percent)
+  if (run == FreeRun::chaotic)
     return Finding{FindingCode::free_run_lost,
                    Severity::note,
                    {validation.held_out},
@@ -98,6 +101,29 @@ void add_overestimated_noise(ValidatedStructure const& best, Findings& findings)
 
 }  // namespace
 
+FreeRun free_run_of(ValidationReport const& validation) {
+  ValidatedStructure const& best = validation.structures.front();
+  bool tested = false, lost = false;
+  for (ValidatedChannel const& each : best.channels) {
+    if (!each.free_run) continue;
+    tested = true;
+    // A motion that has come to rest has no sd but that of its noise.
+    lost = lost || !(*each.free_run < std::max(lost_percent / 100 * each.sd, lost_noises * each.residual));
+  }
+  if (!tested || !lost) return tested ? FreeRun::follows : FreeRun::not_tested;
+  std::optional<double> const far = best.percent(&ValidatedChannel::horizon);
+  return far && *far < foretold_percent ? FreeRun::chaotic : FreeRun::lost;
+}
+
+Finding not_white(std::string const& channel, std::string const& experiment, ResidualMemory const& memory) {
+  return {FindingCode::residuals_not_white,
+          Severity::warning,
+          {channel, experiment},
+          fmt::format("the residuals of `{}` of `{}` in simulation are correlated in time ({} of {} lags outside the 99 % band)",
+                      channel, experiment, memory.outside, memory.lags),
+          "add the terms, the input or the state that are missing, unless the noise of this channel is coloured"};
+}
+
 void temper_by_simulation(ValidationReport const& validation, Findings& of_regression) {
   if (!explains_motion(validation)) return;
   for (Finding& each : of_regression) {
@@ -118,7 +144,8 @@ Findings validation_findings(ValidationReport const& validation) {
   auto const regression = std::find_if(validation.structures.begin(), validation.structures.end(),
                                        [](ValidatedStructure const& each) { return each.of_regression == 1; });
   if (regression != validation.structures.begin())
-    add(FindingCode::simulation_prefers, Severity::warning, {best.terms, regression->terms},
+    add(FindingCode::simulation_prefers, is_settled(validation) ? Severity::note : Severity::warning,
+        {best.terms, regression->terms},
         fmt::format("simulation and regression rank different terms first: simulation `{}`; regression `{}`, {}", best.terms,
                     regression->terms,
                     regression->failure.empty()
@@ -134,6 +161,7 @@ Findings validation_findings(ValidationReport const& validation) {
         "the coefficients are those of the regression: check the length and step of the record, and terms that diverge");
     return findings;
   }
+  for (Finding& each : undecided_form(validation)) findings.push_back(std::move(each));
   if (auto idle = idle_terms(best)) findings.push_back(std::move(*idle));
   if (!validation.whole)
     add(FindingCode::followed_in_parts, Severity::note, {},

@@ -14,7 +14,7 @@ namespace {
 constexpr int least_rows = 12;     // of a window or segment
 constexpr int rows_per_state = 4;  // the same
 constexpr int most_window = 200;
-constexpr int windows_aside = 3;   // that rows must hold to be scored
+constexpr int windows_aside = 2;   // that rows must hold to be scored
 constexpr int least_origins = 10;  // that forecasts of the horizon begin at
 
 int rows_in(Experiment const& experiment) { return static_cast<int>(experiment.time.size()); }
@@ -50,8 +50,13 @@ ValidationRows validation_rows(std::vector<ExperimentData> const& task, std::vec
   for (ExperimentData const& each : unused)
     if (samples_in(each.experiment, rows_in(each.experiment)) >= needed) rows.held_out.push_back(each.experiment);
   bool const unseen = !rows.held_out.empty();
+  auto const holds = [&](int share) {
+    return std::any_of(rows.records.begin(), rows.records.end(),
+                       [&](Experiment const& each) { return samples_in(each, rows_in(each) / share) >= needed; });
+  };
+  int const share = holds(5) ? 5 : 4;  // a quarter where a fifth has too few rows
   for (Experiment const& each : rows.records) {
-    int const count = rows_in(each), last = count / 5;
+    int const count = rows_in(each), last = count / share;
     bool const cut = !unseen && samples_in(each, last) >= needed;
     rows.ends.push_back(cut ? count - last : count);
     if (cut) rows.held_out.push_back(rows_of(each, count - last, last));
@@ -59,7 +64,11 @@ ValidationRows validation_rows(std::vector<ExperimentData> const& task, std::vec
   }
   int shortest = std::numeric_limits<int>::max();
   for (Experiment const& each : rows.held_out) {
-    rows.held_out_name += (rows.held_out_name.empty() ? (rows.cut ? "the last fifth of " : "") : ", ") + each.name;
+    rows.held_out_name += (rows.held_out_name.empty() ? (!rows.cut    ? ""
+                                                         : share == 5 ? "the last fifth of "
+                                                                      : "the last quarter of ")
+                                                      : ", ") +
+                          each.name;
     shortest = std::min(shortest, rows_in(each));
   }
   if (rows.held_out.empty()) return rows;

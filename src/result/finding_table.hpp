@@ -122,6 +122,7 @@ enum class FindingCode {
   selection_not_settled,
   equation_no_model,
   candidates_left_out,
+  form_undecided,
   simulation_prefers,
   not_refitted,
   term_idle,

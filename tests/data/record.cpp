@@ -2,9 +2,12 @@
 #include "data/record.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 
+#include "data/table.hpp"
+#include "data/table_record.hpp"
 #include "temporary_file.hpp"
 
 using namespace sysid;
@@ -159,6 +162,22 @@ TEST_CASE("a mistake of the input rule points to the input") {
   REQUIRE(found.size() == 1);
   CHECK(found[0].code == "E4015");
   CHECK(found[0].primary->span == Span{3, 4});
+}
+
+TEST_CASE("times of a file that are equal before they were rounded are read as equal, in the unit of the column") {
+  std::string text = "t,y\n";
+  for (int i = 0; i < 60; ++i) text += fmt::format("{:.7g},{}\n", i * 1000.0 / 59, i);
+  TemporaryFile const file(text);
+  RecordRequest wanted = request(file.path(), {}, {"y"});
+  wanted.time = column("t", Unit{.dimension = atom("s").dimension, .scale = 1e-3, .text = "ms"});
+  Record const record = loaded(wanted);
+  CHECK(unequal_step(record.time) == 0);
+  CHECK(record.time.back() == doctest::Approx(1).epsilon(1e-6));
+  // Rows that arrive one after the other keep their times.
+  Diagnostics diagnostics;
+  auto const arrived = read_record(wanted, Table::read(file.path()), diagnostics);
+  REQUIRE(arrived);
+  CHECK(unequal_step(arrived->time) > 0);
 }
 
 TEST_CASE("a record needs two rows") {

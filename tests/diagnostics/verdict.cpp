@@ -44,6 +44,26 @@ TEST_CASE("where all findings have one code the last line can be typed as it sta
   CHECK(findings_list(findings, Surface::prompt).ends_with("\n  warning[at_bound]: of b\n  more: help at_bound\n"));
 }
 
+TEST_CASE("of a discovery five findings are shown, the heaviest, and the others are counted and named") {
+  Report report;
+  report.verb = "discover";
+  CHECK(findings_shown(report) == 5);
+  report.verb = "fit";
+  CHECK(findings_shown(report) > 100);
+  Findings findings;
+  for (FindingCode const code : {FindingCode::terms_repeat, FindingCode::windows_missing, FindingCode::derivative_smoothed})
+    findings.push_back({code, Severity::note, {}, "a note", ""});
+  for (FindingCode const code :
+       {FindingCode::term_idle, FindingCode::not_refitted, FindingCode::form_undecided, FindingCode::input_rule})
+    findings.push_back({code, Severity::warning, {}, "a warning", ""});
+  std::string const list = findings_list(findings, Surface::command_line, 5);
+  CHECK(list.find("warning[input_rule]") != std::string::npos);
+  CHECK(list.find("note[terms_repeat]") != std::string::npos);
+  CHECK(list.find("note[windows_missing]") == std::string::npos);
+  CHECK(list.find("\n  2 more (2 notes): windows_missing, derivative_smoothed; `summary.json` has all\n") != std::string::npos);
+  CHECK(findings_list(findings, Surface::command_line).find("more (") == std::string::npos);
+}
+
 TEST_CASE("a run that was interrupted is unfinished before anything else is said of it") {
   Findings const findings = {{FindingCode::ess_bulk_low, Severity::error, {}, "too few", ""},
                              {FindingCode::interrupted, Severity::error, {}, "the run was interrupted", "go on"}};

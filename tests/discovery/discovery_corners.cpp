@@ -97,7 +97,7 @@ TEST_CASE("terms that are one on this record are named, and the first stays") {
       run(file("let angle = y/1 [m]\ntarget = u - 1 [kg]*y''\nterms = y', y, y^3, sin(angle)^2, 1, cos(angle)^2"));
   CHECK(sum.exit == 0);
   CHECK(contains(sum.finding("terms_collinear").at("message"), "`cos(angle)^2` is a linear combination of `sin(angle)^2` and `1`"));
-  CHECK(sum.finding("terms_collinear").at("severity") == "warning");
+  CHECK(sum.finding("terms_collinear").at("severity") == "note");  // none of the three is in the equation
 }
 
 TEST_CASE("terms that are nearly one are named") {
@@ -207,7 +207,35 @@ TEST_CASE("unequal steps are named") {
   DiscoveryAnswer const answer = run(file(oscillator), replaced(450, 0, "4.5031"));
   CHECK(answer.exit == 1);
   CHECK(answer.codes() == Texts{"unequal_steps"});
-  CHECK(contains(answer.finding("unequal_steps").at("message"), "`bench`"));
+  CHECK(
+      contains(answer.finding("unequal_steps").at("message"), "of `bench` are unequal: row 451 is 0.0131 s after the row before"));
+  CHECK(contains(answer.finding("unequal_steps").at("help"), "`step`"));
+}
+
+TEST_CASE("a time column of seven digits has equal steps, and the equation is found") {
+  // Steps of 1/99.7 s, which no seven digits hold.
+  Made made(900);
+  std::string csv = "t,u,y\n";
+  for (std::size_t i = 0; i < made.t.size(); ++i)
+    csv += fmt::format("{:.7g},{:.12g},{:.12g}\n", static_cast<double>(i) / 99.7, made.u[i], made.y[i]);
+  DiscoveryAnswer const answer = run(file(oscillator), csv);
+  CHECK(answer.exit == 0);
+  CHECK(answer.kept() == Texts{"y'", "y", "y^3"});
+}
+
+TEST_CASE("the verdict says of form, coefficients and other rows in one sentence") {
+  DiscoveryAnswer const answer = run(file(oscillator));
+  CHECK(contains(answer.said, "the form is decided (probability "));
+  CHECK(contains(answer.said, ", coefficients known to "));
+  CHECK(contains(answer.said, " %, holds on the last fifth of bench (a free run is off by "));
+  CHECK(contains(answer.said, "; the checks pass\n"));
+  CHECK(answer.finding("residuals_not_white").is_null());
+}
+
+TEST_CASE("what a dictionary lacks shows in residuals that are correlated in time, and the checks do not pass") {
+  DiscoveryAnswer const answer = run(file("target = u - 1 [kg]*y''\nterms = y', y, 1"));
+  CHECK_FALSE(answer.finding("residuals_not_white").is_null());
+  CHECK_FALSE(contains(answer.said, "; the checks pass\n"));
 }
 
 TEST_CASE("an input that is constant stands for the constant, and is named with it") {

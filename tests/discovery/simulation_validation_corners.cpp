@@ -193,7 +193,7 @@ TEST_CASE("two experiments share coefficients, have starts of their own, and one
           first(alone).at("coefficients").at(j).at("sd").get<double>());
   check_errors(first(both).at("channels").at(0), 0.00175);
   CHECK(contains(both.source, "y_0 per experiment"));
-  DiscoveryAnswer const little = run_both(120);
+  DiscoveryAnswer const little = run_both(90);
   CHECK(judged(little).at("kept_aside") == "the last fifth of bench");
   CHECK(judged(little).at("segments") == 2);
   check_errors(first(little).at("channels").at(0), 0.00175);

@@ -237,6 +237,21 @@ TEST_CASE("what stands between data and an equation is named") {
   CHECK(has(duffing(unforced, method()), Concern::Kind::nothing_to_explain));
 }
 
+TEST_CASE("windows are shortened where they would be too few, not refused") {
+  std::vector<Experiment> const experiments = {slice(recorded(models + "lorenz_0.csv"), 0, 100)};
+  Dictionary const dictionary = polynomial_dictionary({"x", "y", "z"}, 4);
+  Discovery const found = discover(dictionary, experiments, method());
+  CHECK(found.half_width == 8);
+  for (FoundEquation const& equation : found.equations) {
+    CHECK(equation.found);
+    CHECK(equation.rows == 84);
+  }
+  // Stated windows stay as they are.
+  Method stated = method();
+  stated.form_settings.set("half_width", std::int64_t{12});
+  CHECK(has(discover(dictionary, experiments, stated).equations[0], Concern::Kind::too_few_rows));
+}
+
 TEST_CASE("a forcing left out is noticed") {
   // y'' against the terms without the force.
   Dictionary d = duffing_dictionary();

@@ -18,6 +18,7 @@
 #include "discovery/coefficient_names.hpp"
 #include "discovery/difference_forecast.hpp"
 #include "discovery/discovery_findings.hpp"
+#include "discovery/discovery_verdict.hpp"
 #include "discovery/excluded_terms.hpp"
 #include "discovery/found_equation.hpp"
 #include "discovery/found_source.hpp"
@@ -110,7 +111,7 @@ class Discover {
                        {"statement_sha256", statement_digest(session_, task_)}};
     for (ExperimentData const& each : data_) add_data(session_.file, each, dictionary_.measured, report);
     DiscoveryReport discovery = described(found, selector);
-    add_findings(found, report.findings);
+    add_findings(found, validation ? &validation->report : nullptr, report.findings);
     say_once(report.findings);
     if (dictionary_.numbers.discrete && !structures.empty()) add_forecasts(found, discovery, report.findings);
     if (validation) {
@@ -121,6 +122,7 @@ class Discover {
     report.equations = equations(discovery);
     if (!what_.candidates && !structures.empty()) structures.resize(1);
     add_source(source, structures, discovery, report.findings);
+    report.findings = merged(report.findings);
     report.tables = discovery_tables(discovery);
     report.settings = {{"selector", what_.selector}};
     for (auto const& [name, value] : what_.selector_settings.all()) report.settings.emplace_back(name, value);
@@ -171,7 +173,8 @@ class Discover {
     std::string terms = fmt::format("{}", fmt::join(equations, "; "));
     for (DiscoveredEquation const& each : discovery.equations)
       if (each.equation.empty()) terms += fmt::format("{}{}: no equation found", terms.empty() ? "" : "; ", each.target);
-    return terms + "; " + verdict_of(findings).headline;
+    std::string const clauses = discovery.validation ? verdict_clauses(*discovery.validation) : "";
+    return fmt::format("{}; {}{}{}", terms, clauses, clauses.empty() ? "" : "; ", verdict_of(findings).headline);
   }
 
   // A channel at rest is a channel that is constant.
@@ -258,7 +261,7 @@ class Discover {
     return out;
   }
 
-  void add_findings(regression::Discovery const& found, Findings& findings) const {
+  void add_findings(regression::Discovery const& found, ValidationReport const* validation, Findings& findings) const {
     for (std::size_t e = 0; e < found.equations.size(); ++e) {
       regression::FoundEquation const& equation = found.equations[e];
       for (regression::Concern const& concern : equation.concerns) {
@@ -271,6 +274,7 @@ class Discover {
           if (concern.kind == regression::Concern::Kind::other_rule) finding.names.emplace_back(rule_name(concern.rule));
           finding.message = fmt::format("input {}: {}", input, finding.message);
         }
+        if (validation != nullptr) temper_by_form(*validation, dictionary_.equations[e].text, finding);
         if (std::find(findings.begin(), findings.end(), finding) == findings.end()) findings.push_back(std::move(finding));
       }
     }

@@ -42,11 +42,8 @@ std::string symbol_text(Dictionary const& dictionary, int state, int order) {
 }
 
 std::optional<double> uniform_step(Experiment const& experiment) {
-  std::vector<double> const& time = experiment.time;
-  double const step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
-  for (std::size_t i = 1; i < time.size(); ++i)
-    if (!(std::abs(time[i] - time[i - 1] - step) <= 1e-6 * step)) return std::nullopt;
-  return step;
+  if (unequal_step(experiment.time) > 0) return std::nullopt;
+  return mean_step(experiment.time);
 }
 
 namespace {
@@ -192,7 +189,11 @@ Concerns record_concerns(Dictionary const& dictionary, std::span<Experiment cons
   for (Experiment const& experiment : experiments)
     if (!uniform_step(experiment)) {
       Concern concern{.kind = Concern::Kind::unequal_steps};
-      concern.clause = fmt::format("the time steps of `{}` differ by more than one part in a million", experiment.name);
+      std::vector<double> const& time = experiment.time;
+      std::size_t const i = unequal_step(time);
+      concern.clause =
+          fmt::format("the time steps of `{}` are unequal: row {} is {:.6g} s after the row before, the mean step is {:.6g} s",
+                      experiment.name, experiment.first_row + static_cast<int>(i), time[i] - time[i - 1], mean_step(time));
       concerns.push_back(std::move(concern));
     }
   Concerns const of_channels = channel_concerns(dictionary, experiments, used);

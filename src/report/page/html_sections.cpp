@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "core/text/xml.hpp"
 #include "report/page/html_parts.hpp"
@@ -21,8 +22,14 @@ std::string verdict_html(Report const& report) {
   std::string out = fmt::format("<p class=\"headline\">{}</p>\n{}", marked(capitalised(verdict_words(report))),
                                 paragraph(verdict_meaning(report)));
   if (report.findings.empty()) return out;
+  Findings const weighed = by_weight(report.findings);
+  std::size_t const shown = std::min(findings_shown(report), weighed.size());
   out += "<ul>\n";
-  for (Finding const& finding : by_weight(report.findings))
+  for (std::size_t i = 0; i < weighed.size(); ++i) {
+    Finding const& finding = weighed[i];
+    if (i == shown)
+      out +=
+          fmt::format("</ul>\n<details><summary>{}</summary>\n<ul>\n", escape(folded_findings(std::span(weighed).subspan(shown))));
     out +=
         fmt::format("<li class=\"{0}\"><b>{1}</b> {2}{3} <span class=\"code\">{4}</span></li>\n", severity_word(finding.severity),
                     finding.severity == Severity::error     ? "Failed:"
@@ -31,7 +38,9 @@ std::string verdict_html(Report const& report) {
                     marked(finding.message),
                     finding.help.empty() ? "" : fmt::format(". <span class=\"help\">What to do: {}</span>", marked(finding.help)),
                     code(word(finding.code)));
-  return out + "</ul>\n<p class=\"note\"><code>sysid explain CODE</code> explains a code such as those above.</p>\n";
+  }
+  return out + "</ul>\n" + (shown < weighed.size() ? "</details>\n" : "") +
+         "<p class=\"note\"><code>sysid explain CODE</code> explains a code such as those above.</p>\n";
 }
 
 std::string model_html(Report const& report) {

@@ -99,7 +99,8 @@ std::string terminal_summary(Report const& report, Surface read_at) {
   facts += evidence_line(report) + ledger_text(report);
   if (!facts.empty()) out += "\n" + facts;
   if (has_verdict(report))
-    out += fmt::format("\nverdict: {}\n{}", verdict_headline(report), findings_list(report.findings, read_at));
+    out +=
+        fmt::format("\nverdict: {}\n{}", verdict_headline(report), findings_list(report.findings, read_at, findings_shown(report)));
   return out;
 }
 

@@ -1,0 +1,161 @@
+// Limits and wording.
+#include "discovery/discovery_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/text/number.hpp"
+#include "core/text/words.hpp"
+#include "discovery/validation_findings.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double decided_probability = 0.95, probable = 0.5;
+constexpr double settled_residual = 1.5;  // of the noise
+constexpr double few_noises = 3;
+constexpr double shared_probability = 0.95;
+constexpr std::size_t most_named = 4;
+
+bool checked(ValidationReport const& validation) {
+  return !validation.structures.empty() && validation.structures.front().failure.empty();
+}
+
+/// Of the leading structures that together have most of the probability.
+std::vector<ValidatedStructure const*> sharing(ValidationReport const& validation) {
+  std::vector<ValidatedStructure const*> leading;
+  double sum = 0;
+  for (ValidatedStructure const& each : validation.structures) {
+    if (!each.failure.empty() || sum >= shared_probability || leading.size() >= most_named) break;
+    sum += each.probability;
+    leading.push_back(&each);
+  }
+  return leading;
+}
+
+std::string form_clause(ValidationReport const& validation) {
+  double const probability = validation.structures.front().probability;
+  return fmt::format("the form is {} (probability {})",
+                     probability >= decided_probability ? "decided"
+                     : probability >= probable          ? "more probable than all others"
+                                                        : "not decided",
+                     probability_text(probability));
+}
+
+/// sds in percent of the coefficients: the smallest and the largest.
+std::string coefficients_clause(ValidatedStructure const& best) {
+  std::vector<double> percent;
+  for (ValidatedCoefficient const& each : best.coefficients)
+    if (each.value != 0 && std::isfinite(each.sd)) percent.push_back(100 * each.sd / std::abs(each.value));
+  if (percent.empty()) return "";
+  auto const [low, high] = std::minmax_element(percent.begin(), percent.end());
+  std::string const most = significant(*high, 2);
+  return percent.size() == 1 || significant(*low, 2) == most
+             ? fmt::format("coefficients known to {} %", most)
+             : fmt::format("coefficients known to {} to {} %", significant(*low, 2), most);
+}
+
+std::string elsewhere_clause(ValidationReport const& validation) {
+  ValidatedStructure const& best = validation.structures.front();
+  std::optional<double> const free = best.percent(&ValidatedChannel::free_run);
+  if (validation.held_out.empty() || !free) return "not tested on other rows";
+  std::string const size = std::isfinite(*free) && *free <= 1e4 ? significant(*free, 2) : "more than 1e4";
+  FreeRun const run = free_run_of(validation);
+  if (run == FreeRun::follows) {
+    double noises = 0;
+    for (ValidatedChannel const& each : best.channels)
+      if (each.free_run && each.residual > 0) noises = std::max(noises, *each.free_run / each.residual);
+    return noises > 0 && noises <= few_noises
+               ? fmt::format("holds on {} (a free run is off by {} times the noise)", validation.held_out, significant(noises, 2))
+               : fmt::format("holds on {} (a free run is off by {} % of the sd)", validation.held_out, size);
+  }
+  if (run == FreeRun::chaotic)
+    return fmt::format("on {} it predicts {} s ahead and no more", validation.held_out, significant(best.follows, 2));
+  return fmt::format("fails on {} (a free run is off by {} % of the sd)", validation.held_out, size);
+}
+
+}  // namespace
+
+bool is_settled(ValidationReport const& validation) {
+  return checked(validation) && validation.structures.front().probability >= probable &&
+         validation.structures.front().residual_over_noise <= settled_residual;
+}
+
+void temper_by_form(ValidationReport const& validation, std::string const& target, Finding& finding) {
+  if (!checked(validation)) return;
+  auto const kept = [&](std::string const& term) {
+    std::vector<ValidatedCoefficient> const& all = validation.structures.front().coefficients;
+    return std::any_of(all.begin(), all.end(),
+                       [&](ValidatedCoefficient const& each) { return each.target == target && each.term == term; });
+  };
+  switch (finding.code) {
+    case FindingCode::terms_interchangeable:
+    case FindingCode::terms_nearly_collinear:
+      finding.severity = Severity::note;
+      break;
+    case FindingCode::terms_collinear:
+      if (std::none_of(finding.names.begin() + std::min<std::ptrdiff_t>(1, std::ssize(finding.names)), finding.names.end(), kept))
+        finding.severity = Severity::note;
+      break;
+    case FindingCode::residual_correlated:
+    case FindingCode::selection_not_settled:
+      if (is_settled(validation)) finding.severity = Severity::note;
+      break;
+    default:
+      break;
+  }
+}
+
+Findings undecided_form(ValidationReport const& validation) {
+  if (!checked(validation) || validation.structures.front().probability >= probable) return {};
+  std::vector<std::string> names, listed;
+  for (ValidatedStructure const* each : sharing(validation)) {
+    names.push_back(each->terms);
+    listed.push_back(fmt::format("`{}` {}", each->terms, probability_text(each->probability)));
+  }
+  return {{FindingCode::form_undecided, Severity::warning, std::move(names),
+           fmt::format("the record does not decide the form; probabilities: {}", fmt::join(listed, ", ")),
+           "add a record from another start or of another amplitude to the same discovery: `discover ... from first, second`"}};
+}
+
+Findings merged(Findings const& findings) {
+  Findings out;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    auto const alike = [&](Finding const& each) { return each.code == findings[i].code && each.severity == findings[i].severity; };
+    if (std::any_of(out.begin(), out.end(), alike)) continue;
+    Finding whole = findings[i];
+    std::size_t more = 0;
+    std::vector<std::string> others;
+    for (std::size_t j = i + 1; j < findings.size(); ++j) {
+      if (!alike(findings[j])) continue;
+      ++more;
+      for (std::string const& name : findings[j].names) {
+        if (std::find(whole.names.begin(), whole.names.end(), name) != whole.names.end()) continue;
+        whole.names.push_back(name);
+        others.push_back(name);
+      }
+    }
+    if (more > 0) {
+      bool const cut = others.size() > most_named;
+      if (cut) others.resize(most_named);
+      whole.message += fmt::format("; and {} more like this{}{}", more, others.empty() ? "" : ", with " + quoted(others),
+                                   cut ? " and others" : "");
+    }
+    out.push_back(std::move(whole));
+  }
+  return out;
+}
+
+std::string verdict_clauses(ValidationReport const& validation) {
+  if (!checked(validation)) return "";
+  std::vector<std::string> clauses = {form_clause(validation), coefficients_clause(validation.structures.front()),
+                                      elsewhere_clause(validation)};
+  std::erase(clauses, "");
+  return fmt::format("{}", fmt::join(clauses, ", "));
+}
+
+}  // namespace sysid

@@ -1,0 +1,29 @@
+// What a discovery comes to: is the form decided, how well are the coefficients known, does the equation hold elsewhere.
+#pragma once
+#include <string>
+
+#include "result/finding.hpp"
+#include "result/simulation_validation.hpp"
+
+namespace sysid {
+
+/// Whether the leading structure describes the motion to its noise and is more probable than all others together.
+bool is_settled(ValidationReport const& validation);
+
+/// What the regression found of an equation, in the light of the simulation: terms that it cannot tell apart, or a residual that is
+/// correlated, are a note where simulation compares the structures; `form_undecided` warns where they remain alike. A term that was
+/// left out as a combination of others remains a warning where one of these is in the equation: the record shows either.
+/// finding: of the equation of `target`, the term that was left out first among its names.
+void temper_by_form(ValidationReport const& validation, std::string const& target, Finding& finding);
+
+/// That the record does not decide the form; nothing where it does, or where no structure could be checked.
+Findings undecided_form(ValidationReport const& validation);
+
+/// Findings of one code and severity as one, in the place of the first.
+Findings merged(Findings const& findings);
+
+/// "the form is decided (probability 0.98), coefficients known to 0.1 to 2 %, holds on the last fifth of bench (...)"; empty where
+/// no structure could be checked.
+std::string verdict_clauses(ValidationReport const& validation);
+
+}  // namespace sysid

@@ -1,0 +1,60 @@
+// Times of equal steps as files hold them, and times that only look like it.
+#include "data/rounded_times.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+using namespace sysid;
+
+namespace {
+
+/// begin + i step, as printed with these significant digits.
+std::vector<double> printed(double begin, double step, int count, int digits) {
+  std::vector<double> time;
+  for (int i = 0; i < count; ++i) time.push_back(std::stod(fmt::format("{:.{}g}", begin + i * step, digits)));
+  return time;
+}
+
+}  // namespace
+
+TEST_CASE("equal steps are found again behind the digits of the file") {
+  for (double const begin : {0.0, 17.3})
+    for (double const length : {1.2, 7.0, 350.0}) {
+      double const step = length / 149;
+      auto const equal = equal_times_before_rounding(printed(begin, step, 150, 7));
+      REQUIRE(equal);
+      double const unit = begin + length < 10 ? 1e-6 : begin + length < 100 ? 1e-5 : 1e-4;
+      for (std::size_t i = 0; i < 150; ++i) CHECK(std::abs((*equal)[i] - begin - static_cast<double>(i) * step) < unit);
+      CHECK((*equal)[1] - (*equal)[0] == doctest::Approx(step).epsilon(unit / length));
+    }
+}
+
+TEST_CASE("digits behind the point count as well as significant ones") {
+  // 29.97 frames a second, milliseconds.
+  std::vector<double> time;
+  for (int i = 0; i < 300; ++i) time.push_back(std::round(i / 29.97 * 1e3) / 1e3);
+  auto const equal = equal_times_before_rounding(time);
+  REQUIRE(equal);
+  CHECK((*equal)[299] == doctest::Approx(299 / 29.97).epsilon(1e-5));
+}
+
+TEST_CASE("one time that is two units off is not rounding") {
+  std::vector<double> time = printed(0, 7.0 / 149, 150, 7);
+  time[70] += 2e-6;
+  CHECK_FALSE(equal_times_before_rounding(time));
+}
+
+TEST_CASE("of few digits nothing is concluded") {
+  CHECK_FALSE(equal_times_before_rounding(std::vector<double>{0, 1, 2, 4, 5, 6}));
+  CHECK_FALSE(equal_times_before_rounding(std::vector<double>{0, 0.1, 0.3, 0.4, 0.5}));
+  CHECK_FALSE(equal_times_before_rounding(std::vector<double>{0, 13, 25, 38}));
+}
+
+TEST_CASE("steps that grow are unequal, however many digits there are") {
+  std::vector<double> time;
+  for (int i = 0; i < 100; ++i) time.push_back(std::stod(fmt::format("{:.7g}", 0.03 * i + 1e-6 * i * i)));
+  CHECK_FALSE(equal_times_before_rounding(time));
+}

@@ -1,0 +1,142 @@
+// What a discovery comes to, from reports written by hand.
+#include "discovery/discovery_verdict.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "discovery/validation_findings.hpp"
+
+using namespace sysid;
+
+namespace {
+
+ValidatedCoefficient coefficient(std::string term, double value, double sd) {
+  ValidatedCoefficient out;
+  out.target = "x'";
+  out.term = std::move(term);
+  out.value = value;
+  out.sd = sd;
+  return out;
+}
+
+ValidatedStructure structure(std::string terms, double probability) {
+  ValidatedStructure out;
+  out.terms = std::move(terms);
+  out.probability = probability;
+  out.residual_over_noise = 1.02;
+  out.coefficients = {coefficient("x", 2, 0.01), coefficient("x^2", -1, 0.02)};
+  return out;
+}
+
+ValidationReport report(double probability, std::optional<double> free_run = 0.05, std::optional<double> far = 0.02) {
+  ValidationReport out;
+  out.structures = {structure("x, x^2", probability), structure("x, x^3", (1 - probability) * 0.9)};
+  ValidatedChannel channel;
+  channel.channel = "x";
+  channel.sd = 1;
+  channel.residual = channel.noise = 0.02;
+  channel.horizon = far;
+  channel.free_run = free_run;
+  out.structures.front().channels = {channel};
+  out.structures.front().follows = 3;
+  out.held_out = "the last fifth of record";
+  out.whole = true;
+  return out;
+}
+
+Finding finding(FindingCode code, std::vector<std::string> names, Severity severity = Severity::warning) {
+  return {code, severity, std::move(names), "x': a sentence", "a help"};
+}
+
+Severity tempered(ValidationReport const& validation, Finding each) {
+  temper_by_form(validation, "x'", each);
+  return each.severity;
+}
+
+}  // namespace
+
+TEST_CASE("the verdict has a clause each for the form, the coefficients and other rows") {
+  CHECK(
+      verdict_clauses(report(0.98)) ==
+      "the form is decided (probability 0.980), coefficients known to 0.50 to 2.0 %, holds on the last fifth of record (a free run "
+      "is off by 2.5 times the noise)");
+  CHECK(verdict_clauses(report(0.98, 0.3)).ends_with("holds on the last fifth of record (a free run is off by 30 % of the sd)"));
+  CHECK(verdict_clauses(report(0.6)).starts_with("the form is more probable than all others (probability 0.600), "));
+  CHECK(verdict_clauses(report(0.4)).starts_with("the form is not decided (probability 0.400), "));
+  CHECK(verdict_clauses(report(0.98, 1.4, 1.2))
+            .ends_with("fails on the last fifth of record (a free run is off by 140 % of the sd)"));
+  CHECK(verdict_clauses(report(0.98, 1.4, 0.1)).ends_with("on the last fifth of record it predicts 3.0 s ahead and no more"));
+  CHECK(verdict_clauses(report(0.98, std::nullopt)).ends_with("not tested on other rows"));
+  ValidationReport failed = report(0.98);
+  failed.structures.front().failure = "it does not converge";
+  CHECK(verdict_clauses(failed).empty());
+}
+
+TEST_CASE("a free run that is off by no more than noise holds, even where the motion has come to rest") {
+  ValidationReport validation = report(0.98, 0.021, 0.021);
+  validation.structures.front().channels.front().sd = 0.02;
+  CHECK(free_run_of(validation) == FreeRun::follows);
+  validation.structures.front().channels.front().free_run = 0.07;
+  CHECK(free_run_of(validation) == FreeRun::lost);
+}
+
+TEST_CASE("a form that is not decided is one warning with the structures that share the probability") {
+  CHECK(undecided_form(report(0.6)).empty());
+  Findings const undecided = undecided_form(report(0.4));
+  REQUIRE(undecided.size() == 1);
+  CHECK(undecided.front().code == FindingCode::form_undecided);
+  CHECK(undecided.front().names == std::vector<std::string>{"x, x^2", "x, x^3"});
+  CHECK(undecided.front().help.find("from first, second") != std::string::npos);
+}
+
+TEST_CASE("what the regression cannot tell apart is a note where simulation compares the structures") {
+  Finding const alike = finding(FindingCode::terms_interchangeable, {"x^2", "x^3"});
+  CHECK(tempered(report(0.99), alike) == Severity::note);
+  CHECK(tempered(report(0.3), alike) == Severity::note);  // `form_undecided` warns
+  ValidationReport failed = report(0.99);
+  failed.structures.front().failure = "it does not converge";
+  CHECK(tempered(failed, alike) == Severity::warning);
+  Finding const correlated = finding(FindingCode::residual_correlated, {});
+  CHECK(tempered(report(0.99), correlated) == Severity::note);
+  CHECK(tempered(report(0.3), correlated) == Severity::warning);
+}
+
+TEST_CASE("a term left out as a combination of others warns where one of these is in the equation") {
+  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"sin(x)", "x", "x^3"})) == Severity::warning);
+  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"x", "cos(x)", "1"})) == Severity::note);
+  Finding other = finding(FindingCode::terms_collinear, {"sin(x)", "x"});
+  temper_by_form(report(0.99), "y'", other);
+  CHECK(other.severity == Severity::note);
+}
+
+TEST_CASE("findings of one code are one, with all names") {
+  Findings const all = {finding(FindingCode::terms_collinear, {"a", "b"}), finding(FindingCode::term_idle, {"c"}),
+                        finding(FindingCode::terms_collinear, {"b", "d"}), finding(FindingCode::terms_collinear, {"e"}),
+                        finding(FindingCode::terms_collinear, {"f"}, Severity::note)};
+  Findings const fewer = merged(all);
+  REQUIRE(fewer.size() == 3);
+  CHECK(fewer[0].names == std::vector<std::string>{"a", "b", "d", "e"});
+  CHECK(fewer[0].message == "x': a sentence; and 2 more like this, with `d` and `e`");
+  CHECK(fewer[1].code == FindingCode::term_idle);
+  CHECK(fewer[2].severity == Severity::note);
+  CHECK(fewer[2].message == "x': a sentence");
+}
+
+TEST_CASE("another first structure of the regression is a note where simulation has settled the form") {
+  ValidationReport validation = report(0.98);
+  validation.structures[0].of_regression = 2;
+  validation.structures[1].of_regression = 1;
+  for (auto const& [probability, severity] : {std::pair(0.98, Severity::note), {0.4, Severity::warning}}) {
+    validation.structures[0].probability = probability;
+    Findings const findings = validation_findings(validation);
+    auto const prefers = std::find_if(findings.begin(), findings.end(),
+                                      [](Finding const& each) { return each.code == FindingCode::simulation_prefers; });
+    REQUIRE(prefers != findings.end());
+    CHECK(prefers->severity == severity);
+  }
+}
