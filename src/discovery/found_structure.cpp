@@ -30,6 +30,7 @@ std::vector<FoundStructure> best_structures(regression::Discovery const& discove
     if (more.size() > static_cast<std::size_t>(most)) more.resize(static_cast<std::size_t>(most));
     all = std::move(more);
   }
+  for (std::size_t m = 0; m < all.size(); ++m) all[m].of_regression = static_cast<int>(m) + 1;
   return all;
 }
 

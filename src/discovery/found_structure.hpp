@@ -1,5 +1,6 @@
 // Structures of a discovery: one support for each equation, what becomes a model.
 #pragma once
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,9 @@ namespace sysid {
 
 struct FoundStructure {
   std::vector<regression::Support const*> equations;
-  double score = 0;  // log probability, or log evidence where the selector knows no probabilities; summed over equations
+  double score = 0;       // log probability, or log evidence where the selector knows no probabilities; summed over equations
+  int of_regression = 0;  // its place in the regression's list, from 1; 0: it is not listed
+  std::vector<Eigen::VectorXd> refined;  // per equation: coefficients of a search by simulation; empty: those of the supports
 };
 
 /// The structure that was chosen first, then the best of the others; each support as its equation lists it. Empty when an equation

@@ -26,6 +26,10 @@ constexpr double unexplained_sampled = 3, unexplained_share_sampled = 0.03;
 constexpr Eigen::Index lags = 20;
 constexpr double far_from_white = 66, correlated_above = 2;
 
+/// Of windows or samples for a choice among so many terms: more than twice as many; of a large dictionary a quarter more and
+/// twenty, which determine the residual of all terms together, since few of them are chosen.
+int least_rows(int terms) { return std::min(2 * terms + 1, terms + terms / 4 + 20); }
+
 LinearProblem problem_of(Equation const& equation, Columns const& columns, std::vector<int> const& usable) {
   LinearProblem problem;
   problem.known = columns.known;
@@ -101,14 +105,15 @@ class Finder {
     Concern concern;
     bool const examined = found_.rows >= static_cast<int>(equation_.terms.size());
     std::size_t const terms = examined ? usable_.size() : equation_.terms.size();
-    if (found_.rows <= 2 * static_cast<int>(terms)) {
+    int const least = least_rows(static_cast<int>(terms));
+    if (found_.rows < least) {
       int const half = projection_.half_width();
       concern.kind = Concern::Kind::too_few_rows;
       concern.value = found_.rows;
       concern.clause = found_.rows == 0 && half > 0
                            ? fmt::format("the scored rows are too few for windows of {} samples", 2 * half + 1)
                            : fmt::format("{} {} for {} terms are too few; at least {} are needed", found_.rows,
-                                         half > 0 ? "windows" : "samples", terms, 2 * terms + 1);
+                                         half > 0 ? "windows" : "samples", terms, least);
     } else if (usable_.empty()) {
       concern.kind = Concern::Kind::nothing_left;
       concern.clause = "no term is left to choose from";

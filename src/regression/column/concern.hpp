@@ -12,7 +12,7 @@ struct Concern {
     // no equation can be had; the discovery of it ends here. Up to nothing_left: `fatal` goes by this order
     not_measured,        // terms or the known side need a state that no channel measures (or `measured` lacks a derivative)
     unequal_steps,       // the record's time steps differ by more than 1e-6
-    too_few_rows,        // windows or samples left are not more than twice the free terms; value: how many there are
+    too_few_rows,        // fewer windows or samples are left than a choice among so many terms needs; value: how many there are
     at_rest,             // a channel does not move; value: its constant
     nothing_to_explain,  // the known side is zero on the whole record
     nothing_left,        // every term was left out

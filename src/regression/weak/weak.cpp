@@ -17,7 +17,7 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"half_width", SettingKind::integer, "0", 0, 1e6, "",
-     "half-width of a window in samples; 0: a third of the fastest period, at least 10"},
+     "half-width of a window in samples; 0: a third of the fastest period, at least 10, or less, where too few windows are left"},
     {"step", SettingKind::integer, "0", 0, 1e6, "", "samples between windows; 0: a sixth of the half-width"},
     {"power", SettingKind::integer, "8", 4, 24, "", "exponent p of the test function (1 - s^2)^p"},
     {"reweightings", SettingKind::integer, "3", 0, 20, "",
@@ -25,6 +25,13 @@ constexpr SettingRow rows[] = {
 };
 
 constexpr int least_half_width = 10;
+constexpr int shortest_half_width = 8;  // where the longer ones leave too few windows; below it there are no more windows
+
+/// Samples between windows that overlap so far that nothing is lost, and not so far that their covariance is singular.
+int stride_of(int half) { return std::max(1, (half + 3) / 6); }
+
+/// What a smoothed derivative needs beside a window.
+int smoother_half_of(int half, bool smoothed) { return smoothed ? std::max(4, half / 2) : 0; }
 
 struct ProjectedEquation {
   Columns columns;
@@ -64,7 +71,7 @@ class WeakProjection : public Projection {
     return {projected.blocks, projected.channels, noise_sd_, coefficients};
   }
 
-  int half_width(Experiment const& experiment, Settings const& settings, std::vector<int> const& channels, double step) {
+  int half_width(Experiment const& experiment, Settings const& settings, std::vector<int> const& channels, double step) const {
     if (settings.integer("half_width") > 0) return static_cast<int>(settings.integer("half_width"));
     double period = std::numeric_limits<double>::infinity();
     for (int const channel : channels)
@@ -72,6 +79,34 @@ class WeakProjection : public Projection {
     double const third = period / (3 * step);
     double const most = static_cast<double>(experiment.time.size()) / 8;
     return std::max(least_half_width, static_cast<int>(std::round(std::min(third, most))));
+  }
+
+  /// Of each experiment; shorter where too few windows would be left for the terms, the longest first.
+  std::vector<int> half_widths(Settings const& settings, std::vector<int> const& channels, bool smoothed, std::size_t terms) const {
+    std::vector<int> halves;
+    for (Experiment const& experiment : experiments_)
+      halves.push_back(half_width(experiment, settings, channels, *uniform_step(experiment)));
+    if (settings.integer("half_width") > 0 || settings.integer("step") > 0) return halves;
+    std::vector<int> rows;
+    for (Experiment const& experiment : experiments_) {
+      int scored = 0;
+      for (int i = 0; i < static_cast<int>(experiment.time.size()); ++i) scored += usable(experiment, channels, i) ? 1 : 0;
+      rows.push_back(scored);
+    }
+    auto const windows = [&] {
+      int sum = 0;
+      for (std::size_t e = 0; e < halves.size(); ++e) {
+        int const reach = halves[e] + smoother_half_of(halves[e], smoothed);
+        sum += std::max(0, rows[e] - 2 * reach - 1) / stride_of(halves[e]) + (rows[e] > 2 * reach ? 1 : 0);
+      }
+      return sum;
+    };
+    while (windows() <= 2 * static_cast<int>(terms)) {
+      auto const longest = std::max_element(halves.begin(), halves.end());
+      if (*longest <= shortest_half_width) break;
+      --*longest;
+    }
+    return halves;
   }
 
   void project(Equation const& equation, Settings const& settings) {
@@ -95,8 +130,9 @@ class WeakProjection : public Projection {
         smoothed.terms.push_back(static_cast<int>(j));
     bool const known_smoothed =
         std::any_of(pieces_[0].begin(), pieces_[0].end(), [](Piece const& piece) { return piece.smoothed; });
-    for (Experiment const& experiment : experiments_)
-      add_block(experiment, settings, !smoothed.terms.empty() || known_smoothed, projected);
+    bool const any_smoothed = !smoothed.terms.empty() || known_smoothed;
+    std::vector<int> const halves = half_widths(settings, projected.channels, any_smoothed, equation.terms.size());
+    for (std::size_t e = 0; e < experiments_.size(); ++e) add_block(experiments_[e], settings, halves[e], any_smoothed, projected);
     if (!smoothed.terms.empty()) {
       for (int const term : smoothed.terms)
         smoothed.clause += (smoothed.clause.empty() ? "`" : ", `") + equation.terms[static_cast<std::size_t>(term)].name + "`";
@@ -121,15 +157,14 @@ class WeakProjection : public Projection {
     return true;
   }
 
-  void add_block(Experiment const& experiment, Settings const& settings, bool smoothed, ProjectedEquation& projected) {
+  void add_block(Experiment const& experiment, Settings const& settings, int half, bool smoothed, ProjectedEquation& projected) {
     Windows windows;
     windows.step = *uniform_step(experiment);
-    windows.half = half_width(experiment, settings, projected.channels, windows.step);
-    windows.smoother_half = smoothed ? std::max(4, windows.half / 2) : 0;
+    windows.half = half;
+    windows.smoother_half = smoother_half_of(half, smoothed);
     half_width_ = std::max(half_width_, windows.half);
     if (smoothed) choose_smoothers(experiment, projected.channels, windows);
-    int const stride =
-        settings.integer("step") > 0 ? static_cast<int>(settings.integer("step")) : std::max(1, (windows.half + 3) / 6);
+    int const stride = settings.integer("step") > 0 ? static_cast<int>(settings.integer("step")) : stride_of(half);
     int const reach = windows.half + windows.smoother_half, count = static_cast<int>(experiment.time.size());
     // A window is lost when it touches a missing sample; rows kept aside are no loss.
     std::vector<int> const nothing;
