@@ -34,6 +34,15 @@ std::vector<FoundStructure> best_structures(regression::Discovery const& discove
   return all;
 }
 
+bool is_offered(regression::FoundEquation const& equation, std::size_t term) {
+  constexpr std::size_t few = 3;
+  if (!equation.terms[term].excluded) return true;
+  return std::any_of(equation.concerns.begin(), equation.concerns.end(), [&](regression::Concern const& each) {
+    return each.kind == regression::Concern::Kind::collinear && each.terms.front() == static_cast<int>(term) &&
+           each.terms.size() > 1 + few;
+  });
+}
+
 std::string structure_text(CheckedDictionary const& dictionary, FoundStructure const& structure) {
   std::string text;
   for (std::size_t e = 0; e < structure.equations.size(); ++e) {

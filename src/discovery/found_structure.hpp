@@ -20,6 +20,11 @@ struct FoundStructure {
 /// was not found.
 std::vector<FoundStructure> best_structures(regression::Discovery const& discovery, int most);
 
+/// Whether simulation may use a term: not one that is not finite, zero or a multiple of another on the record, nor one that up to
+/// three others give (a conserved sum). That it is a combination of many others, as any smooth function on a short range is, rules
+/// it out of a regression on all terms, but not out of a structure of a few.
+bool is_offered(regression::FoundEquation const& equation, std::size_t term);
+
 /// "y', y, y^3"; of several equations "prey': prey, prey*predator; predator': ...".
 std::string structure_text(CheckedDictionary const& dictionary, FoundStructure const& structure);
 

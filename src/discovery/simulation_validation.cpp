@@ -101,10 +101,9 @@ class Validator {
     double sum = 0;
     for (std::size_t e = 0; e < structures_[m].equations.size(); ++e) {
       std::vector<DictionaryTerm> const& terms = dictionary_.equations[e].terms;
-      std::vector<regression::FoundTerm> const& found = source_.discovery.equations[e].terms;
       int offered = 0, taken = 0;
       for (std::size_t j = 0; j < terms.size(); ++j)
-        if (!terms[j].in_target && !found[j].excluded) ++offered;
+        if (!terms[j].in_target && is_offered(source_.discovery.equations[e], j)) ++offered;
       for (int const j : structures_[m].equations[e]->terms)
         if (!terms[static_cast<std::size_t>(j)].in_target) ++taken;
       for (int i = 1; i <= taken; ++i) sum -= elementary::log(static_cast<double>(offered - taken + i) / i);

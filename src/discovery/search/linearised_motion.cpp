@@ -9,7 +9,6 @@
 #include <set>
 
 #include "core/numeric/elementary.hpp"
-#include "likelihood/segments/arrowhead.hpp"
 #include "likelihood/segments/coefficient_prior.hpp"
 #include "linear_algebra/decompositions.hpp"
 
@@ -20,7 +19,7 @@ constexpr double never = -std::numeric_limits<double>::infinity();
 /// Squared length that a column of unit length keeps beside others, for it to be determined: differences give slopes to six digits.
 constexpr double independent = 1e-12;
 /// Pairs of terms are brought in for pairs as long as there are no more than so many combinations.
-constexpr double most_pairs = 2e6;
+constexpr double most_pairs = 3e5;
 constexpr int moves_of_a_kind = 4;
 constexpr int most_expansions = 40, idle_expansions = 8;
 /// What is less probable than the best by this, in log, is not looked at further.
@@ -82,7 +81,7 @@ struct Freed {
 }  // namespace
 
 LinearisedMotion::LinearisedMotion(std::vector<SegmentSlopes> const& slopes, Eigen::VectorXd const& at, Settings settings)
-    : settings_(std::move(settings)) {
+    : settings_(std::move(settings)), at_(at) {
   Eigen::Index const k = at.size();
   usable_.assign(static_cast<std::size_t>(k), 1);
   std::vector<Eigen::MatrixXd> parts;
@@ -93,7 +92,8 @@ LinearisedMotion::LinearisedMotion(std::vector<SegmentSlopes> const& slopes, Eig
         usable_[static_cast<std::size_t>(j)] = 0;
         each.by_coefficient.col(j).setZero();
       }
-    parts.push_back(eliminate(each, 0).left);
+    segments_.push_back(eliminate(each, 0));
+    parts.push_back(std::move(segments_.back().left));
     rows += parts.back().rows();
   }
   Eigen::MatrixXd all(rows, k + 1);
@@ -129,6 +129,15 @@ double LinearisedMotion::log_prior(Terms const& terms) const {
   return sum;
 }
 
+Eigen::MatrixXd LinearisedMotion::start_moves(WeighedTerms const& terms) const {
+  Eigen::VectorXd move = -at_;
+  for (std::size_t i = 0; i < terms.terms.size(); ++i) move(terms.terms[i]) += terms.coefficients(static_cast<Eigen::Index>(i));
+  Eigen::MatrixXd starts(segments_.front().upper.rows(), static_cast<Eigen::Index>(segments_.size()));
+  for (std::size_t s = 0; starts.rows() > 0 && s < segments_.size(); ++s)
+    starts.col(static_cast<Eigen::Index>(s)) = segments_[s].start(move);
+  return starts;
+}
+
 WeighedTerms LinearisedMotion::weigh(Terms terms) const {
   WeighedTerms out{std::move(terms), never, {}};
   auto const p = static_cast<Eigen::Index>(out.terms.size());
@@ -145,7 +154,7 @@ WeighedTerms LinearisedMotion::weigh(Terms terms) const {
   out.coefficients.resize(p);
   for (Eigen::Index i = 0; i < p; ++i) out.coefficients(i) = scaled(i) / length_(out.terms[static_cast<std::size_t>(i)]);
   out.score = -n / 2 * elementary::log(variance) - squares / (2 * variance) +
-              log_coefficient_weight(scaled, triangle.topLeftCorner(p, p) / std::sqrt(variance), settings_.scales) +
+              log_coefficient_weight(scaled, triangle.topLeftCorner(p, p) / std::sqrt(variance), settings_.signal) +
               log_prior(out.terms);
   return out;
 }

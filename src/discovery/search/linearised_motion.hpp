@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "likelihood/segments/arrowhead.hpp"
 #include "likelihood/segments/segments.hpp"
 
 namespace sysid {
@@ -28,7 +29,7 @@ class LinearisedMotion {
   struct Settings {
     double samples = 0;          // N
     double floor = 0;            // of s^2
-    double scales = 1;           // of `log_coefficient_weight`
+    double signal = 1;           // of `log_coefficient_weight`
     std::vector<int> equations;  // per column
     std::vector<char> always;    // per column: in every set of terms
   };
@@ -40,6 +41,9 @@ class LinearisedMotion {
   bool always(int column) const { return settings_.always[static_cast<std::size_t>(column)] != 0; }
   /// Whether a perturbation of it shows, and stays finite.
   bool usable(int column) const { return usable_[static_cast<std::size_t>(column)] != 0; }
+
+  /// [states x segments]: how far the best starts are from where they were, with these coefficients.
+  Eigen::MatrixXd start_moves(WeighedTerms const& terms) const;
 
   /// Log evidence and prior. terms: usable. -infinity where they are not determined.
   WeighedTerms weigh(Terms terms) const;
@@ -56,6 +60,8 @@ class LinearisedMotion {
   double log_prior(Terms const& terms) const;
 
   Settings settings_;
+  Eigen::VectorXd at_;
+  std::vector<EliminatedSegment> segments_;
   Eigen::MatrixXd columns_;  // of unit length
   Eigen::VectorXd known_, length_;
   Eigen::MatrixXd products_;  // of columns

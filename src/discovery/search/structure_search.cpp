@@ -18,23 +18,21 @@
 #include "likelihood/segments/shooting.hpp"
 #include "simulate/thread_pool.hpp"
 
-#include <fmt/format.h>
-#include <cstdlib>
 namespace sysid {
 namespace {
-bool const tracing = std::getenv("SYSID_TRACE") != nullptr;
 
-constexpr int most_rounds = 8;        // of linearisations at one length of segments
-constexpr int fitted_in_a_round = 4;  // structures at least
-constexpr int most_fitted = 12;       // as long as the linearisation finds them better than the leading one
-constexpr double worth_a_fit = 8;     // in log: what the linearisation finds worse than the best by more is not fitted
-constexpr double enough = 1e-2;       // gain of log likelihood in fits
+constexpr int most_rounds = 8;   // of linearisations at one length of segments
+constexpr int batch = 3;         // structures that are fitted before the leading one is chosen again
+constexpr int most_batches = 4;  // about one point, as long as the linearisation finds better ones
+constexpr double enough = 1e-2;  // gain of log likelihood in fits
 constexpr int most_fit_rounds = 30;
 constexpr double joinable_growth = 1.5;  // of a residual when segments are joined
 constexpr double least_accuracy = 1e-8;  // of a channel's size: what simulations are trusted to
 constexpr double step_error = 0.1;       // of the noise, that the integrator may be off by
-constexpr int most_substeps = 64;
+constexpr int most_substeps = 16;
 constexpr double most_work = 2e7;  // simulated rows of a linearisation
+constexpr int least_segment = 8;   // rows, where every state is measured
+constexpr int most_segments = 64;  // of each experiment then
 
 /// A structure fitted by multiple shooting.
 struct Fitted {
@@ -51,6 +49,13 @@ struct Column {
   bool always;
 };
 
+/// The rounding of samples as a part of their root mean square.
+double relative_rounding(std::vector<double> const& samples) {
+  double squares = 0;
+  for (double const y : samples) squares += y * y;
+  return squares > 0 ? rounding_sd(samples) / std::sqrt(squares / static_cast<double>(samples.size())) : 0;
+}
+
 class Searcher {
  public:
   Searcher(FoundSource const& source, std::function<bool()> const& interrupted)
@@ -66,10 +71,20 @@ class Searcher {
       for (Experiment const& each : records()) all.insert(all.end(), each.measured[c].begin(), each.measured[c].end());
       rounding_.push_back(rounding_sd(all));
     }
+    for (std::size_t i = 0; i < whole_.inputs.size(); ++i) {
+      std::vector<double> all;
+      for (Experiment const& each : records())
+        for (std::size_t row = 0; row < each.time.size(); ++row) all.push_back(each.inputs[i].sample(static_cast<int>(row)));
+      input_rounding_ = std::max(input_rounding_, relative_rounding(all));
+    }
     growth_.assign(whole_.channels.size(), 0);
-    for (Experiment const& each : rows_.records)
-      most_halvings_ = std::max(most_halvings_, halvings(static_cast<int>(each.time.size()), rows_.least));
-    halved_ = most_halvings_;
+    least_ = rows_.least;
+    if (every_state_measured()) {
+      least_ = std::max(least_segment, 2 * static_cast<int>(whole_.states.size() + 1));
+      for (Experiment const& each : rows_.records) least_ = std::max(least_, static_cast<int>(each.time.size()) / most_segments);
+      least_ = std::min(least_, rows_.least);
+    }
+    for (Experiment const& each : rows_.records) halved_ = std::max(halved_, halvings(static_cast<int>(each.time.size()), least_));
     substeps_ = whole_.solver.substeps;
   }
 
@@ -80,7 +95,7 @@ class Searcher {
     return count * static_cast<double>(1 + columns_.size() + whole_.states.size()) < most_work;
   }
 
-  /// From the first of the structures that stays finite.
+  /// From the best of the structures that stay finite.
   bool begin(std::vector<FoundStructure> const& listed) {
     for (FoundStructure const& each : listed) {
       Terms const terms = terms_of(each);
@@ -93,22 +108,20 @@ class Searcher {
       fit_starts(simulation({}, &terms, &coefficients), point, noise, interrupted_);
       point.coefficients = coefficients;
       Fitted first = fitted(terms, point);
-      if (!first.usable()) continue;
-      lead_ = std::move(first);
-      settle_step();
-      return true;
+      if (first.usable() && first.score > lead_.score) lead_ = std::move(first);
     }
-    return false;
+    if (!lead_.usable()) return false;
+    settle_step();
+    return true;
   }
 
   void run(std::vector<FoundStructure> const& listed) {
     for (FoundStructure const& each : listed) listed_.push_back(terms_of(each));
     search();
     if (settle_noise()) search();
-    climb_on();
-    search();
+    while (halved_ > 0 && !interrupted_() && climb()) {
+    }
     if (settle_noise()) search();
-    while (climb_on()) search();
   }
 
   /// What is better than the regression's list, and the list's own best.
@@ -123,7 +136,7 @@ class Searcher {
       regression::Support& support = supports.emplace_back();
       std::vector<DictionaryTerm> const& terms = dictionary.equations[e].terms;
       for (std::size_t j = 0; j < terms.size(); ++j)
-        if (!source_.discovery.equations[e].terms[j].excluded) support.terms.push_back(static_cast<int>(j));
+        if (is_offered(source_.discovery.equations[e], j)) support.terms.push_back(static_cast<int>(j));
       auto const count = static_cast<Eigen::Index>(support.terms.size());
       support.coefficient = Eigen::VectorXd::Ones(count);
       support.covariance = Eigen::MatrixXd::Identity(count, count);
@@ -141,7 +154,7 @@ class Searcher {
     for (Experiment const& each : rows_.records) own.push_back(whole_.view(each));
     return own;
   }
-  std::vector<Segment> segments() const { return cut_into_segments(rows_.records, rows_.least, halved_); }
+  std::vector<Segment> segments() const { return cut_into_segments(rows_.records, least_, halved_); }
 
   Terms terms_of(FoundStructure const& structure) const {
     Terms terms;
@@ -215,21 +228,12 @@ class Searcher {
       settings.floor += n * ratio * ratio;
     }
     settings.floor /= settings.samples;
-    settings.scales = scales_of(simulation, noise);
+    settings.signal = signal_of(simulation, noise);
     for (Column const& each : columns_) {
       settings.equations.push_back(static_cast<int>(each.equation));
       settings.always.push_back(each.always ? 1 : 0);
     }
     return LinearisedMotion(weighted(simulation, slopes, noise), point.coefficients, std::move(settings));
-  }
-
-  std::string text(Terms const& terms) const {
-    std::string out;
-    for (int const j : terms) {
-      Column const& c = columns_[static_cast<std::size_t>(j)];
-      out += fmt::format("{}:{} ", c.equation, source_.dictionary.equations[c.equation].terms[c.term].text);
-    }
-    return out;
   }
 
   // Linearise, fit what looks best, lead with what is; until the leading structure stays.
@@ -249,48 +253,68 @@ class Searcher {
       for (WeighedTerms const& each : near_)
         if (each.terms == lead_.terms) reference = each.score;
       near_offset_ = lead_.score - reference;
-      if (tracing) {
-        fmt::print(stderr, "round {} halved {} substeps {} lead {} score {:.3f} logL {:.3f}\n", round, halved_, substeps_,
-                   text(lead_.terms), lead_.score, lead_.fit.log_likelihood);
-        for (std::size_t c = 0; c < lead_.fit.noise_sd.size(); ++c)
-          fmt::print(stderr, "   noise {:.4g} floor {:.3g} growth {:.3g}\n", lead_.fit.noise_sd[c],
-                     noise_.floor.empty() ? 0 : noise_.floor[c], growth_[c]);
-        for (std::size_t i = 0; i < near_.size() && i < 6; ++i)
-          fmt::print(stderr, "   near {:.3f} {}\n", near_[i].score + near_offset_, text(near_[i].terms));
-      }
-      std::optional<Fitted> better;
-      int count = 0;
-      for (WeighedTerms const& each : near_) {
-        bool const promising = !better && count < most_fitted && each.score > reference;
-        if ((count >= fitted_in_a_round && !promising) || each.score < near_.front().score - worth_a_fit || interrupted_()) break;
-        if (tried_.contains(each.terms)) continue;
-        ++count;
-        Fitted trial = fitted(each.terms, {each.coefficients, lead_.fit.point.starts});
-        if (trial.usable() && trial.score > (better ? better->score : lead_.score)) better = trial;
-        if (tracing)
-          fmt::print(stderr, "   fitted {:.3f} (linear {:.3f}) finite {} conv {} rounds {} {}\n", trial.score,
-                     each.score + near_offset_, trial.fit.finite, trial.fit.converged, trial.fit.rounds, text(each.terms));
-        tried_.emplace(each.terms, std::move(trial));
-      }
+      std::optional<Fitted> better = better_near(motion, reference);
       if (!better) return;
       lead_ = std::move(*better);
       settle_step();
     }
   }
 
-  // As far as the leading structure follows. Whether it does further than before.
-  bool climb_on() {
-    int const before = halved_;
-    while (halved_ > 0 && !interrupted_() && climb()) {
-    }
-    if (halved_ < before) settle_step();
-    return halved_ < before;
+  bool one_move_away(Terms const& terms) const {
+    auto const missing = [](Terms const& a, Terms const& b) {
+      return std::count_if(a.begin(), a.end(), [&](int j) { return !std::binary_search(b.begin(), b.end(), j); });
+    };
+    return missing(terms, lead_.terms) <= 1 && missing(lead_.terms, terms) <= 1;
   }
 
-  // Segments of twice the length, if the leading structure follows them.
+  // The best fit among what the linearisation finds better than the leading structure: batch by batch the best ones, and the best
+  // that are one move away, which the linearisation foretells where it does not foretell the others.
+  std::optional<Fitted> better_near(LinearisedMotion const& motion, double reference) {
+    std::optional<Fitted> better;
+    for (int part = 0; part < most_batches && !better && !interrupted_(); ++part) {
+      int count = 0, close = 0;
+      for (WeighedTerms const& each : near_) {
+        if (!(each.score > reference) || (count >= batch && close >= batch)) break;
+        bool const near = one_move_away(each.terms);
+        if (tried_.contains(each.terms) || (count >= batch && (!near || close >= batch))) continue;
+        ++(count < batch ? count : close);
+        Fitted trial = fitted(each.terms, {each.coefficients, lead_.fit.point.starts + motion.start_moves(each)});
+        if (!trial.usable()) trial = fitted(each.terms, {of_lead(each.terms), lead_.fit.point.starts});
+        if (trial.usable() && trial.score > (better ? better->score : lead_.score)) better = trial;
+        tried_.emplace(each.terms, std::move(trial));
+      }
+      if (count == 0) break;
+    }
+    return better;
+  }
+
+  // The leading structure's coefficients of some terms, 0 of those that it lacks.
+  Eigen::VectorXd of_lead(Terms const& terms) const {
+    Eigen::VectorXd const all = spread(lead_);
+    Eigen::VectorXd own(static_cast<Eigen::Index>(terms.size()));
+    for (std::size_t i = 0; i < terms.size(); ++i) own(static_cast<Eigen::Index>(i)) = all(terms[i]);
+    return own;
+  }
+
+  /// All states of the model have a channel of their own.
+  bool every_state_measured() const {
+    return std::all_of(whole_.states.begin(), whole_.states.end(), [&](std::pair<int, int> const& state) {
+      return std::any_of(whole_.channels.begin(), whole_.channels.end(), [&](std::size_t c) {
+        regression::Channel const& channel = source_.dictionary.numbers.channels[c];
+        return channel.state == state.first && channel.order == state.second;
+      });
+    });
+  }
+
+  // Segments of twice the length: if the structure that is best there follows as well as the leading one did before.
   bool climb() {
     std::vector<Segment> const before = segments();
-    int const level = halved_;
+    Fitted const lead = lead_;
+    auto const tried = tried_;
+    auto const near = near_;
+    double const offset = near_offset_;
+    int const substeps = substeps_;
+    NoiseShape const noise = noise_;
     --halved_;
     std::vector<Segment> const parts = segments();
     ShootingPoint point{lead_.fit.point.coefficients,
@@ -300,22 +324,30 @@ class Searcher {
         if (before[b].experiment == parts[s].experiment && before[b].first == parts[s].first)
           point.starts.col(static_cast<Eigen::Index>(s)) = lead_.fit.point.starts.col(static_cast<Eigen::Index>(b));
     Fitted next = fitted(lead_.terms, point);
-    bool good = next.usable() && next.fit.converged;
-    for (std::size_t c = 0; good && c < next.fit.noise_sd.size(); ++c)
-      good = next.fit.noise_sd[c] <= joinable_growth * lead_.fit.noise_sd[c];
-    if (!good) {
-      halved_ = level;
-      return false;
+    bool good = next.usable();
+    if (good) {
+      lead_ = std::move(next);
+      settle_step();
+      search();
     }
-    lead_ = std::move(next);
-    return true;
+    for (std::size_t c = 0; good && c < lead.fit.noise_sd.size(); ++c)
+      good = lead_.fit.noise_sd[c] <= joinable_growth * std::max(lead.fit.noise_sd[c], noise_.floor[c]);
+    if (good) return true;
+    ++halved_;
+    lead_ = lead;
+    tried_ = tried;
+    near_ = near;
+    near_offset_ = offset;
+    substeps_ = substeps;
+    noise_ = noise;
+    return false;
   }
 
   /// Smaller steps of the integrator until it is off by less than a tenth of the noise, and the noise that it bounds from below.
   void settle_step() {
-    bool changed = false;
+    int const before = substeps_;
     std::vector<double> error(whole_.channels.size(), 0);
-    for (;; substeps_ *= 2) {
+    for (substeps_ = whole_.solver.substeps;; substeps_ *= 2) {
       std::vector<SegmentSlopes> const coarse = residuals(substeps_), fine = residuals(2 * substeps_);
       SegmentSimulation const sizes = simulation(lead_.terms);
       double worst = 0;
@@ -328,18 +360,19 @@ class Searcher {
         }
         auto const i = static_cast<std::size_t>(c);
         error[i] = std::sqrt(squares / count);
-        worst = std::max(worst, error[i] / std::max({step_error * lead_.fit.noise_sd[i], least_accuracy * sizes.size(c),
-                                                     rounding_[i] * step_error}));
+        double const allowed =
+            std::max({step_error * lead_.fit.noise_sd[i], least_accuracy * sizes.size(c), step_error * rounding_[i]});
+        worst = std::isfinite(error[i]) ? std::max(worst, error[i] / allowed) : std::numeric_limits<double>::infinity();
       }
       if (!(worst > 1) || 2 * substeps_ > most_substeps) break;
-      changed = true;
     }
     SegmentSimulation const sizes = simulation(lead_.terms);
     noise_.floor.clear();
     for (std::size_t c = 0; c < error.size(); ++c)
-      noise_.floor.push_back(std::max({rounding_[c], error[c], least_accuracy * sizes.size(static_cast<int>(c))}));
+      noise_.floor.push_back(
+          std::max({rounding_[c], error[c], std::max(least_accuracy, input_rounding_) * sizes.size(static_cast<int>(c))}));
     fit_lead_again();
-    if (changed) tried_.clear();
+    if (substeps_ != before) tried_.clear();
     tried_[lead_.terms] = lead_;
   }
   void fit_lead_again() {
@@ -363,8 +396,9 @@ class Searcher {
   ValidationRows rows_;
   StartGuess guess_;
   std::vector<double> rounding_, growth_;
+  double input_rounding_ = 0;  // of the inputs, as a part of their size
   NoiseShape noise_;
-  int most_halvings_ = 0, halved_ = 0, substeps_ = 1;
+  int least_ = 2, halved_ = 0, substeps_ = 1;
   std::vector<Terms> listed_;
   Fitted lead_;
   std::map<Terms, Fitted> tried_;   // at this length of segments, with this noise

@@ -1,4 +1,4 @@
-// A log-uniform prior in place of a normal one: the width of a normal prior would have to be known.
+// A prior with long tails in place of a normal one: neither weak terms nor large ones are ruled out.
 #include "likelihood/segments/coefficient_prior.hpp"
 
 #include <algorithm>
@@ -10,18 +10,18 @@
 
 namespace sysid {
 
-double scales_shown(double samples, double variance_ratio) {
-  return std::max(1.0, elementary::log(1 + samples * variance_ratio) / 2);
-}
+double signal_of(double samples, double variance_ratio) { return std::sqrt(1 + samples * variance_ratio); }
 
-double log_coefficient_weight(Eigen::VectorXd const& estimate, Eigen::MatrixXd const& upper, double scales) {
+double log_coefficient_weight(Eigen::VectorXd const& estimate, Eigen::MatrixXd const& upper, double signal) {
   Eigen::Index const k = estimate.size();
   if (k == 0) return 0;
   Eigen::MatrixXd const inverse = solve_upper(upper, Eigen::MatrixXd::Identity(k, k));
   double sum = static_cast<double>(k) / 2 * elementary::log(2 * std::numbers::pi);
-  for (Eigen::Index j = 0; j < k; ++j)
-    sum -= elementary::log(2 * scales * std::max(std::abs(estimate(j)), inverse.row(j).norm())) +
+  for (Eigen::Index j = 0; j < k; ++j) {
+    double const size = std::max(std::abs(estimate(j)), inverse.row(j).norm());
+    sum -= elementary::log(8 * size) + std::abs(elementary::log(size * upper.col(j).norm() / signal)) / 2 +
            elementary::log(std::abs(upper(j, j)));
+  }
   return sum;
 }
 

@@ -44,14 +44,14 @@ double log_likelihood_of(SegmentSimulation const& simulation, std::span<double c
   return sum;
 }
 
-double scales_of(SegmentSimulation const& simulation, std::span<double const> noise_sd) {
+double signal_of(SegmentSimulation const& simulation, std::span<double const> noise_sd) {
   double total = 0, ratio = 0;
   for (int c = 0; c < simulation.channels(); ++c) {
     double const n = simulation.samples_of_channel(c);
     total += n;
     ratio += n * 2 * elementary::log(simulation.size(c) / noise_sd[static_cast<std::size_t>(c)]);
   }
-  return scales_shown(total, total > 0 ? elementary::exp(ratio / total) : 1);
+  return signal_of(total, total > 0 ? elementary::exp(ratio / total) : 1);
 }
 
 SegmentSlopes weighted(SegmentSimulation const& simulation, SegmentSlopes slopes, int segment, std::span<double const> noise_sd) {

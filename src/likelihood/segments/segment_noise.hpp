@@ -18,9 +18,9 @@ std::vector<double> noise_of(SegmentSimulation const& simulation, std::span<doub
 /// likelihood at the optimum of its noise.
 double log_likelihood_of(SegmentSimulation const& simulation, std::span<double const> squares);
 
-/// `scales_shown` (coefficient_prior.hpp) of the record with this noise: r is the variance of the motion over that of the noise,
+/// `signal_of` (coefficient_prior.hpp) of the record with this noise: r is the variance of the motion over that of the noise,
 /// its logarithm averaged over samples.
-double scales_of(SegmentSimulation const& simulation, std::span<double const> noise_sd);
+double signal_of(SegmentSimulation const& simulation, std::span<double const> noise_sd);
 
 /// The rows of a segment, residuals and slopes, divided by the noise sd of their channels.
 SegmentSlopes weighted(SegmentSimulation const& simulation, SegmentSlopes slopes, int segment, std::span<double const> noise_sd);

@@ -62,7 +62,7 @@ void describe(SegmentSimulation const& simulation, std::vector<SegmentSlopes> co
     return;
   }
   fit.log_evidence = fit.log_likelihood - start_penalty(simulation) +
-                     log_coefficient_weight(fit.point.coefficients, upper, scales_of(simulation, fit.noise_sd));
+                     log_coefficient_weight(fit.point.coefficients, upper, signal_of(simulation, fit.noise_sd));
   Eigen::MatrixXd const inverse = solve_upper(upper, Eigen::MatrixXd::Identity(k, k));
   fit.covariance = inverse * inverse.transpose();
 }

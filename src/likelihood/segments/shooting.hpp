@@ -27,7 +27,7 @@ struct ShootingFit {
   std::vector<double> noise_sd;  // per channel, what k coefficients and all start states used up taken from n_c
   double log_likelihood = 0;
   /// log L + log_coefficient_weight (coefficient_prior.hpp) - states/2 sum_s log(1 + n_s), n_s samples in segment s: the evidence
-  /// by Laplace's method, each coefficient equally probable on every scale that the record can show, the prior of each start worth
+  /// by Laplace's method under a prior of coefficients with long tails, the prior of each start worth
   /// one sample (Kass, Wasserman 1995). -infinity where the coefficients are not determined.
   double log_evidence = 0;
   Eigen::MatrixXd covariance;            // of the coefficients, start states integrated out, noise as in noise_sd

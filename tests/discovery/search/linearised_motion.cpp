@@ -47,7 +47,7 @@ struct Planted {
             at,
             {.samples = 60,
              .floor = 1e-12,
-             .scales = 6,
+             .signal = 300,
              .equations = {0, 0, 0, 0, 0, 1, 1, 1, 1},
              .always = {1, 0, 0, 0, 0, 0, 0, 0, 0}}};
   }
