@@ -78,7 +78,9 @@ std::string quoted_path(std::string const& path) {
 
 /// The file of a data block as seen from another folder.
 std::string path_from(std::filesystem::path const& results, std::filesystem::path const& file) {
-  auto const place = [](std::filesystem::path const& path) { return std::filesystem::absolute(path).lexically_normal(); };
+  auto const place = [](std::filesystem::path const& path) {
+    return std::filesystem::absolute(path.empty() ? "." : path).lexically_normal();
+  };
   std::filesystem::path const seen = place(file).lexically_relative(place(results));
   return (seen.empty() ? place(file) : seen).string();
 }
@@ -173,9 +175,9 @@ std::string text_with_disturbance(DisturbedEquation const& equation, Disturbance
   std::string const rms = !equation.white() ? ""
                                             : fmt::format("{}derive {} = sqrt({}/({:g} [s]))\n", indent,
                                                           declared(equation.name + "_rms", size.unit), parameter, size.step);
-  std::string const about = fmt::format(
-      "what acts in this equation and was not measured; its prior: from 1e-4 to 10 times the rms of {}{}",
-      equation.discrete ? "what the equation determines" : "the motion's own", equation.white() ? ", in means over a sample" : "");
+  std::string const about =
+      fmt::format("what acts in this equation and was not measured; its prior spans 1e-4 to 10 times the rms of {}{}",
+                  equation.discrete ? "what it determines" : "what moves it", equation.white() ? ", in means over a sample" : "");
   std::string const right = equation.right.empty()  ? equation.name
                             : equation.right_closed ? fmt::format("{} + {}", equation.right, equation.name)
                                                     : fmt::format("({}) + {}", equation.right, equation.name);

@@ -32,6 +32,16 @@ Unit written_unit(Model const& model, Unit const& unit) {
   };
   for (auto const& found : {first(model.inputs), first(model.states), first(model.parameters), first(model.channels)})
     if (found) return *found;
+  // "V/s" of a state in volts, before base units.
+  Unit const second = unit_atom("s").value();
+  for (State const& state : model.states)
+    for (int const order : {1, 2}) {
+      if (!state.unit || state.unit->text.empty() || state.unit->text.find_first_of(" /^(*") != std::string::npos) continue;
+      Unit rate = divide(*state.unit, power(second, {order, 1}));
+      if (rate.dimension != unit.dimension || state.unit->offset != 0) continue;
+      rate.text = state.unit->text + (order == 1 ? "/s" : "/s^2");
+      return rate;
+    }
   Unit plain = unit;
   plain.scale = 1;
   plain.text = format_dimension(unit.dimension);

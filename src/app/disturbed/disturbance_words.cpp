@@ -46,15 +46,23 @@ std::string preference(Comparison const& comparison) {
 std::string sizes(OrderedJson const& with, std::vector<DisturbedEquation> const& equations) {
   std::string text;
   OrderedJson const parameters = with.value("parameters", OrderedJson::object());
+  // An optimum has no quantities derived from its parameters.
+  auto const derived = [&](DisturbedEquation const& each) {
+    for (auto const& [name, entry] : parameters.items())
+      if (name == each.name + "_rms" || name.ends_with("." + each.name + "_rms")) return true;
+    return false;
+  };
   for (auto const& [name, entry] : parameters.items())
     for (DisturbedEquation const& each : equations) {
-      std::string const quantity = each.white() ? each.name + "_rms" : each.parameter();
+      bool const by_rms = each.white() && derived(each);
+      std::string const quantity = by_rms ? each.name + "_rms" : each.parameter();
       if (name != quantity && !name.ends_with("." + quantity)) continue;
       if (auto const value = estimate(with, name))
-        text += fmt::format("{}: {}{} rms{}\n", each.name, with_sd(*value), unit_after_number(value->unit),
-                            each.discrete ? " from sample to sample"
-                            : each.memory ? ""
-                                          : " in a sampling interval");
+        text += fmt::format("{}: {}{} {}\n", each.name, with_sd(*value), unit_after_number(value->unit),
+                            each.discrete   ? "rms from sample to sample"
+                            : !each.white() ? "rms"
+                            : by_rms        ? "rms in a sampling interval"
+                                            : "intensity");
     }
   return text;
 }

@@ -170,7 +170,9 @@ class EquationReader {
     read.left = std::string(trimmed_text({equation.span.begin, equals}));
     read.right = right.text;
     read.right_closed = right.closed;
-    read.inertia = discrete_ ? fmt::format("({})", right.text)
+    // What is determined is named on the left, with its unit.
+    bool const named = std::holds_alternative<ast::Reference>(equation.left.node);
+    read.inertia = discrete_ ? fmt::format("({})", named ? left.text : right.text)
                              : fmt::format("{} - {}", difference(left.text, right.text), difference(left.at_rest, right.at_rest));
     return read;
   }

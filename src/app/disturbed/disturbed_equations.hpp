@@ -15,7 +15,7 @@ struct DisturbedEquation {
   std::string name;           // of the disturbance, free in its model
   std::string sizes;          // "(3)" of a vector equation, else empty
   std::string inertia;        // an expression of the size that a disturbance may have: in continuous time the terms of the highest
-                              // derivatives, in discrete time the right side
+                              // derivatives, in discrete time what is determined
   bool discrete = false;
   bool memory = false;  // in continuous time: the disturbance lasts for some samples, because a channel reads it
 

@@ -8,6 +8,7 @@
 
 #include "app/running.hpp"
 #include "app/selection/candidate.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "core/numeric/random.hpp"
 #include "core/text/diagnostic.hpp"
 
