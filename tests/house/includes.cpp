@@ -52,7 +52,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"likelihood/process", {"core", "gaussian_process", "model", "simulate", "likelihood"}},
     {"likelihood/particle", {"core", "expression", "distribution", "model", "program", "simulate", "likelihood"}},
     {"likelihood/segments", {"core", "linear_algebra", "simulate", "likelihood"}},
-    {"likelihood/selection", {"core", "simulate", "likelihood"}},
+    {"likelihood/selection", {"core", "data", "model", "simulate", "likelihood"}},
     {"likelihood/smoothing", {"core", "result", "expression", "model", "program", "simulate", "likelihood"}},
     {"tracking",
      {"core", "linear_algebra", "data", "expression", "function", "distribution", "model", "solver", "program", "simulate"}},
