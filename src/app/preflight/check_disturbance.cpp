@@ -178,7 +178,15 @@ class SizesApart {
       truth(k, 0) = noise ? middle(k) : declared_(k, draw);
     }
     truth(sizes.intensity, 0) = intensity;
-    auto const made = made_records(truth);
+    // The coarsest solver that follows the draw: those of a prior move faster than the record.
+    for (SolverSettings const& solver : preflight_.solvers)
+      if (auto sds = expected_with(solver, truth, coordinates)) return sds;
+    return std::nullopt;
+  }
+
+  std::optional<std::vector<double>> expected_with(SolverSettings const& solver, LaneArray const& truth,
+                                                   std::vector<int> const& coordinates) const {
+    auto const made = made_records(truth, solver);
     if (!made) return std::nullopt;
     // In the middle, up and down along each.
     auto const n = static_cast<int>(coordinates.size());
@@ -192,17 +200,18 @@ class SizesApart {
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
     LaneArray const values = space_.values_of_declared(points);
     for (std::size_t e = 0; e < made->size(); ++e)
-      if (!add_information(values, static_cast<int>(e), (*made)[e], information)) return std::nullopt;
+      if (!add_information(values, static_cast<int>(e), (*made)[e], solver, information)) return std::nullopt;
     return sds_of(information * information_);
   }
 
   // Of innovations v ~ normal(0, S) about predictions m, by theta: the sum over the samples of
   //   1/2 d log S/d theta_j d log S/d theta_k + dm/d theta_j dm/d theta_k/S.
   // values [rows x 1 + 2 n]: of the space, at the truth, then up and down along each.
-  bool add_information(ConstLanes values, int experiment, Experiment const& made, Eigen::MatrixXd& information) const {
+  bool add_information(ConstLanes values, int experiment, Experiment const& made, SolverSettings const& solver,
+                       Eigen::MatrixXd& information) const {
     LaneArray parameters(static_cast<int>(model_.parameters.size()), values.width());
     space_.select(values, experiment, parameters);
-    Trajectory const trajectory(preflight_.compiled, made, preflight_.what.solver, start_rows(preflight_.what.start),
+    Trajectory const trajectory(preflight_.compiled, made, solver, start_rows(preflight_.what.start),
                                 preflight_.session.abandonable());
     Trajectory::Result const result = trajectory.run(parameters, {1, Purpose::prediction});
     if (result.failed() > 0) return false;
@@ -239,7 +248,7 @@ class SizesApart {
   }
 
   // What the model measures with these declared values, in the place of what was measured.
-  std::optional<std::vector<Experiment>> made_records(LaneArray const& truth) const {
+  std::optional<std::vector<Experiment>> made_records(LaneArray const& truth, SolverSettings const& solver) const {
     LaneArray const values = space_.values_of_declared(truth);
     std::vector<Experiment> made = along_;
     for (std::size_t e = 0; e < made.size(); ++e) {
@@ -247,7 +256,7 @@ class SizesApart {
       space_.select(values, static_cast<int>(e), parameters);
       DrawnDisturbances drawn = draw_disturbances(model_, parameters, along_[e], {1, Purpose::disturbance, e, 0});
       auto const compiled = compile(std::move(drawn.model), preflight_.compiled->free_start, preflight_.what.solver.method);
-      Trajectory const trajectory(compiled, drawn.experiment, preflight_.what.solver, start_rows(preflight_.what.start),
+      Trajectory const trajectory(compiled, drawn.experiment, solver, start_rows(preflight_.what.start),
                                   preflight_.session.abandonable());
       Trajectory::Result const result = trajectory.run(parameters, {1, Purpose::noise, e, 0});
       if (result.failed() > 0) return std::nullopt;
