@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/disturbed/fit_disturbed.hpp"
 #include "app/run/pipeline.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 struct TaskOptions : ResultOptions {
   std::string dump, instruction_set;
+  bool with_disturbance = false;
 };
 
 /// Empty where the processor has it.
@@ -82,8 +84,10 @@ ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<s
     SilentProgress silent;
     TerminalProgress terminal;
     LineOutput out(std::cout, wrapped_for(STDOUT_FILENO)), notices(std::cerr, wrapped_for(STDERR_FILENO));
-    ExitCode const exit = run_tasks(source, file, kinds, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal,
-                                    out, options.quiet ? nowhere : notices);
+    Progress& progress = options.quiet ? static_cast<Progress&>(silent) : terminal;
+    std::ostream& said = options.quiet ? nowhere : static_cast<std::ostream&>(notices);
+    ExitCode const exit = options.with_disturbance ? fit_with_disturbance(source, file, options.run, progress, out, said)
+                                                   : run_tasks(source, file, kinds, options.run, progress, out, said);
     // Nothing else may have said so: before the first draw there is no summary.
     if (options.quiet && exit == ExitCode::interrupted) std::cerr << "sysid: interrupted; --resume continues from there\n";
     return exit;
@@ -95,6 +99,9 @@ ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<s
 Work declare_tasks(CLI::App& verb) {
   auto const options = std::make_shared<TaskOptions>();
   add_run_options(verb, *options);
+  if (verb.get_name() == "fit")
+    verb.add_flag("--with-disturbance", options->with_disturbance,
+                  "also fit each model with a disturbance that was not measured, and compare both by their evidence");
   std::vector<std::string> kinds;  // none: all
   if (verb.get_name() != "run") kinds.push_back(verb.get_name());
   return [options, kinds](Messages const& messages) {

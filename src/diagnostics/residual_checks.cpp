@@ -245,7 +245,8 @@ std::string memory_help(ScoredChannel const& of) {
   bool const normal = std::ranges::all_of(of.model().channels, [](Channel const& each) { return each.noise.row->gaussian; });
   if (of.model().integrated() && !of.model().filtered() && of.model().unknowns.empty() && of.model().processes.empty() && normal)
     help +=
-        "; to estimate a force that was not measured, declare `disturbance w ~ white(intensity = q)` and add `w` to the equation";
+        "; to estimate a force that was not measured, `sysid fit FILE --with-disturbance` (at the prompt `disturb`) adds "
+        "`disturbance w ~ white(intensity = q)` to the model and compares both fits";
   return help;
 }
 

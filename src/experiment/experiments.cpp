@@ -107,12 +107,13 @@ std::string prediction_text(Model const& model, PredictionRule rule) {
                                              : "the model's own past samples, a free run");
 }
 
-std::string predicted_text(Model const& model, PredictionRule rule) {
+std::string predicted_text(Model const& model, PredictionRule rule, int ahead) {
   std::string const lags = model.dynamics == Dynamics::discrete ? prediction_text(model, rule) : std::string();
   if (!model.filtered()) return lags;
   bool const one_step = rule == PredictionRule::one_step;
   std::string const corrected = one_step ? "states corrected by all samples before each row"
                                          : "states corrected by the samples before the predicted rows only";
+  if (ahead > 1) return fmt::format("steps({}): states corrected by all samples up to {} rows before each row", ahead, ahead);
   if (!lags.empty()) return fmt::format("{}; {}", lags, corrected);
   return fmt::format("{}: {}", prediction_name(one_step ? rule : PredictionRule::free_run), corrected);
 }

@@ -70,7 +70,8 @@ bool predicts_from_data(Model const& model);
 /// Which rule is in force and what it comes to: "as_written: from measured samples".
 std::string prediction_text(Model const& model, PredictionRule rule);
 /// Of a prediction, random states included; empty for a model that has one way to predict only.
-std::string predicted_text(Model const& model, PredictionRule rule);
+/// ahead: as PredictTask has it.
+std::string predicted_text(Model const& model, PredictionRule rule, int ahead = 0);
 
 /// "bench.train".
 std::string data_name(DataBlock const& block, int part);

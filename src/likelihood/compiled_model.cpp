@@ -169,6 +169,21 @@ std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compi
   return finish(folded, std::move(source));
 }
 
+std::shared_ptr<SimulationProgram const> compile_records(CompiledModel const& compiled, Graph grown,
+                                                         std::span<NodeId const> per_channel) {
+  Model model = compiled.model;
+  model.graph = std::move(grown);
+  Folded folded(model, keeps_unknowns(compiled));
+  ModelSource const of = source_of(folded, compiled);
+  SimulationSource source = of.dynamics;
+  for (std::size_t c = 0; c < per_channel.size(); ++c) {
+    source.channels.push_back(of.channel(c, {}));
+    source.records.push_back(folded(per_channel[c]));
+    source.recorded_at.push_back(of.recorded_with(c));
+  }
+  return finish(folded, std::move(source));
+}
+
 std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled, bool ahead) {
   Folded folded(compiled.model, keeps_unknowns(compiled));
   ModelSource const of = source_of(folded, compiled);

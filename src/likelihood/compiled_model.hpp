@@ -68,6 +68,10 @@ std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::
 std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compiled, Graph grown,
                                                       std::span<NodeId const> per_channel);
 
+/// A program whose records are, per channel, an expression of `grown`, as above.
+std::shared_ptr<SimulationProgram const> compile_records(CompiledModel const& compiled, Graph grown,
+                                                         std::span<NodeId const> per_channel);
+
 /// A program whose records are, per channel, the log density of its sample, of the declared unit; NaN where there is no sample.
 /// ahead: before the samples of its row correct random states.
 std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled, bool ahead = false);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "core/numeric/normals.hpp"
 #include "core/numeric/not_finite.hpp"
@@ -252,8 +253,14 @@ LaneArray Trajectory::no_records(int width) const {
   return {static_cast<int>(rows), width};
 }
 
-Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key, bool moments) const {
+Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key, bool moments, int ahead) const {
   Result result;
+  std::optional<Schedule> uncorrected;
+  if (ahead > 1) {
+    Experiment free = simulator_.schedule().experiment();
+    std::fill(free.scored.begin(), free.scored.end(), std::uint8_t{0});
+    uncorrected.emplace(*compiled_->trajectory, free, simulator_.schedule().solver());
+  }
   int const states = compiled_->free_start ? static_cast<int>(compiled_->model.states.size()) : 0;
   for (int first = 0; first < parameters.width(); first += trajectories_at_once) {
     int const width = std::min(trajectories_at_once, parameters.width() - first);
@@ -263,7 +270,10 @@ Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key, b
     if (start_) start_->estimate(block);
     LaneArray records = no_records(width);
     std::vector<Outcome> outcome(static_cast<std::size_t>(width));
-    simulator_.records(block, 0, samples(), records, outcome);
+    if (uncorrected)
+      simulator_.records_ahead(block, *uncorrected, ahead, records, outcome);
+    else
+      simulator_.records(block, 0, samples(), records, outcome);
     record_failures(block, outcome, result.ledger);
     collect(records, outcome, first, noise_key, result);
     if (moments) collect_moments(records, outcome, result);

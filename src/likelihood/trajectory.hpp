@@ -55,8 +55,9 @@ class Trajectory {
     /// drift[k][d]: largest violation of invariant k of the model along vector d, as a part of the largest size of its terms.
     std::vector<std::vector<double>> drift;
   };
-  /// parameters: of the model, SI [parameters x W]; NaN where irrelevant. moments: of the noise, too.
-  Result run(ConstLanes parameters, StreamKey noise_key, bool moments = false) const;
+  /// parameters: of the model, SI [parameters x W]; NaN where irrelevant. moments: of the noise, too. ahead: of random states; each
+  /// sample is predicted from those that lie so many rows before it or more. 1, as 0: from all that correct the states before it.
+  Result run(ConstLanes parameters, StreamKey noise_key, bool moments = false, int ahead = 0) const;
   /// Arguments of a channel's noise along the record, SI: [samples][arguments]; NaN where the solve fails. parameters: [parameters
   /// x 1].
   std::vector<std::vector<double>> noise_arguments(ConstLanes parameters, int channel) const;

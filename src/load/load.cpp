@@ -29,8 +29,7 @@ std::vector<BackendSettings> fitting_backends() {
 
 std::vector<BackendSettings> selecting_backends() {
   std::vector<BackendSettings> rows;
-  for (SelectorRow const& row : selectors())
-    rows.push_back({.name = row.name, .settings = row.settings, .distance = row.run_by_likelihood == nullptr});
+  for (SelectorRow const& row : selectors()) rows.push_back({.name = row.name, .settings = row.settings});
   return rows;
 }
 

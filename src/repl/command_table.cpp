@@ -23,6 +23,8 @@ std::span<CommandRow const> commands() {
       {"run", "run, run TASK ...", "runs the tasks of the session that have not been run, or those given", &command::run},
       {"refit", "refit [FIT] [as NAME] [with ...]", "fits the current model again, starting where the last fit ended",
        &command::refit},
+      {"disturb", "disturb [FIT]", "fits the model of the last fit with a disturbance that was not measured, and compares both",
+       &command::disturb},
       {"compare", "compare, compare TASK ...", "compares fits and predictions: evidence and errors", &command::compare},
       {"resume", "resume", "continues a task that was stopped by Ctrl-C", &command::resume},
       {"change", "change NAME", "selects the model or data block that the next statements change", &command::change},

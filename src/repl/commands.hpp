@@ -20,7 +20,7 @@ CommandRow const* command_of(std::string_view entry, std::string& arguments);
 /// False where a command failed, with a message.
 namespace command {
 
-// file_commands, task_commands, refit, work_commands
+// file_commands, task_commands, refit, disturb, work_commands
 bool load(Context& context, std::string const& arguments);
 bool reload(Context& context, std::string const& arguments);
 bool save(Context& context, std::string const& arguments);
@@ -28,6 +28,7 @@ bool columns(Context& context, std::string const& arguments);
 bool check(Context& context, std::string const& arguments);
 bool run(Context& context, std::string const& arguments);
 bool refit(Context& context, std::string const& arguments);
+bool disturb(Context& context, std::string const& arguments);
 bool compare(Context& context, std::string const& arguments);
 bool resume(Context& context, std::string const& arguments);
 bool list(Context& context, std::string const& arguments);

@@ -105,6 +105,8 @@ constexpr KeywordRow keyword_rows[] = {
      "lagged samples are the measured ones; random states are corrected by all samples before each row"},
     {"free_run", "prediction = free_run",
      "lagged samples are the predicted ones; random states are corrected by the samples before the predicted rows only"},
+    {"steps", "prediction = steps(10)",
+     "random states are corrected by the samples that lie so many rows before each row, or more"},
     {"gaussian", "input x = gaussian(sd = 10)", "a random input for a simulation"},
     {"sine", "input x = sine(amplitude = 1, frequency = 10 [Hz])", "an input of one frequency"},
     {"multisine", "input x = multisine(sd = 1, lowest = 1 [Hz], highest = 100 [Hz])", "an input of many frequencies"},

@@ -35,15 +35,6 @@ Typed typed_in(std::string const& arguments) {
   return out;
 }
 
-/// The fit of the work that was run last; empty when there is none.
-std::string last_fit(Context const& context) {
-  std::string found;
-  for (Result const& each : context.results.all)
-    if (each.verb == "fit" && context.work.statements.find(ItemKind::task, each.task) < context.work.statements.items.size())
-      found = each.task;
-  return found;
-}
-
 /// What was kept under a name of its own is meant as it is now.
 std::string name_now(Workspace const& work, ItemKind kind, std::string const& item) {
   std::size_t const at = work.find(kind, item);

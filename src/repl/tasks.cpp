@@ -63,6 +63,14 @@ std::string free_task_name(Context const& context, std::string const& like) {
   return base + std::to_string(number);
 }
 
+std::string last_fit(Context const& context) {
+  std::string found;
+  for (Result const& each : context.results.all)
+    if (each.verb == "fit" && context.work.statements.find(ItemKind::task, each.task) < context.work.statements.items.size())
+      found = each.task;
+  return found;
+}
+
 bool run_task(Context& context, std::string const& name, std::shared_ptr<CheckedText const> const& checked, bool resume) {
   std::vector<Task> const& tasks = checked->file.tasks;
   auto const place = std::find_if(tasks.begin(), tasks.end(), [&](Task const& each) { return each.name == name; });

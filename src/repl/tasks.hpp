@@ -13,5 +13,7 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
 std::string with_seed(Context const& context, std::string const& task);
 /// "fit2" after "fit1": no statement and no folder of results has it.
 std::string free_task_name(Context const& context, std::string const& like);
+/// The fit of the work that was run last; empty when there is none.
+std::string last_fit(Context const& context);
 
 }  // namespace sysid::repl

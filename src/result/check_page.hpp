@@ -136,8 +136,9 @@ struct PreflightPage {
   std::string candidate;  // its name; empty in a fit
   std::optional<PriorPage> prior;
   std::optional<InformationPage> information;
-  std::vector<ProcessPage> processes;  // of each channel, where the model has Gaussian processes
-  std::string not_examined;            // why something was not examined
+  std::vector<std::string> disturbances;  // which of each and of the noise of the measurement the record can tell apart
+  std::vector<ProcessPage> processes;     // of each channel, where the model has Gaussian processes
+  std::string not_examined;               // why something was not examined
   Findings findings;
 };
 

@@ -59,6 +59,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::not_identifiable, "not_identifiable", error_or_warning},
     {FindingCode::nearly_confounded, "nearly_confounded", warning_or_note},
     {FindingCode::barely_narrowed, "barely_narrowed", warning_or_note},
+    {FindingCode::disturbance_and_noise, "disturbance_and_noise", warning_or_note},
     {FindingCode::prior_fails, "prior_fails", any},
     {FindingCode::prior_far_from_data, "prior_far_from_data", warning},
     {FindingCode::prior_at_rest, "prior_at_rest", warning},

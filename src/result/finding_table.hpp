@@ -58,6 +58,7 @@ enum class FindingCode {
   not_identifiable,
   nearly_confounded,
   barely_narrowed,
+  disturbance_and_noise,
   prior_fails,
   prior_far_from_data,
   prior_at_rest,

@@ -92,7 +92,8 @@ struct Report {
   std::string task;             // "posterior"
   std::string what;             // "fit duffing to bench.train with mh": for people; programs decide by the next four
   std::string verb;             // that the task is written with: "fit"
-  std::string prediction_rule;  // as the language has it: "as_written", "one_step", "free_run"; empty where time is not discrete
+  std::string prediction_rule;  // as the language has it: "as_written", "one_step", "free_run", or "10 steps"; empty where time is
+                                // not discrete
   bool measured_past = false;   // whether the model under that rule predicts from measured past samples
   int lags = 0;                 // how many samples it looks back; 0: it reads none of the past
   std::string model_name, model_title;

@@ -21,6 +21,8 @@ class Block {
   Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes,
         native::LoopKind loop = native::LoopKind::observe, bool (*stopped)() = nullptr);
 
+  Executor const& executor() const { return executor_; }
+
   /// Takes parameters [parameters x lanes] and computes what hangs on them; then the initial states, with empty accumulators.
   void set_parameters(ConstLanes parameters);
   void start();

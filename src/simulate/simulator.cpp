@@ -213,6 +213,44 @@ void Simulator::records(ConstLanes parameters, int first, int last, Lanes out, s
   do_work({&work, 1}, pool_.get());
 }
 
+void Simulator::records_ahead(ConstLanes parameters, Schedule const& uncorrected, int ahead, Lanes out,
+                              std::span<Outcome> outcome) const {
+  int const samples = schedule_.samples(), records = program_->registers.records;
+  auto const along = [=, this, &uncorrected](Block& block, int lane, int lanes) {
+    // From each sample a second block goes on without corrections.
+    Block free(*program_, uncorrected, block.executor(), lanes, native::LoopKind::record, options_.stopped);
+    block.set_parameters(parameters.columns(lane, lanes));
+    free.set_parameters(parameters.columns(lane, lanes));
+    block.start();
+    free.start();
+    auto const record = [&](int sample) {
+      free.record(sample, sample + 1, {&out(sample * records, lane), records, lanes, out.stride()});
+    };
+    for (int i = 0; i < std::min(ahead, samples); ++i) {
+      record(i);
+      if (i + 1 < samples) free.step(i);
+    }
+    bool alive = true;
+    for (int from = 0; from + ahead < samples && alive; ++from) {
+      if (stopped()) return give_up(from, lane, lanes, out, outcome);
+      block.pass(from);
+      free.take_states(block.states());
+      for (int i = from; i < from + ahead; ++i) free.step(i);
+      record(from + ahead);
+      block.step(from);
+      if ((from + 1) % burial_interval == 0) alive = block.bury(from + 1);
+    }
+    if (alive) block.bury(samples - 1);
+    for (int w = 0; w < lanes; ++w) {
+      int const death = block.death()[static_cast<std::size_t>(w)];
+      outcome[static_cast<std::size_t>(lane + w)] = {death < 0, death, block.failure(w)};
+      for (int r = 0; death >= 0 && r < samples * records; ++r) out(r, lane + w) = not_a_number;
+    }
+  };
+  Work const work = blocks(parameters.width(), samples * (1 + ahead), native::LoopKind::record, along);
+  do_work({&work, 1}, pool_.get());
+}
+
 void Simulator::records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const {
   Work const work = blocks(static_cast<int>(outcome.size()), last, native::LoopKind::record,
                            [=, this, &redraw](Block& block, int lane, int lanes) {

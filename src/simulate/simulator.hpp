@@ -110,6 +110,11 @@ class Simulator {
   /// several threads at once.
   void records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const;
 
+  /// Of a program whose samples correct the states: record r of sample i, row i * records + r of out, as it is known `ahead`
+  /// samples before, after what corrects the states up to there; of the first samples from the start alone. uncorrected: the
+  /// schedule with no sample that corrects. A failed lane is NaN in every row.
+  void records_ahead(ConstLanes parameters, Schedule const& uncorrected, int ahead, Lanes out, std::span<Outcome> outcome) const;
+
   /// Re-runs one lane (fixed steps: with plain arithmetic) until it fails; nothing when it does not. Throws as do_work does.
   std::optional<Diagnosis> diagnose(std::span<double const> parameters) const;
 

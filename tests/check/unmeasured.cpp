@@ -181,10 +181,10 @@ TEST_CASE("a prediction has the errors of its own data, and samples correct its 
   CHECK(messages(with_tasks("", fitted + "p = predict f on bench, exact")).find("E3317") != std::string::npos);
 }
 
-TEST_CASE("selection by likelihood takes what is random, selection by distance does not") {
+TEST_CASE("selection by likelihood and by distance take what is random") {
   std::string const white = "disturbance w [N] ~ white(intensity = 4)\n";
   CHECK(messages(with_tasks(white, "s = select m to exact with reversible_jump(samples = 1000)")).empty());
-  CHECK(messages(with_tasks(white, "s = select m to exact with abc_smc")).find("E3318") != std::string::npos);
-  CHECK(messages(with_tasks("", "s = select m to bench with abc_smc")).find("E3318") != std::string::npos);
+  CHECK(messages(with_tasks(white, "s = select m to exact with abc_smc")).empty());
+  CHECK(messages(with_tasks("", "s = select m to bench with abc_smc")).empty());
   CHECK(messages(with_tasks("", "s = select m to exact with abc_smc")).empty());
 }

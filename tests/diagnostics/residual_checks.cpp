@@ -110,7 +110,7 @@ TEST_CASE("one spike neither hides what a fit misses nor is taken for it") {
   CHECK(coloured->at("help").get<std::string>().find("the errors of the estimates can be several times their sds") !=
         std::string::npos);
   CHECK(coloured->at("help").get<std::string>().ends_with(
-      "declare `disturbance w ~ white(intensity = q)` and add `w` to the equation"));
+      "adds `disturbance w ~ white(intensity = q)` to the model and compares both fits"));
   CHECK(find(findings, "explains_little") == nullptr);
 }
 

@@ -424,6 +424,26 @@ TEST_CASE("a fit without a name is refitted after its model has changed, and ent
   CHECK(has(d.messages(), "fit_oscillator3 = fit oscillator to bench.train with map"));
 }
 
+TEST_CASE("a fit is given a disturbance at the prompt, as statements of the session") {
+  Dialogue d;
+  d.begin();
+  CHECK_FALSE(d.enter("disturb"));
+  CHECK(has(d.messages(), "no fit has been run yet"));
+  REQUIRE_MESSAGE(d.enter("first = fit oscillator to bench.train with map"), d.messages());
+  REQUIRE_MESSAGE(d.enter("disturb"), d.messages());
+  CHECK(has(d.messages(), "model oscillator_with_disturbance {"));
+  CHECK(has(d.messages(), "= x + unmeasured"));
+  CHECK(has(d.messages(), "first_with_disturbance = fit oscillator_with_disturbance to bench.train with map"));
+  CHECK(has(d.answers(), "log Bayes factor"));
+  CHECK(has(d.answers(), "what the disturbance changes"));
+  // What it has entered are statements like any other.
+  REQUIRE_MESSAGE(d.enter("ahead = predict first_with_disturbance on bench.train"), d.messages());
+  CHECK_FALSE(d.enter("disturb first_with_disturbance"));
+  CHECK(has(d.messages(), "already has a disturbance"));
+  CHECK_FALSE(d.enter("disturb nothing"));
+  CHECK(has(d.messages(), "`nothing` is not a fit that has been run"));
+}
+
 TEST_CASE("what is entered before a task stays when the task cannot be run") {
   Dialogue d;
   d.begin();

@@ -68,6 +68,7 @@ void run_preflight(Session& session, FitTask const& what, std::vector<Experiment
   std::vector<int> const sized = describe_prior(preflight, prior);
   Findings const method = check_method(session, what);
   page.findings.insert(page.findings.end(), method.begin(), method.end());
+  describe_disturbances(preflight, prior, sized);
   if (std::string const why = obstacle(preflight, prior, sized); !why.empty()) {
     page.not_examined = skipped_words + why;
     return;

@@ -92,6 +92,9 @@ struct LocalResponse {
 /// Up to Effort::examined of the draws given, in their order.
 std::vector<LocalResponse> local_responses(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& draws);
 
+/// Findings on which of each disturbance and the noise of the measurement the record can tell apart, at the draws given.
+void describe_disturbances(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& draws);
+
 /// Which solver the result needs, or the distances of a selection do; fills page.information, which is there.
 void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::vector<LocalResponse> const& responses);
 

@@ -83,6 +83,9 @@ void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<Candi
 
 Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
                          std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection) {
+  // A disturbance takes simulations away from the record as noise does: noise alone is no floor.
+  if (std::any_of(candidates.begin(), candidates.end(), [](Candidate const& each) { return each.compiled->model.filtered(); }))
+    return {};
   auto const lead = static_cast<std::size_t>(selection.leader());
   bool const stated = candidates[lead].space->dimension() == candidates[lead].simulated->dimension();
   std::optional<Floor> lowest;

@@ -95,7 +95,7 @@ Trajectory PosteriorTrajectories::trajectory(int e) const {
 Trajectory::Result PosteriorTrajectories::run(int e, Trajectory const& trajectory, ConstLanes parameters, bool moments) const {
   StreamKey const noise = prediction_noise(seed_, e);
   return what_.redraw_each_step ? trajectory.run_redrawn(parameters, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
-                                : trajectory.run(parameters, noise, moments);
+                                : trajectory.run(parameters, noise, moments, what_.ahead);
 }
 
 PointwiseLikelihood PosteriorTrajectories::pointwise(int e) const {

@@ -47,6 +47,7 @@ class Predict {
                                  trajectories_.wanted(), predicted_.empty() ? std::string() : fmt::format(" ({})", predicted_)),
                      seed_);
     add_predicted_rule(model_, what_.prediction, report);
+    if (what_.ahead > 1) report.prediction_rule = fmt::format("{} steps", what_.ahead);
     if (trajectories_.fitted().draws.total() == 1)
       report.findings.push_back(
           {FindingCode::optimum_alone,
@@ -124,7 +125,7 @@ class Predict {
   std::uint64_t seed_;
   PosteriorTrajectories trajectories_;
   Model const& model_;
-  std::string predicted_ = predicted_text(model_, what_.prediction);
+  std::string predicted_ = predicted_text(model_, what_.prediction, what_.ahead);
   std::vector<ExperimentData> const& data_;
 };
 

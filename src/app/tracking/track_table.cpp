@@ -16,6 +16,7 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "report/file/csv.hpp"
+#include "report/file/task_folder.hpp"
 
 namespace sysid {
 namespace {

@@ -177,6 +177,7 @@ struct PredictTask {
   bool redraw_each_step = false;  // the tutorial's Fig. 8.4; the default is one draw per trajectory
   StartRule start;
   PredictionRule prediction = PredictionRule::as_written;
+  int ahead = 0;  // rows between what is predicted and the last that correct its random states; 0: as `prediction` says
   std::vector<double> input_errors;                         // those of the experiments, as FitTask::input_errors
   std::vector<std::vector<double>> candidate_input_errors;  // of a selection or an average, per model
   std::optional<std::uint64_t> seed;

@@ -174,10 +174,15 @@ Diagnostic noise_of_filter(Span channel, std::string const& name, std::string co
   return about({name, noise}, std::move(diagnostic));
 }
 
-Diagnostic random_states_by_distance(Span option, std::string const& backend, std::string const& model) {
-  return about({backend, model},
-               error("E3318", option, fmt::format("`{}` does not simulate what is random in the states of `{}`", backend, model),
-                     "select with `reversible_jump`, or fit each candidate and compare the results by `sysid compare`"));
+Diagnostic steps_ahead_of_known(Span option, std::string const& model) {
+  return about({model},
+               error("E3320", option, fmt::format("the states of `{}` are known: no sample corrects them on the way", model),
+                     "remove the option, or declare what was not measured: `disturbance w ~ white(intensity = q)`"));
+}
+
+Diagnostic steps_ahead_of_several(Span option) {
+  return error("E3320", option, "several models at once are not predicted a number of rows ahead",
+               "predict with each fit alone, or write `prediction = one_step` or `free_run`");
 }
 
 Diagnostic particle_filter_missing(Span option) {

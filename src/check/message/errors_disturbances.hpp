@@ -42,9 +42,10 @@ Diagnostic filter_of_nothing(Span option, std::string const& model);
 /// part: what is not linear, if it has a place.
 Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optional<Span> const& part);
 Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task);
-/// Of a back end that compares simulations.
-Diagnostic random_states_by_distance(Span option, std::string const& backend, std::string const& model);
 Diagnostic particle_filter_missing(Span option);
+/// `prediction = steps(10)` of a model whose states are known; of several models at once.
+Diagnostic steps_ahead_of_known(Span option, std::string const& model);
+Diagnostic steps_ahead_of_several(Span option);
 
 // errors of inputs
 Diagnostic law_of_input_error(Span law, std::string const& input, std::string const& reason);

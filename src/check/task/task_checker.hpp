@@ -33,6 +33,7 @@ class TaskChecker {
   void suit(FitTask& task, Model const& model);
   // `prediction = one_step`, for models that have lags to read. corrected: fits whose random states samples correct in a
   // prediction, which the rule is of, too.
+  void steps_ahead(ast::Option const& option, std::span<int const> models, std::span<int const> corrected, PredictTask& task);
   void prediction(ast::Option const& option, std::span<int const> models, PredictionRule& rule,
                   std::span<int const> corrected = {});
   // Whether the option says how a fit simulates; read into `task` then.
@@ -57,7 +58,6 @@ class TaskChecker {
   // The errors of the inputs of the experiments that a fit predicts.
   std::vector<double> predicted_input_errors(FitTask const& fit, std::vector<ExperimentUse> const& experiments);
   // Of a back end that compares simulations.
-  void suit_distance(SelectTask const& task);
   // Errors of inputs, of which a regression of terms knows nothing.
   void refuse_input_errors(std::vector<ExperimentUse> const& experiments);
   void suit_kalman(FitTask const& task, Model const& model);

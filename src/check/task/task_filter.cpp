@@ -151,19 +151,6 @@ std::vector<double> TaskChecker::predicted_input_errors(FitTask const& fit, std:
   return predicted.input_errors;
 }
 
-void TaskChecker::suit_distance(SelectTask const& task) {
-  BackendSettings const* const backend = row_named(backends_.selecting, task.backend);
-  if (backend == nullptr || !backend->distance) return;
-  Span place = tree_.verb.span;
-  for (ast::Option const& option : tree_.options)
-    if (!option.key && key_of(option) == task.backend) place = head_span(option.value);
-  for (FitTask const& fit : task.fits) {
-    Model const& model = file_.models[static_cast<std::size_t>(fit.model)];
-    if (!model.filtered() && fit.input_errors.empty()) continue;
-    return diagnostics_.add(errors::random_states_by_distance(place, task.backend, model.name));
-  }
-}
-
 void TaskChecker::refuse_input_errors(std::vector<ExperimentUse> const& experiments) {
   for (ExperimentUse const& use : experiments)
     for (DataInputUse const& bound : file_.data[static_cast<std::size_t>(use.data)].inputs)

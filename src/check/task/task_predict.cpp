@@ -166,6 +166,8 @@ void TaskChecker::predict_option(ast::Option const& option, std::string const& k
       task.redraw_each_step = word == "step";
   } else if (option.key && key == "start") {
     options_.start(option, task.start);
+  } else if (option.key && key == "prediction" && as_call(option.value) != nullptr) {
+    steps_ahead(option, models, corrected, task);
   } else if (option.key && key == "prediction") {
     prediction(option, models, task.prediction, corrected);
   } else if (option.key && key == "seed") {
@@ -173,6 +175,21 @@ void TaskChecker::predict_option(ast::Option const& option, std::string const& k
   } else {
     options_.unknown(option, task_option_names("predict"));
   }
+}
+
+void TaskChecker::steps_ahead(ast::Option const& option, std::span<int const> models, std::span<int const> corrected,
+                              PredictTask& task) {
+  ast::Call const& call = *as_call(option.value);
+  if (call.function.text != "steps" || call.arguments.size() != 1 || call.arguments[0].name)
+    return diagnostics_.add(
+        errors::option_kind(option.span, "prediction", {"a rule, or a number of rows ahead"}, "prediction = steps(10)"));
+  auto const rows = options_.number(call.arguments[0].value, "steps", Unit{}, 1, 1e6, true);
+  if (!rows || models.empty()) return;
+  if (models.size() != 1 || !tree_.others.empty()) return diagnostics_.add(errors::steps_ahead_of_several(option.span));
+  if (corrected.empty())
+    return diagnostics_.add(errors::steps_ahead_of_known(option.span, file_.models[static_cast<std::size_t>(models[0])].name));
+  task.prediction = PredictionRule::one_step;
+  task.ahead = static_cast<int>(*rows);
 }
 
 void TaskChecker::average(std::vector<FitTask const*> const& fits, std::vector<std::vector<ExperimentUse>> const& uses,

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
+#include "core/numeric/column_word.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/diagnostic.hpp"
@@ -16,22 +16,6 @@
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
-namespace {
-
-/// The bits of a parameter vector as one word: another for almost any other vector (SplitMix64's finaliser).
-std::uint64_t mixed(ConstLanes theta, int lane) {
-  std::uint64_t word = 0;
-  for (int p = 0; p < theta.rows(); ++p) {
-    word += std::bit_cast<std::uint64_t>(theta(p, lane)) + 0x9e3779b97f4a7c15;
-    word = (word ^ (word >> 30)) * 0xbf58476d1ce4e5b9;
-    word = (word ^ (word >> 27)) * 0x94d049bb133111eb;
-    word ^= word >> 31;
-  }
-  return word;
-}
-
-}  // namespace
-
 ParticleTarget::~ParticleTarget() = default;
 
 ParticleTarget::ParticleTarget(std::shared_ptr<ParticleModel const> model, std::shared_ptr<ParameterSpace const> space,
@@ -144,7 +128,7 @@ std::unique_ptr<ParticleNormals> ParticleTarget::fixed_normals(int experiment) c
 void ParticleTarget::log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const {
   auto const chosen = [&](int lane, int experiment) -> std::unique_ptr<ParticleNormals> {
     if (particles_.numbers == ParticleNumbers::fixed) return fixed_normals(experiment);
-    return std::make_unique<StreamNormals>(key_of(particles_.key.with_index(mixed(theta, lane)), experiment));
+    return std::make_unique<StreamNormals>(key_of(particles_.key.with_index(word_of(theta, lane)), experiment));
   };
   run(theta, particles_.particles, chosen, out, ledger);
 }

@@ -33,11 +33,8 @@ double spread_about_mean(Schedule const& schedule, int channel) {
   return squares;
 }
 
-}  // namespace
-
-std::shared_ptr<SimulationProgram const> compile_distance(CompiledModel const& compiled, DistanceMeasure const& measure) {
-  Model const& model = compiled.model;
-  Graph graph = model.graph;
+/// Of each channel, in a graph that has grown.
+std::vector<NodeId> terms(Graph& graph, Model const& model, DistanceMeasure const& measure) {
   std::vector<NodeId> sums;
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
     if (measure.weights[c] == 0)
@@ -46,7 +43,21 @@ std::shared_ptr<SimulationProgram const> compile_distance(CompiledModel const& c
       sums.push_back(measure.kind == DistanceKind::mean ? *measure.expressions[c]
                                                         : squared_error(graph, model.channels[c], static_cast<int>(c)));
   }
+  return sums;
+}
+
+}  // namespace
+
+std::shared_ptr<SimulationProgram const> compile_distance(CompiledModel const& compiled, DistanceMeasure const& measure) {
+  Graph graph = compiled.model.graph;
+  std::vector<NodeId> const sums = terms(graph, compiled.model, measure);
   return compile_sums(compiled, std::move(graph), sums);
+}
+
+std::shared_ptr<SimulationProgram const> compile_distance_terms(CompiledModel const& compiled, DistanceMeasure const& measure) {
+  Graph graph = compiled.model.graph;
+  std::vector<NodeId> const sums = terms(graph, compiled.model, measure);
+  return compile_records(compiled, std::move(graph), sums);
 }
 
 Distance::Distance(Model const& model, DistanceMeasure const& measure, std::span<Schedule const* const> experiments)

@@ -29,6 +29,9 @@ struct DistanceMeasure {
 /// The channel sums of a measure as a program: one sum per channel, each growing from sample to sample.
 std::shared_ptr<SimulationProgram const> compile_distance(CompiledModel const& compiled, DistanceMeasure const& measure);
 
+/// The terms of these sums as records, one per channel and sample.
+std::shared_ptr<SimulationProgram const> compile_distance_terms(CompiledModel const& compiled, DistanceMeasure const& measure);
+
 /// Turns channel sums into the distance. Grows with each of them, so a part of the sums gives a lower bound.
 class Distance {
  public:

@@ -4,19 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numeric/column_word.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "likelihood/selection/drawn_simulation.hpp"
 #include "likelihood/start_state.hpp"
 #include "simulate/thread_pool.hpp"
 #include "simulate/wavefront.hpp"
 
 namespace sysid {
 namespace {
-
-/// The lanes of a batch that are still in, and what they have gathered.
-struct Running {
-  std::vector<int> lanes;  // of the batch
-  LaneArray sums;          // [channels x W], over the experiments so far
-};
 
 LaneArray gather(ConstLanes from, std::vector<int> const& lanes) {
   LaneArray result(from.rows(), static_cast<int>(lanes.size()));
@@ -25,10 +21,36 @@ LaneArray gather(ConstLanes from, std::vector<int> const& lanes) {
   return result;
 }
 
+/// Expressions of the user's own, in the graph of the model as it is simulated.
+DistanceMeasure drawn_measure(Model& drawn, Model const& model, DistanceMeasure measure) {
+  for (std::optional<NodeId>& each : measure.expressions) {
+    if (!each) continue;
+    // The graph has grown by the numbers alone: nodes of before are where they were. What they read of disturbances is replaced.
+    each = drawn.graph.substitute(*each, [&](NodeId leaf) -> std::optional<NodeId> {
+      Node const& node = drawn.graph[leaf];
+      if (node.leaf_kind != LeafKind::disturbance) return std::nullopt;
+      NodeId const size =
+          drawn.graph.unary(Operation::square_root, model.disturbances[static_cast<std::size_t>(node.index)].intensity);
+      int const number = static_cast<int>(drawn.parameters.size() - model.disturbances.size()) + node.index;
+      return drawn.graph.multiply(size, drawn.graph.leaf(LeafKind::parameter, number));
+    });
+  }
+  return measure;
+}
+
 }  // namespace
+
+/// The lanes of a batch that are still in, and what they have gathered.
+struct ModelSelectionTarget::Running {
+  std::vector<int> lanes;  // of the batch
+  LaneArray sums;          // [channels x W], over the experiments so far
+};
 
 struct ModelSelectionTarget::Part {
   std::vector<Simulator> simulators;  // per experiment
+  // Of a candidate with random states, whose sums are those of what is drawn:
+  std::optional<DrawnSimulation> drawn;
+  std::vector<Simulator> recorders;  // per experiment: the terms of the sums
   std::vector<std::unique_ptr<StartState>> starts;
   std::unique_ptr<Distance> distance;
 };
@@ -39,10 +61,19 @@ ModelSelectionTarget::ModelSelectionTarget(std::vector<SelectionCandidate> candi
     : candidates_(std::move(candidates)), pool_(make_pool(candidates_.front().options.execution)) {
   for (SelectionCandidate const& each : candidates_) {
     Part part;
-    auto const program = compile_distance(*each.compiled, each.measure);
+    auto compiled = each.compiled;
+    DistanceMeasure measure = each.measure;
+    if (compiled->model.filtered()) {
+      part.drawn = drawn_simulation(compiled->model);
+      measure = drawn_measure(part.drawn->model, compiled->model, std::move(measure));
+      compiled = compile(part.drawn->model, false, compiled->method);
+    }
+    auto const program = compile_distance(*compiled, measure);
+    auto const terms = part.drawn ? compile_distance_terms(*compiled, measure) : nullptr;
     ExecutionOptions const& execution = candidates_.front().options.execution;
     for (Experiment const& experiment : each.experiments) {
       part.simulators.emplace_back(program, Schedule(*program, experiment, each.options.solver), execution, pool_);
+      if (terms) part.recorders.emplace_back(terms, Schedule(*terms, experiment, each.options.solver), execution, pool_);
       if (each.options.start_rows > 0)
         part.starts.push_back(std::make_unique<StartState>(each.compiled, experiment, each.options.start_rows, each.options.solver,
                                                            execution, pool_));
@@ -58,11 +89,63 @@ Distance const& ModelSelectionTarget::distance(int model) const { return *parts_
 
 LaneArray ModelSelectionTarget::simulation_parameters(int model, int experiment, ConstLanes theta) const {
   SelectionCandidate const& candidate = at(model);
-  LaneArray parameters(candidate.compiled->parameter_rows(), theta.width());
+  auto const& drawn = parts_[static_cast<std::size_t>(model)].drawn;
+  // Numbers that are drawn are 0 where nothing draws them.
+  LaneArray parameters(drawn ? static_cast<int>(drawn->model.parameters.size()) : candidate.compiled->parameter_rows(),
+                       theta.width());
   candidate.space->select(candidate.space->values(theta), experiment, parameters);
   auto const& starts = parts_[static_cast<std::size_t>(model)].starts;
   if (!starts.empty()) starts[static_cast<std::size_t>(experiment)]->estimate(parameters);
   return parameters;
+}
+
+void ModelSelectionTarget::simulate_drawn(int model, int experiment, ConstLanes theta, Lanes sums,
+                                          std::span<Outcome> outcome) const {
+  constexpr std::size_t most_numbers = std::size_t{1} << 22;
+  Part const& part = parts_[static_cast<std::size_t>(model)];
+  Simulator const& recorder = part.recorders[static_cast<std::size_t>(experiment)];
+  Schedule const& summed = part.simulators[static_cast<std::size_t>(experiment)].schedule();
+  Experiment const& record = at(model).experiments[static_cast<std::size_t>(experiment)];
+  int const channels = sums.rows(), samples = summed.last_summed();
+  int const at_once = std::max(16, static_cast<int>(most_numbers / static_cast<std::size_t>(std::max(1, channels * samples))));
+  LaneArray const parameters = simulation_parameters(model, experiment, theta);
+  for (int begin = 0; begin < theta.width(); begin += at_once) {
+    int const width = std::min(at_once, theta.width() - begin);
+    LaneArray terms(channels * samples, width);
+    // A lane's numbers are those of its parameters, whatever lanes lie beside it.
+    auto const redraw = [&](int sample, int lane, Lanes all) {
+      for (int w = 0; w < all.width(); ++w) {
+        int const from = begin + lane + w;
+        for (int p = 0; p < parameters.rows(); ++p) all(p, w) = parameters(p, from);
+        StreamKey const key{1, Purpose::disturbance, word_of(theta, from), static_cast<std::uint64_t>(experiment) << 32};
+        part.drawn->write(record, sample, key, all, w);
+      }
+    };
+    recorder.records_redrawn(redraw, 0, samples, terms,
+                             outcome.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(width)));
+    for (int c = 0; c < channels; ++c)
+      for (int i = 0; i < samples; ++i)
+        if (summed.summed(c, i))
+          for (int w = 0; w < width; ++w) sums(c, begin + w) += terms(i * channels + c, w);
+  }
+}
+
+void ModelSelectionTarget::add_drawn(Batch const& batch, int experiment, double bound, Running& now) const {
+  LaneArray const theta = gather(batch.theta, now.lanes);
+  LaneArray sums(now.sums.rows(), theta.width());
+  std::vector<Outcome> outcome(now.lanes.size());
+  simulate_drawn(batch.model, experiment, theta, sums, outcome);
+  std::vector<int> stay;
+  for (std::size_t w = 0; w < now.lanes.size(); ++w) {
+    int const lane = now.lanes[w];
+    std::vector<double> total;
+    for (int c = 0; c < sums.rows(); ++c) total.push_back(now.sums(c, lane) += sums(c, static_cast<int>(w)));
+    bool const finite = outcome[w].ok && std::isfinite(distance(batch.model)(total));
+    if (!finite) batch.ending[static_cast<std::size_t>(lane)] = Simulated::failed;
+    // A distance grows with its sums.
+    if (finite && distance(batch.model)(total) <= bound) stay.push_back(lane);
+  }
+  now.lanes = std::move(stay);
 }
 
 void ModelSelectionTarget::distances(std::span<Batch const> batches, double bound) const {
@@ -86,6 +169,10 @@ void ModelSelectionTarget::distances(std::span<Batch const> batches, double boun
       int const model = batches[b].model;
       Part const& part = parts_[static_cast<std::size_t>(model)];
       if (e >= part.simulators.size() || now.lanes.empty()) continue;
+      if (part.drawn) {
+        add_drawn(batches[b], static_cast<int>(e), bound, now);
+        continue;
+      }
       parameters[b] = simulation_parameters(model, static_cast<int>(e), gather(batches[b].theta, now.lanes));
       sums[b] = LaneArray(now.sums.rows(), static_cast<int>(now.lanes.size()));
       endings[b].assign(now.lanes.size(), Ending::finished);

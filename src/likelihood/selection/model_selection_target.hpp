@@ -10,7 +10,8 @@
 
 namespace sysid {
 
-/// One of them. space: over the model without its noise parameters; experiments: those of the space, in its order.
+/// One of them, with random states or without. space: over the model without its noise parameters; experiments: those of the space,
+/// in its order.
 struct SelectionCandidate {
   std::string name;
   double probability = 0;
@@ -44,8 +45,13 @@ class ModelSelectionTarget : public SelectionTarget {
 
  private:
   struct Part;
+  struct Running;
   SelectionCandidate const& at(int model) const { return candidates_[static_cast<std::size_t>(model)]; }
   LaneArray simulation_parameters(int model, int experiment, ConstLanes theta) const;
+  /// Of a candidate with random states: adds to the sums [channels x W], SI. Every theta has disturbances of its own, the same
+  /// whenever it is asked for.
+  void simulate_drawn(int model, int experiment, ConstLanes theta, Lanes sums, std::span<Outcome> outcome) const;
+  void add_drawn(Batch const& batch, int experiment, double bound, Running& now) const;
 
   std::vector<SelectionCandidate> candidates_;
   std::shared_ptr<ThreadPool> pool_;

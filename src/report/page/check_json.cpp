@@ -144,6 +144,7 @@ void add_preflight(PreflightPage const& preflight, Json& out) {
   out["information"] = preflight.information ? information_object(*preflight.information) : Json(nullptr);
   out["processes"] = Json::array();
   for (ProcessPage const& process : preflight.processes) out["processes"].push_back(process_object(process));
+  if (!preflight.disturbances.empty()) out["disturbances"] = preflight.disturbances;
   out["left_out"] = preflight.not_examined;
 }
 

@@ -237,6 +237,7 @@ std::string task_text(TaskPage const& task) {
     if (!preflight.candidate.empty()) out += fmt::format(" candidate {}\n", preflight.candidate);
     if (preflight.prior) out += prior_text(*preflight.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
     if (preflight.information) out += information_text(*preflight.information);
+    if (!preflight.disturbances.empty()) out += entry("disturbance", preflight.disturbances);
     for (ProcessPage const& process : preflight.processes) out += process_text(process);
     if (!preflight.not_examined.empty()) out += entry("skipped", {preflight.not_examined});
     out += findings_text(preflight.findings);

@@ -120,7 +120,10 @@ TEST_CASE("free predictions know the rows before them and widen; one step ahead 
       shaken +
       "post = fit shaken to bench.train with mh(samples = 2000, burn_in = 1000, thin = 10, chains = 4), seed = 1\n"
       "free = predict post on bench.test with draws(100), seed = 1\n"
-      "step = predict post on bench.test with draws(100), prediction = one_step, seed = 1\n";
+      "step = predict post on bench.test with draws(100), prediction = one_step, seed = 1\n"
+      "first = predict post on bench.test with draws(100), prediction = steps(1), seed = 1\n"
+      "third = predict post on bench.test with draws(100), prediction = steps(3), seed = 1\n"
+      "all = predict post on bench.test with draws(100), prediction = steps(300), seed = 1\n";
   CaseRun const run(text, {{"b.csv", sampled_oscillator(5, 0.05)}});
   auto const score = [&](std::string const& task, std::string const& name) {
     return run.summary(task).at("fit").at(name).get<double>();
@@ -132,6 +135,20 @@ TEST_CASE("free predictions know the rows before them and widen; one step ahead 
   CHECK(rule("step") == "one_step: states corrected by all samples before each row");
   CHECK(rule("free") == "free_run: states corrected by the samples before the predicted rows only");
   CHECK(run.summary("step").at("prediction_rule") == "one_step");
+  // Between both: three rows ahead. One row is the same as one step.
+  CHECK(score("first", "rmse") == score("step", "rmse"));
+  CHECK(score("third", "rmse") > score("step", "rmse"));
+  CHECK(score("third", "rmse") < score("free", "rmse"));
+  CHECK(score("third", "coverage_95") > 0.9);
+  CHECK(score("all", "coverage_95") > 0.9);
+  CHECK(rule("third") == "steps(3): states corrected by all samples up to 3 rows before each row");
+  CHECK(run.summary("third").at("prediction_rule") == "3 steps");
+  // The last row of the free run is known from the rows before the predicted ones, as it is 300 rows ahead.
+  auto const last = [&](std::string const& task) {
+    std::string const table = run.file(task + "/predict.csv");
+    return table.substr(table.rfind('\n', table.size() - 2) + 1);
+  };
+  CHECK(last("all") == last("free"));
   CHECK(run.summary("free").at("prediction_rule") == "free_run");
 }
 

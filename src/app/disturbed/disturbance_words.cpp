@@ -1,0 +1,94 @@
+// Two stored fits in words: what the record prefers, how large the disturbance is, and which parameters it moves or widens.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/comparison/compare.hpp"
+#include "app/disturbed/fit_disturbed.hpp"
+#include "core/text/number.hpp"
+#include "core/text/words.hpp"
+#include "report/file/stored_files.hpp"
+
+namespace sysid {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;  // parameters in the order of the model
+
+struct Estimate {
+  double mean = 0, sd = 0;
+  std::string unit;
+};
+
+std::optional<Estimate> estimate(OrderedJson const& summary, std::string const& name) {
+  OrderedJson const all = summary.value("parameters", OrderedJson::object());
+  if (!all.contains(name)) return std::nullopt;
+  OrderedJson const& one = all.at(name);
+  if (!one.contains("mean") || !one["mean"].is_number() || !one.contains("sd") || !one["sd"].is_number()) return std::nullopt;
+  return Estimate{one["mean"].get<double>(), one["sd"].get<double>(), one.value("unit", "")};
+}
+
+/// "0.9982 ± 0.0031".
+std::string with_sd(Estimate const& of) { return fmt::format("{} ± {}", significant(of.mean, 4), significant(of.sd, 2)); }
+
+/// Which of both the record prefers. Nothing is said of an evidence that is not there.
+std::string preference(Comparison const& comparison) {
+  if (comparison.fits.size() != 2 || !comparison.fits[0].log_bayes_factor || !comparison.fits[1].log_bayes_factor)
+    return "without an evidence of both fits nothing says which model the record prefers; look at their residuals\n";
+  double const factor = *comparison.fits[1].log_evidence - *comparison.fits[0].log_evidence;
+  std::string const size = fmt::format("log Bayes factor {:+.1f}", factor);
+  if (factor >= 3) return fmt::format("the record prefers the model with the disturbance: {}\n", size);
+  if (factor <= -3) return fmt::format("the record prefers the model without the disturbance: {}\n", size);
+  return fmt::format("the record does not decide between both models: {}\n", size);
+}
+
+/// How large the disturbance is in the estimate's own words.
+std::string sizes(OrderedJson const& with, std::vector<DisturbedEquation> const& equations) {
+  std::string text;
+  OrderedJson const parameters = with.value("parameters", OrderedJson::object());
+  // An optimum has no quantities derived from its parameters.
+  auto const derived = [&](DisturbedEquation const& each) {
+    for (auto const& [name, entry] : parameters.items())
+      if (name == each.name + "_rms" || name.ends_with("." + each.name + "_rms")) return true;
+    return false;
+  };
+  for (auto const& [name, entry] : parameters.items())
+    for (DisturbedEquation const& each : equations) {
+      bool const by_rms = each.white() && derived(each);
+      std::string const quantity = by_rms ? each.name + "_rms" : each.parameter();
+      if (name != quantity && !name.ends_with("." + quantity)) continue;
+      if (auto const value = estimate(with, name))
+        text += fmt::format("{}: {}{} {}\n", each.name, with_sd(*value), unit_after_number(value->unit),
+                            each.discrete   ? "rms from sample to sample"
+                            : !each.white() ? "rms"
+                            : by_rms        ? "rms in a sampling interval"
+                                            : "intensity");
+    }
+  return text;
+}
+
+std::string changes(OrderedJson const& without, OrderedJson const& with) {
+  std::vector<std::vector<std::string>> rows = {{"", "unit", "without", "with", "shift [sd]", "sd ratio"}};
+  OrderedJson const parameters = with.value("parameters", OrderedJson::object());
+  for (auto const& [name, entry] : parameters.items()) {
+    auto const before = estimate(without, name), after = estimate(with, name);
+    if (!before || !after) continue;
+    bool const known = after->sd > 0;
+    rows.push_back({name, after->unit, with_sd(*before), with_sd(*after),
+                    known ? fmt::format("{:+.1f}", (after->mean - before->mean) / after->sd) : "-",
+                    known && before->sd > 0 ? significant(after->sd / before->sd, 2) : "-"});
+  }
+  return "what the disturbance changes; shift: of the mean, in sds of the fit with it\n\n" + align_columns(rows, 2);
+}
+
+}  // namespace
+
+std::string disturbance_words(std::filesystem::path const& without, std::filesystem::path const& with,
+                              std::vector<DisturbedEquation> const& equations) {
+  auto const before = OrderedJson::parse(read_whole_summary(without)), after = OrderedJson::parse(read_whole_summary(with));
+  Comparison const comparison = compare({without, with});
+  std::string text = comparison_text(comparison) + "\n" + preference(comparison) + sizes(after, equations) + "\n";
+  return text + changes(before, after);
+}
+
+}  // namespace sysid

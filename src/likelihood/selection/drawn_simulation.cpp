@@ -1,0 +1,61 @@
+// Leaves of disturbances become products of their size and a parameter.
+#include "likelihood/selection/drawn_simulation.hpp"
+
+#include <cmath>
+#include <optional>
+
+namespace sysid {
+
+DrawnSimulation drawn_simulation(Model model) {
+  DrawnSimulation drawn;
+  drawn.first = static_cast<int>(model.parameters.size());
+  Graph& graph = model.graph;
+  auto const number = [&](std::string const& of) {
+    Parameter parameter;
+    parameter.name = "random part of " + of;
+    model.parameters.push_back(std::move(parameter));
+    return graph.leaf(LeafKind::parameter, static_cast<int>(model.parameters.size()) - 1);
+  };
+  for (State& state : model.states) {
+    if (!state.initial_variance) continue;
+    NodeId const sd = graph.unary(Operation::square_root, *state.initial_variance);
+    state.initial = graph.add(state.initial, graph.multiply(sd, number(state.name + "(0)")));
+    state.initial_variance.reset();
+    ++drawn.starts;
+  }
+  std::vector<NodeId> values;
+  for (Disturbance const& each : model.disturbances) {
+    values.push_back(graph.multiply(graph.unary(Operation::square_root, each.intensity), number(each.name)));
+    drawn.white.push_back(model.dynamics == Dynamics::continuous && !each.held);
+  }
+  auto const replace = [&](NodeId& root) {
+    root = graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
+      Node const& node = graph[leaf];
+      if (node.leaf_kind != LeafKind::disturbance) return std::nullopt;
+      return values[static_cast<std::size_t>(node.index)];
+    });
+  };
+  for (State& state : model.states) replace(state.derivative);
+  for (NodeId& memory : model.memories) replace(memory);
+  for (Derived& each : model.derived) replace(each.value);
+  for (LaggedQuantity& each : model.lagged_quantities) replace(each.present);
+  for (Channel& channel : model.channels)
+    for (NodeId& argument : channel.noise.arguments) replace(argument);
+  model.disturbances.clear();
+  drawn.model = std::move(model);
+  return drawn;
+}
+
+void DrawnSimulation::write(Experiment const& experiment, int sample, StreamKey key, Lanes parameters, int lane) const {
+  Stream at_start(key);
+  for (int k = 0; k < starts; ++k) parameters(first + k, lane) = at_start.normal();
+  auto const i = static_cast<std::size_t>(sample);
+  Stream stream(key.with_step(key.step + 1 + static_cast<std::uint64_t>(sample)));
+  for (std::size_t d = 0; d < white.size(); ++d) {
+    double const width = i + 1 < experiment.time.size() ? experiment.time[i + 1] - experiment.time[i] : 1;
+    double const value = stream.normal();
+    parameters(first + starts + static_cast<int>(d), lane) = white[d] ? value / std::sqrt(width) : value;
+  }
+}
+
+}  // namespace sysid

@@ -1,0 +1,95 @@
+// `disturb`: a fit once more, with a disturbance in its model, as statements of the session.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/disturbed/fit_disturbed.hpp"
+#include "repl/commands.hpp"
+#include "repl/statements.hpp"
+#include "repl/tasks.hpp"
+#include "repl/words.hpp"
+#include "syntax/entry.hpp"
+
+namespace sysid::repl {
+namespace {
+
+/// The statement of a fit with another name and model, searched anew.
+std::string fit_of(std::string const& statement, std::string const& name, std::string const& model) {
+  std::string text = statement;
+  ast::Task const task = std::get<ast::Task>(item_of(statement));
+  auto const replace = [&](Span place, std::string const& by) { text.replace(place.begin, place.end - place.begin, by); };
+  for (auto option = task.options.rbegin(); option != task.options.rend(); ++option)
+    if (option->key && option->key->text == "search") replace(option->value.span, "everywhere");
+  replace(task.subject.span, model);
+  if (task.name)
+    replace(task.name->span, name);
+  else
+    text = name + " = " + text;
+  return text;
+}
+
+/// Whether all stand in the text of this model, none in that of a part.
+bool all_in(Source const& source, std::string const& model, std::vector<DisturbedEquation> const& equations) {
+  for (Span const statement : top_level_statements(source.text(0))) {
+    std::string const text = in_one_line(source.text(statement));
+    std::string const head = "model " + model;
+    if (!text.starts_with(head) || text.size() <= head.size() ||
+        std::string_view(" ({").find(text[head.size()]) == std::string_view::npos)
+      continue;
+    return std::all_of(equations.begin(), equations.end(), [&](DisturbedEquation const& each) {
+      return each.place.begin >= statement.begin && each.place.end <= statement.end;
+    });
+  }
+  return false;
+}
+
+}  // namespace
+
+namespace command {
+
+bool disturb(Context& context, std::string const& arguments) {
+  std::vector<std::string> const fits = words_in(arguments);
+  Workspace const& work = context.work.statements;
+  if (fits.size() > 1) return context.output.refuse("`disturb` takes one fit", "`disturb`, `disturb FIT`");
+  std::string const from = fits.empty() ? last_fit(context) : fits[0];
+  if (from.empty()) return context.output.refuse("no fit has been run yet", "`fit1 = fit MODEL to DATA with map`");
+  std::size_t const place = work.find(ItemKind::task, from);
+  Result const* result = context.results.find(from);
+  if (place == work.items.size() || result == nullptr || !context.results.fitted.contains(from))
+    return context.output.refuse(fmt::format("`{}` is not a fit that has been run", from));
+  std::string const statement = in_one_line(work.items[place].text);
+  std::string const model = std::get<ast::Task>(item_of(statement)).subject.text;
+  std::string const name = changed_name(from), changed_model = changed_name(model);
+  std::filesystem::path const before = result->folder;
+  auto const checked = context.work.checked;
+  std::string text;
+  std::vector<DisturbedEquation> equations;
+  bool const found = context.output.guarded(checked->source, [&] {
+    std::ostream nowhere(nullptr);
+    Session session(checked->source, checked->file, context.options, context.progress, nowhere, nowhere);
+    auto const& tasks = checked->file.tasks;
+    auto const task = std::find_if(tasks.begin(), tasks.end(), [&](Task const& each) { return each.name == from; });
+    if (task == tasks.end()) throw InternalError("a fit that was run is not there");
+    session.find_results_in(before, *task);
+    DisturbanceFound const disturbance = find_disturbance(session, *task);
+    equations = disturbance.equations;
+    if (all_in(checked->source, model, equations))
+      text = model_with_disturbances(checked->source, model, changed_model, equations, disturbance.sizes);
+    return true;
+  });
+  if (!found) return false;
+  if (text.empty())
+    return context.output.refuse(fmt::format("the equations of `{}` stand in its parts", model),
+                                 "`save FILE`, then `sysid fit FILE --with-disturbance`");
+  std::string const fit = fit_of(statement, name, changed_model);
+  context.output.say(text + "\n" + fit);
+  if (!enter_statements(context, text) || !enter_statements(context, fit)) return false;
+  Result const* after = context.results.find(name);
+  if (after == nullptr || context.results.interrupted.contains(name)) return true;
+  context.output.answer(disturbance_words(before, after->folder, equations));
+  return true;
+}
+
+}  // namespace command
+
+}  // namespace sysid::repl

@@ -1,0 +1,139 @@
+// `fit --with-disturbance` as a user runs it, on records that nothing of the program makes.
+#include "app/disturbed/fit_disturbed.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/running.hpp"
+#include "core/numeric/random.hpp"
+
+using namespace sysid;
+using json = nlohmann::json;
+
+namespace {
+
+bool contains(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+
+/// m y'' + c y' + k y = x + w: a force of sd 1 held over 10 ms, and one of `unmeasured` times that.
+std::string oscillator_record(std::uint64_t seed, double unmeasured) {
+  Stream stream({seed, Purpose::test});
+  constexpr int fine = 50, samples = 400;
+  double const rate = 100, step = 1 / rate / fine, m = 1, c = 1, k = 400;
+  double y = 0, v = 0;
+  std::string text = "t,x,y\n";
+  for (int i = 0; i < samples; ++i) {
+    double const x = stream.normal(), w = unmeasured * stream.normal();
+    text += fmt::format("{},{},{}\n", i / rate, x, y + 2e-5 * stream.normal());
+    for (int j = 0; j < fine; ++j) {
+      v += step * (x + w - c * v - k * y) / m;
+      y += step * v;
+    }
+  }
+  return text;
+}
+
+std::string const plain = R"(
+model shaken {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter m [kg] ~ log_uniform(0.1, 10)
+  parameter c [N s/m] ~ log_uniform(0.1, 10)
+  parameter k [N/m] ~ log_uniform(40, 4000)
+  m*y'' + c*y' + k*y = x
+  observe d [m] ~ normal(y, sd = 2e-5)
+}
+data bench { file "b.csv"; time t [s]; input x = x [N] hold zero_order; measure d = y [m] }
+post = fit shaken to bench with map, seed = 1
+)";
+
+struct Pair {
+  TemporaryFolder folder;
+  std::ostringstream out, notices;
+
+  explicit Pair(std::string const& record) { write_file(folder.path() / "b.csv", record); }
+  ExitCode run(std::string const& text = plain) {
+    out.str("");
+    notices.str("");
+    Source source((folder.path() / "case.sysid").string(), text);
+    Diagnostics diagnostics;
+    auto const file = load(source, diagnostics);
+    REQUIRE(file);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    options.figures = false;
+    SilentProgress silent;
+    return fit_with_disturbance(source, *file, options, silent, out, notices);
+  }
+  json summary(std::string const& task) const { return json::parse(read_file(folder.path() / "results" / task / "summary.json")); }
+};
+
+}  // namespace
+
+TEST_CASE("a record with an unmeasured force prefers the disturbance, and the answer says what it changes") {
+  Pair pair(oscillator_record(5, 0.05));
+  pair.run();
+  std::string const said = pair.out.str();
+  INFO(said);
+  CHECK(contains(said, "the record prefers the model with the disturbance: log Bayes factor +"));
+  CHECK(contains(said, "rms in a sampling interval"));
+  CHECK(contains(said, "sd ratio"));
+  // 0.05 N held over a sample.
+  json const with = pair.summary("post_with_disturbance"), without = pair.summary("post");
+  double const rms = parameter(with, "unmeasured_rms").at("mean");
+  CHECK(std::abs(rms - 0.05) < 0.015);
+  CHECK(parameter(without, "k").at("sd").get<double>() < 0.5 * parameter(with, "k").at("sd").get<double>());
+  // The changed file lies beside its results; run from there it is that fit, and goes on to predictions.
+  auto const path = pair.folder.path() / "results/post_with_disturbance/with_disturbance.sysid";
+  CHECK(contains(pair.notices.str(), path.string()));
+  RunOptions options;
+  options.output = pair.folder.path() / "results";
+  options.resume = true;
+  RunResult const again = run_text(path, read_file(path), options);
+  CHECK(contains(again.notices, "post_with_disturbance: complete, kept"));
+  // Once more: nothing is fitted again, and the answer is the same.
+  std::string const words = said.substr(said.find("the record prefers"));
+  pair.run();
+  CHECK(contains(pair.notices.str(), "post: complete, kept"));
+  CHECK(contains(pair.out.str(), words));
+}
+
+TEST_CASE("a record without an unmeasured force does not prefer the disturbance") {
+  Pair pair(oscillator_record(6, 0));
+  pair.run();
+  INFO(pair.out.str());
+  CHECK_FALSE(contains(pair.out.str(), "prefers the model with the disturbance"));
+}
+
+TEST_CASE("a fit whose model can have no disturbance is fitted without one where others can") {
+  Pair pair(oscillator_record(5, 0.05));
+  pair.run(plain + R"(
+model heavy {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  parameter k [N/m] ~ log_uniform(40, 4000)
+  disturbance w [N] ~ white(intensity = 1e-5)
+  1 [kg]*y'' + 1 [N s/m]*y' + k*y = x + w
+  observe d [m] ~ normal(y, sd = 2e-5)
+}
+wide = fit heavy to bench with map, seed = 1
+)");
+  CHECK(contains(pair.notices.str(), "wide: fitted without a disturbance only: `heavy` already has a disturbance"));
+  CHECK(std::filesystem::exists(pair.folder.path() / "results/wide/summary.json"));
+}
+
+TEST_CASE("a fit that does not move says nothing of how large a disturbance may be") {
+  std::string still;
+  for (int i = 0; i < 50; ++i) still += fmt::format("{},0,{}\n", 0.01 * i, 2e-5 * ((i * 37) % 11 - 5));
+  Pair pair("t,x,y\n" + still);
+  try {
+    pair.run();
+    FAIL("nothing was refused");
+  } catch (UserError const& error) {
+    CHECK(contains(error.diagnostic().message, "how large a disturbance may be is not known"));
+    CHECK(error.diagnostic().primary);
+  }
+}
