@@ -162,8 +162,11 @@ class Fit {
   }
 
   FitResult sample(RunContext& context) {
+    likelihood_->know_modes(preparation_.modes);
     choose_backend();
     Target const& target = likelihood_->set_target(preparation_.solver, session_.abandonable());
+    if (std::string const how = likelihood_->estimated_by(); !how.empty())
+      session_.notices << fmt::format("{}: {}\n", task_.name, how);
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
     FitResult result = backend_->run(target, chosen_.settings, context);

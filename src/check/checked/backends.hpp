@@ -11,9 +11,10 @@ namespace sysid {
 struct BackendSettings {
   std::string_view name;
   std::span<SettingRow const> settings;
-  bool optimum = false;   // its result is the largest density, no draws
-  bool prior = true;      // that density contains the prior
-  bool distance = false;  // it compares simulations with the data, and has no likelihood
+  bool optimum = false;    // its result is the largest density, no draws
+  bool prior = true;       // that density contains the prior
+  bool estimates = false;  // it samples the posterior of a likelihood that is known by unbiased estimates
+  bool distance = false;   // it compares simulations with the data, and has no likelihood
 };
 
 /// Those that a file's tasks may name.

@@ -41,10 +41,13 @@ Diagnostic estimated_and_random_start(Span option, Span initial, std::string con
 Diagnostic filter_of_nothing(Span option, std::string const& model);
 /// part: what is not linear, if it has a place.
 Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optional<Span> const& part);
-Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task);
+/// help: what else the fit may do.
+Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task, std::string const& help);
 /// Of a back end that compares simulations.
 Diagnostic random_states_by_distance(Span option, std::string const& backend, std::string const& model);
-Diagnostic particle_filter_missing(Span option);
+/// Where a likelihood that particles estimate will not do. what: that takes none.
+Diagnostic likelihood_by_particles(Span place, Subject const& what, std::string const& help);
+Diagnostic particles_of_other_filter(Span option, std::string const& filter);
 
 // errors of inputs
 Diagnostic law_of_input_error(Span law, std::string const& input, std::string const& reason);
