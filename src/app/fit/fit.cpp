@@ -196,6 +196,10 @@ class Fit {
     accuracy_.reset();
     SolverSettings const& solver = preparation_.solver;
     if (!model_.integrated() || solver.row().exact || result.interrupted || result.draws.total() < 2) return;
+    if (auto const estimates = likelihood_->finer_estimates(session_.abandonable()); estimates.coarse) {
+      accuracy_ = check_estimates(*estimates.coarse, *estimates.fine, result.draws, extra_);
+      return;
+    }
     accuracy_ = check_draws(*preparing_.target(solver), *preparing_.target(solver.finer()), result.draws, preparation_.modes, seed_,
                             extra_);
   }

@@ -59,6 +59,12 @@ class FitLikelihood {
   virtual void know_modes(std::vector<Mode> const&) {}
   /// How the likelihood of the target that was set is estimated; empty where it is computed.
   virtual std::string estimated_by() const { return {}; }
+  /// The same estimates with more particles, by the solver of that target and by the next finer one; null where the likelihood is
+  /// computed.
+  struct FinerEstimates {
+    std::unique_ptr<Target> coarse, fine;
+  };
+  virtual FinerEstimates finer_estimates(ExecutionOptions const&) const { return {}; }
   /// Whether the estimates are good enough.
   virtual Findings check_particles(FitResult const&) const { return {}; }
   /// The target of the fit's own experiments, which the functions below read.

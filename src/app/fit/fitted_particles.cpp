@@ -125,6 +125,16 @@ Target const& FittedParticles::set_target(std::shared_ptr<ParameterSpace const> 
   return *target_;
 }
 
+std::unique_ptr<Target> FittedParticles::with_solver(std::shared_ptr<ParameterSpace const> space, SolverSettings const& solver,
+                                                     ExecutionOptions const& execution) const {
+  ParticleOptions options;
+  options.numbers = ParticleNumbers::of_parameters;
+  options.key.seed = seed_;
+  options.particles = 4 * need_.particles;
+  return std::make_unique<ParticleTarget>(particle_model(model_, solver.method), std::move(space), experiments_of(data_),
+                                          fit_target_options(session_, what_, solver, execution), options);
+}
+
 std::string FittedParticles::chosen() const {
   std::string const number = fmt::format(
       "{} particles: the log likelihood has an sd of {:.2g} between estimates at the mode, and up to {:.2g} at three in "

@@ -28,6 +28,10 @@ class FittedParticles {
   Target const& set_target(std::shared_ptr<ParameterSpace const> space, SolverSettings const& solver,
                            ExecutionOptions const& execution, std::vector<Mode> const& modes);
 
+  /// The same with another solver, and four times the particles, so that differences are those of the solvers.
+  std::unique_ptr<Target> with_solver(std::shared_ptr<ParameterSpace const> space, SolverSettings const& solver,
+                                      ExecutionOptions const& execution) const;
+
   /// parameters: of the model in each experiment, SI [parameters x 1].
   FitCheck check_residuals(std::vector<LaneArray> const& parameters) const;
   /// parameters: of the model in experiment e, SI [parameters x draws].

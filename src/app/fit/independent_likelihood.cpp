@@ -91,6 +91,10 @@ class IndependentLikelihood : public FitLikelihood {
 
   void know_modes(std::vector<Mode> const& modes) override { modes_ = modes; }
   std::string estimated_by() const override { return particles_ ? particles_->chosen() : std::string(); }
+  FinerEstimates finer_estimates(ExecutionOptions const& execution) const override {
+    if (!particles_) return {};
+    return {particles_->with_solver(space_, solver_, execution), particles_->with_solver(space_, solver_.finer(), execution)};
+  }
   Findings check_particles(FitResult const& result) const override {
     return particles_ ? particles_->check(parameters_of_each(middle_of(result)), spread(result.draws, 12)) : Findings();
   }

@@ -45,20 +45,20 @@ model relaxing {
 data d { file "d.csv"; time t [s]; measure m = m }
 )";
 
-std::string const chain = "mh(samples = 2500, burn_in = 500, thin = 2, chains = 4)";
+std::string const short_chain = "mh(samples = 2500, burn_in = 500, thin = 2, chains = 4)";
 
-double value(json const& summary, std::string const& name, std::string const& key) {
+double posterior_of(json const& summary, std::string const& name, std::string const& key) {
   return parameter(summary, name).at(key).get<double>();
 }
 
-bool was_found(json const& summary, std::string const& code) {
+bool among_findings(json const& summary, std::string const& code) {
   for (json const& each : summary.at("findings"))
     if (each.at("code") == code) return true;
   return false;
 }
 
 /// Draws of all chains, as they are stored.
-std::string draws_of(std::filesystem::path const& results, std::string const& task) {
+std::string stored_draws_of(std::filesystem::path const& results, std::string const& task) {
   std::string all;
   for (int c = 1; c <= 4; ++c) all += read_file(results / task / fmt::format("draws_{}.csv", c));
   return all;
@@ -67,26 +67,27 @@ std::string draws_of(std::filesystem::path const& results, std::string const& ta
 }  // namespace
 
 TEST_CASE("particles sample the posterior that the Kalman filter computes") {
-  std::string const text = relaxing + "exact = fit relaxing to d with " + chain +
-                           ", filter = kalman, solver = exponential, seed = 1\ncloud = fit relaxing to d with " + chain +
+  std::string const text = relaxing + "exact = fit relaxing to d with " + short_chain +
+                           ", filter = kalman, solver = exponential, seed = 1\ncloud = fit relaxing to d with " + short_chain +
                            ", filter = particle, solver = exponential, seed = 1\n";
   CaseRun const run(text, {{"d.csv", relaxation(1, 0.5, 3, 60, false)}});
   json const exact = run.summary("exact"), cloud = run.summary("cloud");
   for (char const* name : {"a", "q"}) {
     CAPTURE(name);
-    double const sd = value(exact, name, "sd");
-    double const error = std::hypot(value(exact, name, "mcse_mean"), value(cloud, name, "mcse_mean"));
-    MESSAGE(name << ": " << value(exact, name, "mean") << " +- " << sd << ", by particles " << value(cloud, name, "mean") << " +- "
-                 << value(cloud, name, "sd") << ", mcse of the difference " << error);
-    CHECK(std::abs(value(cloud, name, "mean") - value(exact, name, "mean")) < 4 * error);
-    CHECK(value(cloud, name, "sd") == doctest::Approx(sd).epsilon(0.2));
+    double const sd = posterior_of(exact, name, "sd");
+    double const error = std::hypot(posterior_of(exact, name, "mcse_mean"), posterior_of(cloud, name, "mcse_mean"));
+    MESSAGE(name << ": " << posterior_of(exact, name, "mean") << " +- " << sd << ", by particles "
+                 << posterior_of(cloud, name, "mean") << " +- " << posterior_of(cloud, name, "sd") << ", mcse of the difference "
+                 << error);
+    CHECK(std::abs(posterior_of(cloud, name, "mean") - posterior_of(exact, name, "mean")) < 4 * error);
+    CHECK(posterior_of(cloud, name, "sd") == doctest::Approx(sd).epsilon(0.2));
   }
   CHECK(cloud.at("settings").at("filter") == "particle");
   CHECK(cloud.at("settings").at("particles").get<int>() >= 64);
   CHECK(cloud.at("settings").at("log_likelihood_sd").get<double>() <= 1.2);
-  CHECK_FALSE(was_found(cloud, "likelihood_too_noisy"));
-  CHECK_FALSE(was_found(cloud, "residuals_not_white"));
-  CHECK_FALSE(was_found(cloud, "noise_size"));
+  CHECK_FALSE(among_findings(cloud, "likelihood_too_noisy"));
+  CHECK_FALSE(among_findings(cloud, "residuals_not_white"));
+  CHECK_FALSE(among_findings(cloud, "noise_size"));
   // One estimate per parameter vector has an evidence, too.
   double const difference =
       cloud.at("evidence").at("log_evidence").get<double>() - exact.at("evidence").at("log_evidence").get<double>();
@@ -104,12 +105,12 @@ TEST_CASE("a fit by particles is the same for any threads and lanes, and when it
   RunOptions options;
   options.output = folder.path() / "whole";
   run_text(folder.path() / "case.sysid", text, options);
-  std::string const whole = draws_of(options.output, "cloud");
+  std::string const whole = stored_draws_of(options.output, "cloud");
   options.output = folder.path() / "other";
   options.execution.threads = 2;
   options.execution.lanes = 8;
   run_text(folder.path() / "case.sysid", text, options);
-  CHECK(draws_of(options.output, "cloud") == whole);
+  CHECK(stored_draws_of(options.output, "cloud") == whole);
   CHECK(read_file(options.output / "cloud/states.csv") == read_file(folder.path() / "whole/cloud/states.csv"));
   for (std::uint64_t const poll : {20, 60, 150}) {
     CAPTURE(poll);
@@ -123,15 +124,16 @@ TEST_CASE("a fit by particles is the same for any threads and lanes, and when it
     options.interrupt_after = 0;
     options.resume = true;
     run_text(folder.path() / "case.sysid", text, options);
-    CHECK(draws_of(options.output, "cloud") == whole);
+    CHECK(stored_draws_of(options.output, "cloud") == whole);
   }
 }
 
 TEST_CASE("noise with heavy tails: the posterior by particles is that by quadrature over the state") {
   std::string const heavy = without(with(relaxing, "normal(x, sd = 0.3)", "student_t(x, 3, scale = 0.3)"),
                                     "  parameter q [1/s] ~ log_uniform(0.005, 50)\n");
-  std::string const text = with(heavy, "intensity = q", "intensity = 0.5") + "post = fit relaxing to d with " + chain +
-                           ", seed = 1\nahead = predict post on d with draws(50), prediction = one_step, seed = 1\n";
+  std::string const text =
+      with(heavy, "intensity = q", "intensity = 0.5") + "post = fit relaxing to d with " + short_chain +
+      ", solver = exponential, seed = 1\nahead = predict post on d with draws(50), prediction = one_step, seed = 1\n";
   std::string const data = relaxation(1, 0.5, 5, 40, true);
   CaseRun const run(text, {{"d.csv", data}});
   CHECK(run.result.notices.find("filter = particle, because no other filter takes the noise of `m`, which is `student_t`") !=
@@ -189,11 +191,11 @@ TEST_CASE("noise with heavy tails: the posterior by particles is that by quadrat
   mean /= mass;
   double const sd = std::sqrt(square / mass - mean * mean);
   json const summary = run.summary("post");
-  MESSAGE("a: " << mean << " +- " << sd << " by quadrature, " << value(summary, "a", "mean") << " +- " << value(summary, "a", "sd")
-                << " by particles, mcse " << value(summary, "a", "mcse_mean"));
-  CHECK(std::abs(value(summary, "a", "mean") - mean) < 4 * value(summary, "a", "mcse_mean"));
-  CHECK(value(summary, "a", "sd") == doctest::Approx(sd).epsilon(0.15));
-  CHECK_FALSE(was_found(summary, "noise_size"));
+  MESSAGE("a: " << mean << " +- " << sd << " by quadrature, " << posterior_of(summary, "a", "mean") << " +- "
+                << posterior_of(summary, "a", "sd") << " by particles, mcse " << posterior_of(summary, "a", "mcse_mean"));
+  CHECK(std::abs(posterior_of(summary, "a", "mean") - mean) < 4 * posterior_of(summary, "a", "mcse_mean"));
+  CHECK(posterior_of(summary, "a", "sd") == doctest::Approx(sd).epsilon(0.15));
+  CHECK_FALSE(among_findings(summary, "noise_size"));
   double const covered = run.summary("ahead").at("fit").at("coverage_95").get<double>();
   CHECK(covered > 0.85);
 }
@@ -204,6 +206,6 @@ TEST_CASE("too few particles are a finding, and the states of a random walk lie 
                            "particles = 16, seed = 1\n";
   CaseRun const run(with(text, "sd = 0.3)", "sd = 0.01)"), {{"d.csv", relaxation(1, 0.5, 3, 60, false)}});
   json const summary = run.summary("few");
-  CHECK(was_found(summary, "likelihood_too_noisy"));
-  CHECK(was_found(summary, "particles_degenerate"));
+  CHECK(among_findings(summary, "likelihood_too_noisy"));
+  CHECK(among_findings(summary, "particles_degenerate"));
 }
