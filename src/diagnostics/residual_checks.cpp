@@ -72,17 +72,18 @@ constexpr double little = 20, less_than_half = 50;
 
 // A channel over the scored rows of an experiment.
 struct ScoredChannel {
-  ModelTarget const& target;
+  Model const& of_model;
+  std::vector<Experiment> const& experiments;
   int experiment, channel;
   std::vector<double> residuals;            // [N] standardised, NaN where not scored
   std::vector<double> observed, predicted;  // where scored, declared unit
   std::vector<std::size_t> places;          // of these along the experiment
   SizedResiduals sized;
 
-  Model const& model() const { return target.compiled()->model; }
+  Model const& model() const { return of_model; }
   Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }
-  Experiment const& data() const { return target.experiments()[static_cast<std::size_t>(experiment)]; }
-  std::string name() const { return described().name + on_experiment(target, experiment); }
+  Experiment const& data() const { return experiments[static_cast<std::size_t>(experiment)]; }
+  std::string name() const { return described().name + (experiments.size() > 1 ? " on " + data().name : ""); }
   std::vector<std::string> names() const { return {described().name, data().name}; }
   bool noise_is_estimated() const {
     return std::any_of(described().noise.arguments.begin() + 1, described().noise.arguments.end(), [&](NodeId argument) {
@@ -302,7 +303,7 @@ void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
   for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) {
     auto const channel = static_cast<std::size_t>(c);
     if (experiment.measured[channel].empty()) continue;
-    ScoredChannel of{target, e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}};
+    ScoredChannel of{model, target.experiments(), e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}};
     for (std::size_t r = 0; r < target.residual_places().size(); ++r) {
       auto const [of_experiment, at_channel, sample] = target.residual_places()[r];
       if (of_experiment != e || at_channel != c || sample < 0) continue;
@@ -319,6 +320,16 @@ void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
                               : scaled(noise, arguments, of.residuals);
     scored.push_back(std::move(of));
   }
+}
+
+FitCheck check_scored(std::vector<ScoredChannel> const& scored) {
+  FitCheck check;
+  std::vector<Tested> tested;
+  for (ScoredChannel const& each : scored) tested.push_back(test_channel(each));
+  Limits const limits = limits_of(tested);
+  for (std::size_t k = 0; k < scored.size(); ++k)
+    check.lines.push_back(check_channel(scored[k], tested[k], limits, check.findings));
+  return check;
 }
 
 }  // namespace
@@ -356,7 +367,6 @@ std::string on_experiment(ModelTarget const& target, int experiment) {
 }
 
 FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared) {
-  FitCheck check;
   int const dimension = target.dimension();
   LaneArray values(dimension, 1), theta(dimension, 1), residuals(target.residual_count(), 1);
   for (int p = 0; p < dimension; ++p) values(p, 0) = declared[static_cast<std::size_t>(p)];
@@ -365,12 +375,26 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
   target.residuals(theta, residuals, ledger);
   std::vector<ScoredChannel> scored;
   for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) score_experiment(target, e, values, residuals, scored);
-  std::vector<Tested> tested;
-  for (ScoredChannel const& each : scored) tested.push_back(test_channel(each));
-  Limits const limits = limits_of(tested);
-  for (std::size_t k = 0; k < scored.size(); ++k)
-    check.lines.push_back(check_channel(scored[k], tested[k], limits, check.findings));
-  return check;
+  return check_scored(scored);
+}
+
+FitCheck check_residuals(Model const& model, std::vector<Experiment> const& experiments,
+                         std::vector<StandardisedRows> const& rows) {
+  std::vector<ScoredChannel> scored;
+  for (std::size_t e = 0; e < experiments.size(); ++e)
+    for (std::size_t c = 0; c < model.channels.size(); ++c) {
+      ScoredChannel of{model, experiments, static_cast<int>(e), static_cast<int>(c), rows[e].residuals[c], {}, {}, {}, {}};
+      for (std::size_t i = 0; i < of.residuals.size(); ++i) {
+        if (std::isnan(of.residuals[i])) continue;
+        of.observed.push_back(model.channels[c].from_si(experiments[e].measured[c][i]));
+        of.predicted.push_back(rows[e].predicted[c][i]);
+        of.places.push_back(i);
+      }
+      if (of.observed.empty()) continue;
+      of.sized.values = of.residuals;
+      scored.push_back(std::move(of));
+    }
+  return check_scored(scored);
 }
 
 }  // namespace sysid

@@ -18,6 +18,15 @@ struct FitCheck {
   Findings findings;
 };
 
+/// Residuals of unit size and what was predicted [channels][samples], where states are random and no trajectory tells them; NaN
+/// where not scored.
+struct StandardisedRows {
+  std::vector<std::vector<double>> residuals;
+  std::vector<std::vector<double>> predicted;  // declared units
+};
+/// Per experiment.
+FitCheck check_residuals(Model const& model, std::vector<Experiment> const& experiments, std::vector<StandardisedRows> const& rows);
+
 /// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input.
 FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared);
 

@@ -143,7 +143,15 @@ Draws prior_draws(StoredFit const& fit, int wanted, std::uint64_t seed) {
   return draws;
 }
 
+/// Whether these groups are left out.
+bool by_particles(StoredFit const& fit, char const* groups, InferenceData& data) {
+  if (fit.what.filter != FilterRule::particle) return false;
+  data.omitted.push_back(fmt::format("{}: the fit estimates its likelihood by particles", groups));
+  return true;
+}
+
 void add_posterior_groups(StoredFit const& fit, int draws, std::uint64_t seed, InferenceData& data) {
+  if (by_particles(fit, "log_likelihood, posterior_predictive", data)) return;
   std::vector<std::size_t> const numbers = spread_over_chain(fit.fitted.draws, draws);
   LaneArray const declared = columns_of(fit.fitted.draws, numbers);
   NetcdfGroup likelihood("log_likelihood"), predictive("posterior_predictive");
@@ -163,6 +171,7 @@ void add_prior_groups(StoredFit const& fit, int draws, std::uint64_t seed, Infer
   Draws const drawn = prior_draws(fit, draws, seed);
   NetcdfGroup prior("prior"), predictive("prior_predictive");
   add_draws(prior, drawn);
+  if (by_particles(fit, "prior_predictive", data)) return data.add(std::move(prior));
   std::vector<std::size_t> all(drawn.total());
   std::iota(all.begin(), all.end(), std::size_t{0});
   add_draw_dimensions(predictive, 1, all);

@@ -15,6 +15,7 @@ struct Choice {
 
 /// By the first of these that applies:
 ///
+///   mh         a likelihood that is estimated by particles
 ///   tempering  several modes of notable mass, up to 20 parameters
 ///   mh         several modes of more; a mode that is flat in some direction; derivatives by differences
 ///   nuts       more than 25 parameters, and draws from the normal distribution at the mode worth less than 1 % of independent ones

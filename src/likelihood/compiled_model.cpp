@@ -76,6 +76,7 @@ void compile_programs(CompiledModel& compiled) {
     compiled.records.push_back({CompiledModel::Record::Kind::centre, static_cast<int>(c), 0});
     trajectory.records.push_back(density.centre);
     Distribution const& use = source.noise[c];
+    compiled.noise.push_back(use.row);
     for (std::size_t a = 0; a < use.arguments.size(); ++a) {
       compiled.records.push_back({CompiledModel::Record::Kind::noise_argument, static_cast<int>(c), static_cast<int>(a)});
       trajectory.records.push_back(use.arguments[a]);

@@ -36,7 +36,8 @@ struct CompiledModel {
     int index;     // channel, channel, state, model.derived, model.invariants (twice); of a spread the record whose sd it is
     int argument;  // of the noise
   };
-  std::vector<Record> records;  // of `trajectory`, SI
+  std::vector<Record> records;                // of `trajectory`, SI
+  std::vector<DistributionRow const*> noise;  // of the channels, as recorded there: normal where moments stand for random states
 
   int parameter_rows() const;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "distribution/normal_approximation.hpp"
 #include "expression/finite_slope.hpp"
 #include "solver/solver.hpp"
 
@@ -80,7 +81,8 @@ SimulationSource dynamics(Folded& folded, CompiledModel const& compiled) {
   return source;
 }
 
-/// The moments of a model with random states, and the noise that they give its channels together with that of the sensors.
+/// The moments of a model with random states, and the noise that they give its channels together with that of the sensors. Noise
+/// that is not normal counts as the nearest normal one.
 void filter(Folded& folded, CompiledModel const& compiled, bool since, ModelSource& source) {
   Model const& model = compiled.model;
   Graph& graph = folded.graph;
@@ -89,6 +91,7 @@ void filter(Folded& folded, CompiledModel const& compiled, bool since, ModelSour
   for (State const& state : model.states)
     random.initial_variances.push_back(state.initial_variance ? std::optional(folded(*state.initial_variance)) : std::nullopt);
   std::vector<NormalChannel> channels;
+  for (Distribution& noise : source.noise) noise = normal_approximation(graph, noise);
   for (Distribution const& noise : source.noise)
     channels.push_back({noise.arguments[0], graph.multiply(noise.arguments[1], noise.arguments[1])});
   source.dynamics.graph = graph;

@@ -175,14 +175,15 @@ void Trajectory::collect_moments(LaneArray const& records, std::vector<Outcome> 
     auto const c = static_cast<std::size_t>(record.index);
     Channel const& channel = compiled_->model.channels[c];
     double const slope = channel.from_si(1) - channel.from_si(0);
-    std::vector<double> numbers(channel.noise.arguments.size());
+    DistributionRow const& noise = *compiled_->noise[c];
+    std::vector<double> numbers(noise.arguments.size());
     for (int w = 0; w < records.width(); ++w) {
       std::vector<double> means(static_cast<std::size_t>(samples), not_a_number), variances = means;
       for (int i = 0; outcome[static_cast<std::size_t>(w)].ok && i < samples; ++i) {
         for (std::size_t a = 0; a < numbers.size(); ++a) numbers[a] = records(i * rows + r + 1 + static_cast<int>(a), w);
         bool const finite = std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
-        if (!finite || (channel.noise.row->refuse != nullptr && !channel.noise.row->refuse(numbers).empty())) continue;
-        NoiseMoments const moments = channel.noise.row->moments(numbers);
+        if (!finite || (noise.refuse != nullptr && !noise.refuse(numbers).empty())) continue;
+        NoiseMoments const moments = noise.moments(numbers);
         means[static_cast<std::size_t>(i)] = channel.from_si(moments.mean);
         variances[static_cast<std::size_t>(i)] = slope * slope * moments.variance;
       }
@@ -196,14 +197,14 @@ void Trajectory::collect_moments(LaneArray const& records, std::vector<Outcome> 
 std::vector<std::vector<double>> Trajectory::with_noise(LaneArray const& records, std::vector<Outcome> const& outcome, int row,
                                                         StreamKey key) const {
   int const samples = this->samples(), rows = static_cast<int>(compiled_->records.size()), width = records.width();
-  Channel const& channel =
-      compiled_->model.channels[static_cast<std::size_t>(compiled_->records[static_cast<std::size_t>(row)].index)];
-  Distribution const& noise = channel.noise;
+  auto const c = static_cast<std::size_t>(compiled_->records[static_cast<std::size_t>(row)].index);
+  Channel const& channel = compiled_->model.channels[c];
+  DistributionRow const& noise = *compiled_->noise[c];
   std::vector<double> numbers(noise.arguments.size());
   auto const usable = [&](int sample, int lane) {
     for (std::size_t a = 0; a < numbers.size(); ++a) numbers[a] = records(sample * rows + row + 1 + static_cast<int>(a), lane);
     return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }) &&
-           (noise.row->refuse == nullptr || noise.row->refuse(numbers).empty());
+           (noise.refuse == nullptr || noise.refuse(numbers).empty());
   };
   std::vector<std::vector<double>> all(static_cast<std::size_t>(width),
                                        std::vector<double>(static_cast<std::size_t>(samples), not_a_number));
@@ -212,7 +213,7 @@ std::vector<std::vector<double>> Trajectory::with_noise(LaneArray const& records
   for (int w = 0; w < width; ++w) {
     if (!outcome[static_cast<std::size_t>(w)].ok) continue;
     Stream stream(key.with_index(key.index + static_cast<std::uint64_t>(w)));
-    bool normal = noise.row->gaussian;
+    bool normal = noise.gaussian;
     for (int i = 0; normal && i < samples; ++i) normal = usable(i, w);
     if (normal) {
       whole.push_back(w);
@@ -222,7 +223,7 @@ std::vector<std::vector<double>> Trajectory::with_noise(LaneArray const& records
     for (int i = 0; i < samples; ++i)
       if (usable(i, w))
         all[static_cast<std::size_t>(w)][static_cast<std::size_t>(i)] =
-            channel.from_si(draw(*noise.row, numbers, -infinity, infinity, stream));
+            channel.from_si(draw(noise, numbers, -infinity, infinity, stream));
   }
   constexpr int at_once = 256;  // samples; even, as normal numbers come in pairs
   for (int from = 0; from < samples && !whole.empty(); from += at_once) {

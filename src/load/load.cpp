@@ -23,7 +23,8 @@ std::vector<BackendSettings> fitting_backends() {
     rows.push_back({.name = row.name,
                     .settings = row.settings,
                     .optimum = row.objective_kind != ObjectiveKind::posterior,
-                    .prior = row.objective_kind != ObjectiveKind::likelihood});
+                    .prior = row.objective_kind != ObjectiveKind::likelihood,
+                    .estimates = !row.needs.exact_likelihood});
   return rows;
 }
 

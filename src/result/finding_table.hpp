@@ -23,6 +23,8 @@ enum class FindingCode {
   no_diagnostics,
   integration_step,
   linearisation_matters,
+  likelihood_too_noisy,
+  particles_degenerate,
   step_not_settled,
   stiff_prior,
   slower_solver,

@@ -157,6 +157,37 @@ TEST_CASE("a fit says how its likelihood is computed") {
   CHECK(messages(with_tasks(white, "f = fit m to exact with mh, filter = ekf")).find("E6006") != std::string::npos);
 }
 
+TEST_CASE("particles are for back ends that sample with estimates, and chosen for noise that is not normal") {
+  std::string const white = "disturbance w [N] ~ white(intensity = 4)\n";
+  auto const of_heavy_tails = [&](std::string const& task) {
+    std::string text = with_tasks(white, task);
+    std::string const normal = "normal(y, sd = 1e-4)";
+    auto const at = text.find(normal);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, normal.size(), "student_t(y, 4, scale = 1e-4)");
+  };
+  auto const refused = [&](std::string const& text, std::string const& code) {
+    return messages(text).find(code) != std::string::npos;
+  };
+  FitTask const stated = fit_of(white, "f = fit m to exact with mh, filter = particle, particles = 200");
+  CHECK(stated.filter == FilterRule::particle);
+  CHECK(stated.particles == 200);
+  CHECK(stated.particles_because.empty());
+  CHECK(fit_of(white, "f = fit m to exact with mh, filter = particle, particles = automatic").particles == 0);
+  CHECK(fit_of(white, "f = fit m to exact with auto, filter = particle").filter == FilterRule::particle);
+  for (std::string const backend : {"nuts", "tempering", "map", "ml"})
+    CHECK(refused(with_tasks(white, "f = fit m to exact with " + backend + ", filter = particle"), "E3319"));
+  CHECK(refused(with_tasks(white, "f = fit m to exact with mh, filter = particle, start = estimated(rows = 5)"), "E3319"));
+  CHECK(refused(with_tasks(white, "f = fit m to exact with mh, particles = 100"), "E3320"));
+  CHECK(refused(with_tasks(white, "f = fit m to exact with mh, filter = particle, particles = 3"), "E6005"));
+  CheckedFile const chosen = checked(of_heavy_tails("f = fit m to exact with mh"));
+  auto const& fit = std::get<FitTask>(chosen.tasks.back().what);
+  CHECK(fit.filter == FilterRule::particle);
+  CHECK(fit.particles_because == "no other filter takes the noise of `displacement`, which is `student_t`");
+  for (std::string const backend : {"nuts", "map", "mh, filter = unscented", "mh, start = estimated(rows = 5)"})
+    CHECK(refused(of_heavy_tails("f = fit m to exact with " + backend), "E3314"));
+}
+
 TEST_CASE("a prediction has the errors of its own data, and samples correct its states by a rule") {
   std::string const fitted = "f = fit m to exact with mh\n";
   auto const prediction = [&](std::string const& task) {

@@ -51,6 +51,14 @@ class Calibration {
     plan_.what = std::get<FitTask>(task_.what);
     plan_.what.near.reset();
     plan_.backend = options.backend != nullptr ? options.backend : find_backend(plan_.what.backend);
+    if (plan_.what.filter == FilterRule::particle && plan_.backend->needs.exact_likelihood)
+      throw UserError({Severity::error,
+                       "E6210",
+                       fmt::format("`{}` cannot be calibrated with `{}`: its likelihood is estimated by particles", task_.name,
+                                   plan_.backend->name),
+                       Label{task_.span, {}},
+                       {},
+                       "calibrate with `mh`"});
     plan_.seed = checkpoint_.seed();
     data_ = load_experiments(session, plan_.what.experiments, model(), plan_.what.start, plan_.what.prediction, plan_.what.solver);
     checkpoint_.of_data(data_);

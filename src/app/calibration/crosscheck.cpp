@@ -92,6 +92,7 @@ class Crosscheck {
       own_.near.reset();
       left_out_ = search_text(session.file, std::get<FitTask>(task_.what));
     }
+    require_exact();
     if (against_.empty()) return;
     require_another(own_.backend);
     std::string const help = "name a back end that samples with --against: mh, nuts or tempering";
@@ -124,6 +125,12 @@ class Crosscheck {
   }
 
  private:
+  void require_exact() const {
+    if (own_.filter == FilterRule::particle)
+      throw refused(
+          fmt::format("`{}` estimates its likelihood by particles, and no other back end samples with estimates", task_.name),
+          "compare with a fit of the same model and `filter = unscented`, or with other seeds");
+  }
   void require_another(std::string const& backend) const {
     if (against_ == backend)
       throw refused(fmt::format("`{}` is fitted by `{}` already", task_.name, backend), "name another back end with --against");

@@ -162,8 +162,11 @@ class Fit {
   }
 
   FitResult sample(RunContext& context) {
+    likelihood_->know_modes(preparation_.modes);
     choose_backend();
     Target const& target = likelihood_->set_target(preparation_.solver, session_.abandonable());
+    if (std::string const how = likelihood_->estimated_by(); !how.empty())
+      session_.notices << fmt::format("{}: {}\n", task_.name, how);
     context.modes = preparation_.modes;
     context.mode_findings = preparation_.findings;
     FitResult result = backend_->run(target, chosen_.settings, context);
@@ -193,6 +196,10 @@ class Fit {
     accuracy_.reset();
     SolverSettings const& solver = preparation_.solver;
     if (!model_.integrated() || solver.row().exact || result.interrupted || result.draws.total() < 2) return;
+    if (auto const estimates = likelihood_->finer_estimates(session_.abandonable()); estimates.coarse) {
+      accuracy_ = check_estimates(*estimates.coarse, *estimates.fine, result.draws, extra_);
+      return;
+    }
     accuracy_ = check_draws(*preparing_.target(solver), *preparing_.target(solver.finer()), result.draws, preparation_.modes, seed_,
                             extra_);
   }

@@ -119,6 +119,8 @@ Findings linearisation(FinishedFit& fit) {
   return linearisation_findings(check);
 }
 
+Findings particles(FinishedFit& fit) { return fit.likelihood.check_particles(fit.result); }
+
 std::string without_finite_sums(FinishedFit const& fit) {
   return fit.likelihood.model().expansions.empty() ? "the model has no unknown function that is approximated by a finite sum" : "";
 }
@@ -167,6 +169,7 @@ constexpr FitCheckRow rows[] = {
     {"input_timing", false, &without_timing, &input_timing},
     {"solver_accuracy", false, &without_solver, &solver_accuracy},
     {"linearisation", false, &without_linearisation, &linearisation, true},
+    {"particles", false, &always, &particles, true, true},
     {"finite_sums", false, &without_finite_sums, &functions},
     {"hierarchy", false, &without_hierarchy, &hierarchy},
     {"failed_solves", true, &always, &failed_solves},
@@ -183,6 +186,7 @@ std::span<FitCheckRow const> fit_check_rows() { return rows; }
 void run_fit_checks(FinishedFit& fit) {
   for (FitCheckRow const& row : rows) {
     if (row.of_filters && !fit.likelihood.model().filtered()) continue;
+    if (row.of_particles && fit.what.filter != FilterRule::particle) continue;
     std::string const skipped = fit.result.interrupted && !row.of_interrupted ? "the fit was interrupted" : row.inapplicable(fit);
     fit.report.checks.push_back({std::string(row.name), skipped});
     if (!skipped.empty() || row.run == nullptr) continue;

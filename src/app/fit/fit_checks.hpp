@@ -39,8 +39,9 @@ struct FitCheckRow {
   std::string (*inapplicable)(FinishedFit const& fit);
   /// Null: it ran before the search, and its findings are among those of the search.
   Findings (*run)(FinishedFit& fit);
-  /// Of models with random states alone: no other fit mentions it.
+  /// Of models with random states alone, and of fits by particles alone: no other fit mentions it.
   bool of_filters = false;
+  bool of_particles = false;
 };
 
 /// In the order in which their findings are reported.

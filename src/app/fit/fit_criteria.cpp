@@ -181,7 +181,7 @@ Criteria criteria_of(FinishedFit& fit) {
   Criteria criteria;
   criteria.reason = why_none(fit);
   if (!fit.likelihood.model().processes.empty()) return criteria;
-  if (!fit.result.modes.empty()) criteria.at_mode = at_mode(fit, scored_samples(fit));
+  if (!fit.result.modes.empty() && !fit.target.is_estimated()) criteria.at_mode = at_mode(fit, scored_samples(fit));
   if (!criteria.reason.empty()) return criteria;
   criteria.deviance = deviance_of(fit);
   score_draws(fit, criteria);

@@ -55,6 +55,18 @@ class FitLikelihood {
   /// The same of one of the fit's own experiments, for any draws and rows; null where samples are not independent given the
   /// trajectory.
   virtual std::unique_ptr<PointwiseLikelihood> pointwise(int experiment) const = 0;
+  /// Before `set_target`: where the posterior has its modes, the highest first.
+  virtual void know_modes(std::vector<Mode> const&) {}
+  /// How the likelihood of the target that was set is estimated; empty where it is computed.
+  virtual std::string estimated_by() const { return {}; }
+  /// The same estimates with more particles, by the solver of that target and by the next finer one; null where the likelihood is
+  /// computed.
+  struct FinerEstimates {
+    std::unique_ptr<Target> coarse, fine;
+  };
+  virtual FinerEstimates finer_estimates(ExecutionOptions const&) const { return {}; }
+  /// Whether the estimates are good enough.
+  virtual Findings check_particles(FitResult const&) const { return {}; }
   /// The target of the fit's own experiments, which the functions below read.
   virtual Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) = 0;
 

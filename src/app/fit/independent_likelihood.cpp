@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "app/fit/fit_likelihood.hpp"
+#include "app/fit/fitted_particles.hpp"
 #include "app/fit/smoothed_states.hpp"
 #include "app/process/unknown_functions.hpp"
 #include "app/session/derived_draws.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
+#include "core/numeric/statistics.hpp"
 #include "core/system/lazily.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/drift.hpp"
@@ -29,7 +31,9 @@ class IndependentLikelihood : public FitLikelihood {
         seed_(seed),
         compiled_(session.compiled(what, what.solver.method)),
         declared_(parameter_space(compiled_->model, what.experiments)),
-        space_(declared_) {}
+        space_(declared_) {
+    if (what.filter == FilterRule::particle) particles_.emplace(session, what, compiled_->model, data, seed);
+  }
 
   Model const& model() const override { return compiled_->model; }
   Model const& sampled_model() const override { return compiled_->model; }
@@ -85,10 +89,20 @@ class IndependentLikelihood : public FitLikelihood {
                                                  session_.interruptible());
   }
 
+  void know_modes(std::vector<Mode> const& modes) override { modes_ = modes; }
+  std::string estimated_by() const override { return particles_ ? particles_->chosen() : std::string(); }
+  FinerEstimates finer_estimates(ExecutionOptions const& execution) const override {
+    if (!particles_) return {};
+    return {particles_->with_solver(space_, solver_, execution), particles_->with_solver(space_, solver_.finer(), execution)};
+  }
+  Findings check_particles(FitResult const& result) const override {
+    return particles_ ? particles_->check(parameters_of_each(middle_of(result)), spread(result.draws, 12)) : Findings();
+  }
+
   Target const& set_target(SolverSettings const& solver, ExecutionOptions const& execution) override {
     solver_ = solver;
     target_ = make_fit_target(session_, what_, compiled_, space_, experiments_of(data_), solver, execution);
-    return *target_;
+    return particles_ ? particles_->set_target(space_, solver, execution, modes_) : *target_;
   }
 
   Draws draws(FitResult const& result) const override {
@@ -104,7 +118,8 @@ class IndependentLikelihood : public FitLikelihood {
   }
 
   FitCheck check_residuals(FitResult const& result, Draws const&) const override {
-    return sysid::check_residuals(*target_, best_of(result));
+    return particles_ ? particles_->check_residuals(parameters_of_each(middle_of(result)))
+                      : sysid::check_residuals(*target_, best_of(result));
   }
 
   std::vector<FunctionReport> functions(FitResult const& result, Draws const&) const override {
@@ -138,7 +153,8 @@ class IndependentLikelihood : public FitLikelihood {
     LaneArray parameters(static_cast<int>(model().parameters.size()), columns.width());
     space_->select(space_->values_of_declared(columns), e, parameters);
     Trajectory const trajectory(compiled_, experiment(e), solver_, start_rows(what_.start), session_.interruptible());
-    Trajectory::Result const result = trajectory.run(parameters, prediction_noise(seed_, e));
+    Trajectory::Result const result =
+        particles_ ? particles_->along(e, parameters) : trajectory.run(parameters, prediction_noise(seed_, e));
     FittedRows rows{bands_along(trajectory.quantities(), result, experiment(e), model()),
                     drift_findings(session_.source, model(), result, experiment(e).name),
                     {}};
@@ -148,16 +164,16 @@ class IndependentLikelihood : public FitLikelihood {
   }
 
   std::optional<Prediction> states(Draws const& draws, int e) const override {
-    // Particles are not smoothed, and may be of models whose noise has no moments that a filter could carry.
     if (!model().filtered()) return std::nullopt;
-    auto const& smoothing = smoothing_.get([&] { return compile_smoothing(compiled_); });
     LaneArray const columns = spread(draws, 100);
     LaneArray parameters(static_cast<int>(model().parameters.size()), columns.width());
     space_->select(space_->values_of_declared(columns), e, parameters);
+    if (particles_) return particles_->states(e, parameters);
+    auto const& smoothing = smoothing_.get([&] { return compile_smoothing(compiled_); });
     return smoothed_states(smoothing, experiment(e), solver_, start_rows(what_.start), session_.interruptible(), parameters);
   }
 
-  Facts settings() const override { return {}; }
+  Facts settings() const override { return particles_ ? particles_->settings() : Facts(); }
 
  private:
   std::shared_ptr<CompiledModel const> compiled_for(SolverSettings const& solver) const {
@@ -171,12 +187,26 @@ class IndependentLikelihood : public FitLikelihood {
     return result.modes.empty() ? best_draw(result.draws) : result.modes.front().declared;
   }
 
+  // The means of the draws: no estimate of a likelihood tells which place is the best.
+  static std::vector<double> middle_of(FitResult const& result) {
+    if (result.draws.total() < 2) return best_of(result);
+    std::vector<double> middle;
+    for (int p = 0; p < result.draws.parameter_count; ++p) middle.push_back(mean(result.draws.column(static_cast<std::size_t>(p))));
+    return middle;
+  }
+
   // Those of the model in an experiment, SI, of the sampled ones, declared.
   LaneArray parameters_at(std::vector<double> const& values, int e) const {
     LaneArray declared(static_cast<int>(values.size()), 1), one(static_cast<int>(model().parameters.size()), 1);
     for (std::size_t p = 0; p < values.size(); ++p) declared(static_cast<int>(p), 0) = values[p];
     space_->select(space_->values_of_declared(declared), e, one);
     return one;
+  }
+
+  std::vector<LaneArray> parameters_of_each(std::vector<double> const& values) const {
+    std::vector<LaneArray> all;
+    for (int e = 0; e < static_cast<int>(data_.size()); ++e) all.push_back(parameters_at(values, e));
+    return all;
   }
 
   Session& session_;
@@ -188,6 +218,8 @@ class IndependentLikelihood : public FitLikelihood {
   SolverSettings solver_;
   std::unique_ptr<ModelTarget> target_;
   Lazily<std::shared_ptr<SmoothingProgram const>> smoothing_;
+  std::optional<FittedParticles> particles_;  // of `filter = particle`; the targets above then serve the search
+  std::vector<Mode> modes_;
 };
 
 }  // namespace

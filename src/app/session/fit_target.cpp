@@ -5,10 +5,8 @@ namespace sysid {
 
 int start_rows(StartRule start) { return start.kind == StartRule::Kind::estimated ? start.rows : 0; }
 
-std::unique_ptr<ModelTarget> make_fit_target(Session const& session, FitTask const& what,
-                                             std::shared_ptr<CompiledModel const> compiled,
-                                             std::shared_ptr<ParameterSpace const> space, std::vector<Experiment> experiments,
-                                             SolverSettings const& solver, ExecutionOptions const& execution) {
+TargetOptions fit_target_options(Session const& session, FitTask const& what, SolverSettings const& solver,
+                                 ExecutionOptions const& execution) {
   TargetOptions options;
   options.solver = solver;
   options.start_rows = start_rows(what.start);
@@ -16,7 +14,15 @@ std::unique_ptr<ModelTarget> make_fit_target(Session const& session, FitTask con
   options.describe = [&session, model = what.model](NodeId node, Graph const& graph) {
     return session.describe(model, graph, node);
   };
-  return std::make_unique<ModelTarget>(std::move(compiled), std::move(space), std::move(experiments), std::move(options));
+  return options;
+}
+
+std::unique_ptr<ModelTarget> make_fit_target(Session const& session, FitTask const& what,
+                                             std::shared_ptr<CompiledModel const> compiled,
+                                             std::shared_ptr<ParameterSpace const> space, std::vector<Experiment> experiments,
+                                             SolverSettings const& solver, ExecutionOptions const& execution) {
+  return std::make_unique<ModelTarget>(std::move(compiled), std::move(space), std::move(experiments),
+                                       fit_target_options(session, what, solver, execution));
 }
 
 }  // namespace sysid

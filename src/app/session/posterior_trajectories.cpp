@@ -10,6 +10,9 @@ namespace sysid {
 
 namespace {
 
+/// Where the fit states none: it has looked for a number that suits the likelihood of a whole record, which bands do not need.
+constexpr int particles_of_prediction = 1000;
+
 /// The fit, with the errors that inputs have in the records that it predicts.
 FitTask fit_of(Session const& session, PredictTask const& what) {
   FitTask fit = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what);
@@ -93,9 +96,17 @@ Trajectory PosteriorTrajectories::trajectory(int e) const {
 }
 
 Trajectory::Result PosteriorTrajectories::run(int e, Trajectory const& trajectory, ConstLanes parameters, bool moments) const {
+  if (fit_.filter == FilterRule::particle) return by_particles(e, parameters);
   StreamKey const noise = prediction_noise(seed_, e);
   return what_.redraw_each_step ? trajectory.run_redrawn(parameters, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
                                 : trajectory.run(parameters, noise, moments, what_.ahead);
+}
+
+Trajectory::Result PosteriorTrajectories::by_particles(int e, ConstLanes parameters) const {
+  ParticleTrajectory const particles(particle_model(model(), fitted_.solver.method), model(),
+                                     data_[static_cast<std::size_t>(e)].experiment, fitted_.solver,
+                                     fit_.particles > 0 ? fit_.particles : particles_of_prediction, session_.abandonable());
+  return particles.run(parameters, {seed_, Purpose::particle, static_cast<std::uint64_t>(e) << 32, 0}, false).predicted;
 }
 
 PointwiseLikelihood PosteriorTrajectories::pointwise(int e) const {

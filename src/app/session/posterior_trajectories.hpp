@@ -7,6 +7,7 @@
 #include "app/session/session.hpp"
 #include "diagnostics/function_ranges.hpp"
 #include "experiment/experiments.hpp"
+#include "likelihood/particle/particle_trajectory.hpp"
 #include "likelihood/pointwise.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -41,6 +42,8 @@ class PosteriorTrajectories {
   PointwiseLikelihood pointwise(int e) const;
 
  private:
+  Trajectory::Result by_particles(int e, ConstLanes parameters) const;
+
   Session& session_;
   PredictTask const& what_;
   FittedModel const& fitted_;

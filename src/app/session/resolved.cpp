@@ -67,7 +67,10 @@ std::string simulation_text(Model const& model, FitTask const& what, std::string
                      what.prediction == PredictionRule::as_written
                          ? std::string()
                          : fmt::format(", prediction = {}", prediction_name(what.prediction)),
-                     what.filter == FilterRule::automatic ? std::string() : fmt::format(", filter = {}", filter_name(what.filter)));
+                     what.filter == FilterRule::automatic
+                         ? std::string()
+                         : fmt::format(", filter = {}{}", filter_name(what.filter),
+                                       what.particles > 0 ? fmt::format(", particles = {}", what.particles) : ""));
 }
 
 }  // namespace

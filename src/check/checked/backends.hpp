@@ -11,8 +11,9 @@ namespace sysid {
 struct BackendSettings {
   std::string_view name;
   std::span<SettingRow const> settings;
-  bool optimum = false;  // its result is the largest density, no draws
-  bool prior = true;     // that density contains the prior
+  bool optimum = false;    // its result is the largest density, no draws
+  bool prior = true;       // that density contains the prior
+  bool estimates = false;  // it samples the posterior of a likelihood that is known by unbiased estimates
 };
 
 /// Those that a file's tasks may name.

@@ -118,6 +118,8 @@ struct FitTask {
   EvidenceMethod evidence = EvidenceMethod::automatic;
   std::optional<std::uint64_t> seed;
   FilterRule filter = FilterRule::automatic;  // of random states
+  std::string particles_because;              // of a filter that was not stated: why it is that of particles
+  int particles = 0;                          // 0: as many as the likelihood at the mode needs
   std::vector<double> input_errors;           // per model input the sd of its error, SI; empty: none has one
 };
 

@@ -166,10 +166,10 @@ Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optio
                           part, "not linear"));
 }
 
-Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task) {
+Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task, std::string const& help) {
   Diagnostic diagnostic =
-      error("E3314", channel, fmt::format("with random states the noise of channel `{}` must be normal: it is `{}`", name, noise),
-            "write `normal(..., sd = s)`, without bounds");
+      error("E3314", channel,
+            fmt::format("with random states this task needs normal noise: that of channel `{}` is `{}`", name, noise), help);
   diagnostic.secondary.push_back({task, "fitted here"});
   return about({name, noise}, std::move(diagnostic));
 }
@@ -185,9 +185,17 @@ Diagnostic steps_ahead_of_several(Span option) {
                "predict with each fit alone, or write `prediction = one_step` or `free_run`");
 }
 
-Diagnostic particle_filter_missing(Span option) {
-  return about({"filter", "particle"}, error("E3319", option, "particle filters are not available yet",
-                                             "write `filter = unscented`, or remove the option: the program then chooses"));
+Diagnostic likelihood_by_particles(Span place, Subject const& what, std::string const& help) {
+  Names names = what.names;
+  names.insert(names.end(), {"filter", "particle"});
+  return about(names, error("E3319", place,
+                            fmt::format("{}: particles give estimates of the likelihood, which are random", what.words), help));
+}
+
+Diagnostic particles_of_other_filter(Span option, std::string const& filter) {
+  return about({"particles", "filter"},
+               error("E3320", option, fmt::format("`particles` belongs to `filter = particle`, and the filter is `{}`", filter),
+                     "remove the option, or write `filter = particle`"));
 }
 
 Diagnostic law_of_input_error(Span law, std::string const& input, std::string const& reason) {

@@ -41,8 +41,11 @@ Diagnostic estimated_and_random_start(Span option, Span initial, std::string con
 Diagnostic filter_of_nothing(Span option, std::string const& model);
 /// part: what is not linear, if it has a place.
 Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optional<Span> const& part);
-Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task);
-Diagnostic particle_filter_missing(Span option);
+/// help: what else the fit may do.
+Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task, std::string const& help);
+/// Where a likelihood that particles estimate will not do. what: that takes none.
+Diagnostic likelihood_by_particles(Span place, Subject const& what, std::string const& help);
+Diagnostic particles_of_other_filter(Span option, std::string const& filter);
 /// `prediction = steps(10)` of a model whose states are known; of several models at once.
 Diagnostic steps_ahead_of_known(Span option, std::string const& model);
 Diagnostic steps_ahead_of_several(Span option);

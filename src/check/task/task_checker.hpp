@@ -61,10 +61,17 @@ class TaskChecker {
   // Errors of inputs, of which a regression of terms knows nothing.
   void refuse_input_errors(std::vector<ExperimentUse> const& experiments);
   void suit_kalman(FitTask const& task, Model const& model);
-  // Noise that the filter takes.
-  void suit_noise(Model const& fitted);
-  // The option, where it was stated and no model has had a use for it.
-  void report_needless_filter();
+  // Noise that filters of moments take. help: what else a fit of other noise may do.
+  void suit_noise(Model const& fitted, std::string const& help);
+  // Chooses the filter of particles where no other takes the noise, and refuses it where an estimate of the likelihood will not do.
+  void suit_particles(FitTask& task, Model const& fitted);
+  void refuse_particles(FitTask const& task, Model const& fitted);
+  // Where the option of that name was stated, else the verb.
+  Span place_of_option(std::string const& name) const;
+  // Of a prediction with a fit by particles.
+  void suit_forecast(std::vector<FitTask const*> const& fits, PredictTask const& task);
+  // The option, where it was stated and no model has had a use for it, and a number of particles of another filter.
+  void report_needless_filter(FilterRule filter);
 
   // --- task_experiments.cpp
   // One experiment of the task, without its name; nothing when a diagnostic was added.
@@ -76,6 +83,8 @@ class TaskChecker {
   FitTask fit();
   // `search = near(posterior)`, or `search = everywhere`.
   void search(ast::Option const& option, std::optional<int>& near);
+  // `particles = 1000`, or `particles = automatic`.
+  void particles(ast::Option const& option, int& count);
   // `evidence = bridge`.
   void evidence(ast::Option const& option, EvidenceMethod& method);
   // One step ahead, and no differential equations beside it.
@@ -146,6 +155,7 @@ class TaskChecker {
   std::size_t before_;
   OptionReader options_;
   std::optional<Span> filter_;  // where it was stated
+  std::optional<Span> particles_;
   bool filter_needed_ = false;  // by a model of the task
   bool unresolved_ = false;     // the task refers to something that failed its own check
 };

@@ -18,6 +18,14 @@ namespace {
 
 using Problem = InputErrorProblem;
 
+constexpr char const* normal_noise = "write `normal(..., sd = s)`";
+
+Channel const* channel_of_other_noise(Model const& model) {
+  auto const found =
+      std::find_if(model.channels.begin(), model.channels.end(), [](Channel const& each) { return !each.noise.row->gaussian; });
+  return found == model.channels.end() ? nullptr : &*found;
+}
+
 /// Why, and what to do.
 struct Refusal {
   errors::Subject reason;
@@ -54,26 +62,20 @@ Refusal refusal_of(Problem const& problem, Model const& model) {
   return {};
 }
 
-/// Without those that no back end has yet.
-std::vector<std::string> available_filters() {
-  std::vector<std::string> names = filter_names();
-  std::erase(names, filter_name(FilterRule::particle));
-  return names;
-}
-
 }  // namespace
 
 void TaskChecker::filter(ast::Option const& option, FilterRule& rule) {
   filter_ = option.span;
   std::string const given = as_word(option.value).value_or("");
   auto const found = find_filter(given);
-  filter_needed_ = !found || *found == FilterRule::particle;  // refused here: nothing more is said of it
-  if (!found) return diagnostics_.add(errors::option_choice(option.value.span, "filter", given, available_filters()));
-  if (filter_needed_) return diagnostics_.add(errors::particle_filter_missing(option.value.span));
+  filter_needed_ = !found;  // refused here: nothing more is said of it
+  if (!found) return diagnostics_.add(errors::option_choice(option.value.span, "filter", given, filter_names()));
   rule = *found;
 }
 
-void TaskChecker::report_needless_filter() {
+void TaskChecker::report_needless_filter(FilterRule filter) {
+  if (particles_ && filter != FilterRule::particle && !diagnostics_.has_errors(before_))
+    diagnostics_.add(errors::particles_of_other_filter(*particles_, std::string(filter_name(filter))));
   if (filter_ && !filter_needed_) diagnostics_.add(errors::filter_of_nothing(*filter_, tree_.subject.text));
 }
 
@@ -134,11 +136,11 @@ std::optional<Model> TaskChecker::as_fitted(FitTask const& task, Model const& mo
   return std::nullopt;
 }
 
-void TaskChecker::suit_noise(Model const& fitted) {
+void TaskChecker::suit_noise(Model const& fitted, std::string const& help) {
   for (Channel const& channel : fitted.channels)
     if (!channel.noise.row->gaussian)
       diagnostics_.add_once(
-          errors::noise_of_filter(channel.span, channel.name, std::string(channel.noise.row->name), tree_.subject.span));
+          errors::noise_of_filter(channel.span, channel.name, std::string(channel.noise.row->name), tree_.subject.span, help));
 }
 
 std::vector<double> TaskChecker::predicted_input_errors(FitTask const& fit, std::vector<ExperimentUse> const& experiments) {
@@ -147,7 +149,8 @@ std::vector<double> TaskChecker::predicted_input_errors(FitTask const& fit, std:
   predicted.experiments = experiments;
   predicted.input_errors = input_errors(experiments, model);
   if (predicted.input_errors.empty() || diagnostics_.has_errors(before_)) return {};
-  if (auto const fitted = as_fitted(predicted, model)) suit_noise(*fitted);
+  if (fit.filter == FilterRule::particle) return predicted.input_errors;
+  if (auto const fitted = as_fitted(predicted, model)) suit_noise(*fitted, normal_noise);
   return predicted.input_errors;
 }
 
@@ -167,7 +170,7 @@ void TaskChecker::suit_filter(FitTask& task, Model const& model) {
   if (!as_whole || !as_whole->filtered()) return;
   Model const& fitted = *as_whole;
   filter_needed_ = true;
-  suit_noise(fitted);
+  suit_particles(task, fitted);
   suit_kalman(task, fitted);
   if (task.start.kind != StartRule::Kind::estimated) return;
   for (State const& state : fitted.states) {
@@ -177,6 +180,62 @@ void TaskChecker::suit_filter(FitTask& task, Model const& model) {
     for (ast::Option const& option : tree_.options)
       if (key_of(option) == "start")
         return diagnostics_.add(errors::estimated_and_random_start(option.span, state.span, state.name));
+  }
+}
+
+Span TaskChecker::place_of_option(std::string const& name) const {
+  for (ast::Option const& option : tree_.options)
+    if (key_of(option) == name) return option.key ? option.span : head_span(option.value);
+  return tree_.verb.span;
+}
+
+void TaskChecker::suit_particles(FitTask& task, Model const& fitted) {
+  Channel const* const other = channel_of_other_noise(fitted);
+  BackendSettings const* const backend = row_named(backends_.fitting, task.backend);
+  bool const estimates = backend != nullptr && backend->estimates;
+  if (task.filter == FilterRule::particle) return refuse_particles(task, fitted);
+  if (other == nullptr) return;
+  bool const may_choose = task.filter == FilterRule::automatic && task.start.kind != StartRule::Kind::estimated;
+  if (estimates && may_choose) {
+    task.filter = FilterRule::particle;
+    task.particles_because =
+        fmt::format("no other filter takes the noise of `{}`, which is `{}`", other->name, other->noise.row->name);
+  } else if (tree_.verb.text == "select") {
+    suit_noise(fitted, normal_noise);
+  } else {
+    suit_noise(fitted, fmt::format("fit with `mh` and `filter = particle`, or {}", normal_noise));
+  }
+}
+
+void TaskChecker::refuse_particles(FitTask const& task, Model const& fitted) {
+  std::string const otherwise = channel_of_other_noise(fitted) == nullptr ? ", or write `filter = unscented`" : "";
+  if (tree_.verb.text == "select")
+    return diagnostics_.add_once(
+        errors::likelihood_by_particles(*filter_, {"`select` compares likelihoods of candidates", {"select"}},
+                                        "fit each candidate with `mh` and compare the results by `sysid compare`" + otherwise));
+  BackendSettings const* const backend = row_named(backends_.fitting, task.backend);
+  if (backend != nullptr && !backend->estimates)
+    diagnostics_.add(errors::likelihood_by_particles(
+        place_of_option(task.backend), {fmt::format("`{}` needs the likelihood itself", backend->name), {task.backend}},
+        "sample with `mh`" + otherwise));
+  if (task.start.kind == StartRule::Kind::estimated)
+    diagnostics_.add(errors::likelihood_by_particles(
+        place_of_option("start"), {"a start that is estimated from rows follows a likelihood", {"start"}},
+        "give the initial values a prior, `initial y ~ normal(0, sd = s)`" + otherwise));
+}
+
+void TaskChecker::suit_forecast(std::vector<FitTask const*> const& fits, PredictTask const& task) {
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (fits[k]->filter != FilterRule::particle) continue;
+    ast::Name const& name = k == 0 ? tree_.subject : tree_.others[k - 1];
+    if (fits.size() > 1)
+      return diagnostics_.add(errors::likelihood_by_particles(
+          name.span, {fmt::format("an average needs densities of samples under `{}`", name.text), {name.text}},
+          "predict with each fit by itself"));
+    if (task.start.kind == StartRule::Kind::estimated)
+      return diagnostics_.add(errors::likelihood_by_particles(
+          place_of_option("start"), {"a start that is estimated from rows follows a likelihood", {"start"}},
+          "remove the option: the rows before those that are predicted tell the states"));
   }
 }
 

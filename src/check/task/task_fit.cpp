@@ -24,6 +24,8 @@ FitTask TaskChecker::fit() {
       if (options_.fresh(option, key)) search(option, task.near);
     } else if (option.key && key == "evidence") {
       if (options_.fresh(option, key)) evidence(option, task.evidence);
+    } else if (option.key && key == "particles") {
+      if (options_.fresh(option, key)) particles(option, task.particles);
     } else if (!simulation_option(option, key, models, task) &&
                !backend_option(option, key, backends_.fitting, task.backend, task.settings)) {
       options_.unknown(option, task_option_names("fit"));
@@ -32,7 +34,7 @@ FitTask TaskChecker::fit() {
   if (model != nullptr) {
     suit(task, *model);
     suit_processes(task, *model);
-    report_needless_filter();
+    report_needless_filter(task.filter);
   }
   if (task.backend.empty() && !diagnostics_.has_errors(before_))
     diagnostics_.add(errors::backend_missing(tree_, names_of(backends_.fitting)));
@@ -50,6 +52,12 @@ void TaskChecker::search(ast::Option const& option, std::optional<int>& near) {
                                          "search = near(posterior)"));
   else
     near = fitted_task({{fit->span}, fit->name.text}, false);
+}
+
+void TaskChecker::particles(ast::Option const& option, int& count) {
+  if (as_word(option.value) == "automatic") return;
+  particles_ = option.span;
+  options_.whole(option, "particles", 16, 1e6, count);
 }
 
 void TaskChecker::evidence(ast::Option const& option, EvidenceMethod& method) {

@@ -17,7 +17,8 @@ constexpr TaskOptionRow rows[] = {
     {"prediction", "prediction = free_run", "the past samples from which a discrete-time model predicts",
      "as_written one_step free_run"},
     {"filter", "filter = unscented", "how the likelihood is computed where states are random: disturbances, random initial values",
-     "auto kalman extended unscented"},
+     "auto kalman extended unscented particle"},
+    {"particles", "particles = 1000", "particles of `filter = particle`; if not given, the fit chooses how many", "automatic"},
     {"search", "search = near(posterior)",
      "where the search for modes starts: at draws of the prior, or where an earlier fit ended", "everywhere near"},
     {"evidence", "evidence = bridge", "how the evidence of the model is computed", "auto importance bridge smc laplace none"},
@@ -47,7 +48,7 @@ using Names = std::vector<std::string_view>;
 std::map<TaskKind, Names> const& by_kind() {
   static std::map<TaskKind, Names> const all = {
       {TaskKind::simulate, {"values", "input", "noise", "samples", "rate", "step", "solver", "substeps", "seed", "file"}},
-      {TaskKind::fit, {"start", "solver", "substeps", "prediction", "filter", "search", "evidence", "seed"}},
+      {TaskKind::fit, {"start", "solver", "substeps", "prediction", "filter", "particles", "search", "evidence", "seed"}},
       {TaskKind::select, {"start", "solver", "substeps", "prediction", "filter", "seed"}},
       {TaskKind::discover, {"noise", "top", "candidates", "refit", "seed"}},
       {TaskKind::predict, {"draws", "weights", "redraw", "start", "prediction", "seed"}}};

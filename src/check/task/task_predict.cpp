@@ -126,6 +126,7 @@ PredictTask TaskChecker::predict() {
       diagnostics_.add(errors::process_task(tree_.subject.span, "predicted with parameters redrawn at each step", model.name));
     if (task.averages()) diagnostics_.add(errors::process_task(tree_.subject.span, "averaged with other fits", model.name));
   }
+  suit_forecast(fits, task);
   if (task.averages())
     average(fits, uses, task);
   else if (!fits.empty() && kind_of(file_.tasks[static_cast<std::size_t>(task.fit)]) == TaskKind::select)

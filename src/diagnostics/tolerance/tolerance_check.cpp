@@ -173,6 +173,21 @@ SolverCheck check_draws(Target const& coarse, Target const& fine, Draws const& d
   return found_again(fine, draws, modes, seed, ledger);
 }
 
+SolverCheck check_estimates(Target const& coarse, Target const& fine, Draws const& draws, Ledger& ledger) {
+  constexpr int count = 1000;
+  constexpr double likely = 1.5;  // standard errors: a margin as wide as that of computed likelihoods would see little
+  Reweighting const weighted = reweigh(coarse, fine, draws, count, ledger);
+  SolverCheck check;
+  if (weighted.failed > many_fail) return {.outcome = SolverCheck::Outcome::fails, .failed = weighted.failed};
+  for (std::size_t p = 0; p < weighted.move.size(); ++p)
+    if (weighted.move[p] - likely * weighted.error[p] > tolerable_move)
+      check.moved.push_back(named(fine, static_cast<int>(p), weighted.move[p], weighted.error[p]));
+  if (check.moved.empty()) return check;
+  check.outcome = SolverCheck::Outcome::mean_moves;
+  rank(check.moved);
+  return check;
+}
+
 SolverCheck check_modes(Target const& fine, ObjectiveKind objective_kind, std::vector<Mode> const& modes, std::uint64_t seed,
                         Ledger& ledger) {
   std::vector<Mode> const weighty = of_weight(modes);

@@ -58,6 +58,10 @@ struct SolverCheck {
   double largest() const { return moved.empty() ? most : moved.front().move; }
 };
 
+/// Of draws whose likelihood was estimated: 1000 of them are weighted again by estimates. What scatters in these has errors like
+/// any other, so that moves within them are not seen.
+SolverCheck check_estimates(Target const& coarse, Target const& fine, Draws const& draws, Ledger& ledger);
+
 /// Of posterior draws. 200 of them are weighted again, and 2000 where these leave it open whether a mean moves by more than
 /// `tolerable_move`: open is what lies within three standard errors of it. Where that stays open, or the weights of a few draws
 /// outweigh all others, `modes`, those of `coarse`, are found again on `fine`, and their moves in sds of the draws decide.
@@ -73,8 +77,8 @@ SolverCheck check_modes(Target const& fine, ObjectiveKind objective_kind, std::v
 /// declared to be a part of the model is no error: a note states what another would give.
 Findings tolerance_findings(SolverCheck const& check, SolverSettings const& solver, bool chosen);
 
-/// In words, for a fit by a filter that linearises, where `check` is of the same fit by one that does not. What moves by less than a
-/// third of an sd is left alone.
+/// In words, for a fit by a filter that linearises, where `check` is of the same fit by one that does not. What moves by less than
+/// a third of an sd is left alone.
 Findings linearisation_findings(SolverCheck const& check);
 
 /// The solver, no coarser than `solver.finer()`, with which a result that moves by `move` sds should stay: an error of order p

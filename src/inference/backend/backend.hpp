@@ -22,7 +22,8 @@ namespace sysid {
 
 /// What a back end asks of a model beyond a prior and a likelihood; a model that lacks it is refused before the first step.
 struct Needs {
-  bool proper_prior = false;  // every prior can be drawn from
+  bool proper_prior = false;      // every prior can be drawn from
+  bool exact_likelihood = false;  // unbiased estimates of it will not do
 };
 
 /// A proposal as frozen after burn-in: x' = x + scale L z, one move in ten with 0.2 scale when `adaptive`.

@@ -37,22 +37,30 @@ class ParticleRun {
         density_(weights_.size()),
         ancestors_(weights_.size()) {}
 
-  FilterOutcome run(ConstLanes parameters, ParticleNormals& normals, SeeParticles const& see) {
+  /// to: behind the last sample.
+  FilterOutcome run(ConstLanes parameters, ParticleNormals& normals, ParticleView const& view, int to) {
     start(parameters, normals);
     int const end = schedule_.last_summed();
-    for (int sample = 0; sample < end; ++sample) {
-      if (simulator_.stopped()) return {-infinity, sample};
+    for (int sample = 0; sample < to; ++sample) {
+      if (simulator_.stopped()) return failed(sample);
       if (sample > 0) particles_.step(sample - 1);
       std::span<double const> const numbers = normals.take(numbers_of_sample(model_, particles_.count()));
       set_noises(sample, numbers, true);
-      if (is_weighed(sample)) {
-        if (!weigh(sample)) return {-infinity, sample};
-        if (see) see({sample, particles_.states(), weights_});
-        if (sample + 1 < end && effective_ < fewest_effective) resample(numbers.back());
-      }
+      bool const weighed = is_weighed(sample);
+      ConstLanes const densities = weighed ? particles_.record(sample) : ConstLanes();
+      if (view.predicted) view.predicted({sample, particles_.states(), weights_, densities});
+      if (weighed && !weigh(sample, densities)) return failed(sample);
+      if (view.weighed) view.weighed({sample, particles_.states(), weights_});
+      if (weighed && sample + 1 < end && effective_ < fewest_effective) resample(numbers.back(), view);
       set_noises(sample, numbers, false);
     }
     return outcome_;
+  }
+
+  bool is_weighed(int sample) const {
+    for (int c = 0; c < simulator_.program().registers.records; ++c)
+      if (schedule_.summed(c, sample)) return true;
+    return false;
   }
 
  private:
@@ -62,10 +70,11 @@ class ParticleRun {
     particles_.start({parameters.data(), model_.first_start, 1, parameters.stride()}, own);
   }
 
-  bool is_weighed(int sample) const {
-    for (int c = 0; c < simulator_.program().registers.records; ++c)
-      if (schedule_.summed(c, sample)) return true;
-    return false;
+  FilterOutcome failed(int sample) const {
+    FilterOutcome outcome = outcome_;
+    outcome.log_likelihood = -infinity;
+    outcome.sample = sample;
+    return outcome;
   }
 
   /// Disturbances of the interval that begins with a sample: those that a channel reads there, or the others.
@@ -94,8 +103,7 @@ class ParticleRun {
   }
 
   /// Whether any particle is left.
-  bool weigh(int sample) {
-    ConstLanes const densities = particles_.record(sample);
+  bool weigh(int sample, ConstLanes densities) {
     std::fill(density_.begin(), density_.end(), 0.0);
     for (int c = 0; c < densities.rows(); ++c) {
       if (!schedule_.summed(c, sample)) continue;
@@ -116,16 +124,17 @@ class ParticleRun {
     for (double& weight : weights_) weight /= sum, squares += weight * weight;
     outcome_.log_likelihood += most + elementary::log(sum);
     effective_ = 1 / (static_cast<double>(weights_.size()) * squares);
-    outcome_.least_effective = std::min(outcome_.least_effective, effective_);
+    if (effective_ < outcome_.least_effective) outcome_.least_effective = effective_, outcome_.least_effective_at = sample;
     return true;
   }
 
   /// Rows that are drawn anew for the next interval are not taken along.
-  void resample(double normal) {
+  void resample(double normal, ParticleView const& view) {
     Lanes const states = particles_.states();
     double const uniform = 0.5 * elementary::erfc(-normal / std::numbers::sqrt2);
     ConstLanes const own(states.data(), model_.states, states.width(), states.stride());
     systematic_ancestors(weights_, order_(own), uniform, ancestors_);
+    if (view.resampled) view.resampled(ancestors_, weights_);
     particles_.select(ancestors_, 0, model_.states);
     for (ParticleNoise const& noise : model_.noises)
       if (noise.observed) particles_.select(ancestors_, noise.state, noise.state + noise.numbers());
@@ -168,7 +177,17 @@ std::vector<double> ParticleFilter::draw(ParticleNormals& normals) const {
 }
 
 FilterOutcome ParticleFilter::run(ConstLanes parameters, ParticleNormals& normals, SeeParticles const& see) const {
-  return ParticleRun(model_, simulator_, particles_).run(parameters, normals, see);
+  ParticleRun run(model_, simulator_, particles_);
+  ParticleView view;
+  if (see)
+    view.weighed = [&](WeighedParticles const& particles) {
+      if (run.is_weighed(particles.sample)) see(particles);
+    };
+  return run.run(parameters, normals, view, simulator_.schedule().last_summed());
+}
+
+FilterOutcome ParticleFilter::run(ConstLanes parameters, ParticleNormals& normals, ParticleView const& view) const {
+  return ParticleRun(model_, simulator_, particles_).run(parameters, normals, view, simulator_.schedule().samples());
 }
 
 }  // namespace sysid

@@ -13,9 +13,10 @@
 namespace sysid {
 
 struct FilterOutcome {
-  double log_likelihood = 0;   // -infinity where no particle is left
-  int sample = -1;             // where that was
-  double least_effective = 1;  // the smallest effective part of the particles, (sum w)^2/(N sum w^2), over the weighed samples
+  double log_likelihood = 0;    // -infinity where no particle is left
+  int sample = -1;              // where that was
+  double least_effective = 1;   // the smallest effective part of the particles, (sum w)^2/(N sum w^2), over the weighed samples
+  int least_effective_at = -1;  // the sample where it is
 };
 
 /// What is to be seen at each sample that is weighed, before particles are resampled: their states [S x N], the model's own first.
@@ -25,6 +26,22 @@ struct WeighedParticles {
   std::span<double const> weights;  // their sum is 1
 };
 using SeeParticles = std::function<void(WeighedParticles const&)>;
+
+/// The same at each sample before it is weighed: what the samples before it say of it.
+struct PredictedParticles {
+  int sample;
+  ConstLanes states;
+  std::span<double const> weights;
+  ConstLanes densities;  // of the channels, logarithms; means nothing where the channel is not weighed
+};
+
+/// Who looks at a run; what is not given is not called. It goes on to the end of the record, weighed or not.
+struct ParticleView {
+  std::function<void(PredictedParticles const&)> predicted;
+  SeeParticles weighed;  // at each sample, also where nothing was to be weighed
+  /// After that, where particles are chosen anew: particle w becomes what ancestors[w] was, all of equal weight. weights: before.
+  std::function<void(std::span<int const> ancestors, std::span<double const> weights)> resampled;
+};
 
 /// The bootstrap filter: particles move by the model's own dynamics from sample to sample with fresh numbers, are weighed by the
 /// density of what was measured, and are resampled where the weights W are worth less than half of them.   Gordon, Salmond, Smith
@@ -44,6 +61,8 @@ class ParticleFilter {
   std::vector<double> draw(ParticleNormals& normals) const;
   /// parameters [.. x 1]: those of the model, SI.
   FilterOutcome run(ConstLanes parameters, ParticleNormals& normals, SeeParticles const& see = nullptr) const;
+  /// The same, looked at along the whole record; takes numbers beyond `numbers()` where the record goes on behind its last sample.
+  FilterOutcome run(ConstLanes parameters, ParticleNormals& normals, ParticleView const& view) const;
 
  private:
   ParticleModel const& model_;

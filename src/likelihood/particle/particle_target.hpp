@@ -66,6 +66,7 @@ class ParticleTarget : public Target {
   int residual_count() const override { return 1; }
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override;
   bool is_expensive() const override { return true; }
+  bool is_estimated() const override { return true; }
   double roughness() const override;
   void constrain(ConstLanes theta, Lanes declared) const override { space_->constrain(theta, declared); }
   void unconstrain(ConstLanes declared, Lanes theta) const override { space_->unconstrain(declared, theta); }
