@@ -4,6 +4,7 @@
 #pragma once
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "program/moment_passage.hpp"
@@ -23,6 +24,11 @@ struct RandomStates {
   /// The state whose column of the Cholesky factor comes first, those after it next, then those before: where the covariance is
   /// nearly singular, states that determine others come before them.
   int first_column = 0;
+  /// Not the covariance P itself but U and D of P = U D U' are states, U with ones on and zeros below its diagonal, D diagonal,
+  /// where there is a step that moves them: where an extended filter or everything linear meets a linear map, an exact method, or
+  /// few states and a method with fixed steps. Nothing is subtracted from D, so that no variance becomes negative, and little is
+  /// lost where a start is hardly known and a sensor is precise.
+  bool factored = false;
 };
 
 /// A channel with normal noise: expressions of states, inputs, time and parameters.
@@ -54,6 +60,10 @@ struct Moments {
   std::vector<NodeId> covariance;
   NodeId of(int i, int j) const { return covariance[static_cast<std::size_t>(i) * means + static_cast<std::size_t>(j)]; }
   std::size_t means = 0;
+  /// Behind the means: the entries (i, j), j <= i, of the covariance that are states; where it is `factored`, D at i = j and the
+  /// entry (j, i) of U elsewhere.
+  std::vector<std::pair<int, int>> entries;
+  bool factored = false;
   std::optional<SincePastSample> since;
 };
 
@@ -69,6 +79,11 @@ struct Moments {
 ///   C' = A C,  u' = A u + G q         and of a map C <- cov(f(x), x), u <- G q
 /// where from sigma points A stands for cov(f, x) P^-1, by which also P moves; C and u lie in the range of P, which may be
 /// singular.
+///
+/// An exact method (SolverRow::exact) makes a map of all this, with exp(hA) and what noise adds over a step
+/// (solver/exact_moments.hpp). A method with fixed steps makes one of few states, whose F are the slopes of the step itself and
+/// whose V that of its answers to noise that is a straight line over the step. Factored, P <- F P F' + V comes from the rows of (F
+/// U | factor of V) by Gram and Schmidt (Thornton 1976), corrections are those of Bierman 1977, ch. V.
 ///
 /// dynamics: without channels, records, memories and constraints.
 Moments with_moments(SimulationSource dynamics, RandomStates const& random, std::span<NormalChannel const> channels,

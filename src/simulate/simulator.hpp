@@ -128,7 +128,8 @@ class Simulator {
   std::shared_ptr<SimulationProgram const> program_;
   Schedule schedule_;
   ExecutionOptions options_;
-  std::shared_ptr<ThreadPool> pool_;  // absent for one thread
+  std::shared_ptr<ThreadPool> pool_;          // absent for one thread
+  std::shared_ptr<Simulator const> settled_;  // of SimulationProgram::settled; absent where nothing settles
 };
 
 }  // namespace sysid
