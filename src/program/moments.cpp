@@ -15,8 +15,8 @@
 namespace sysid {
 namespace {
 
-/// More take twice the time of what they would be integrated in.
-constexpr int most_by_slopes = 4;
+/// More take half as long again as by their equation.
+constexpr int most_by_slopes = 3;
 
 /// What a white noise adds to each derivative, at the mean.
 struct Gain {
@@ -48,14 +48,15 @@ class MomentWriter {
     for (NodeId& derivative : source_.derivative) derivative = at_rest(derivative);
     for (NormalChannel const& channel : channels) outputs_.push_back(passage_.row(channel.mean));
     add_noise();
-    if (!source_.map && find_solver(source_.integrator)->exact)
+    bool const exact = !source_.map && find_solver(source_.integrator)->exact;
+    if (exact)
       step_exactly();
     else if (may_step_by_slopes())
       step_by_slopes(disturbed);
     if (rules_.empty())
       for (NodeId const derivative : source_.derivative) rules_.push_back(passage_.row(derivative));
-    bool const by_slopes = passage_.linearises() || (are_linear(rules_) && are_linear(outputs_));
-    factored_ = random_.factored && by_slopes && source_.map && (source_.stepped || are_linear(rules_));
+    factored_ = random_.by_slopes && source_.map && (!source_.stepped || exact) && are_linear(rules_) &&
+                (passage_.linearises() || are_linear(outputs_));
     number_covariances();
     Moments result;
     std::vector<NodeId> mean = expectations();
@@ -160,7 +161,7 @@ class MomentWriter {
   /// has negative variances.
   bool may_step_by_slopes() const {
     SolverRow const* const solver = find_solver(source_.integrator);
-    return random_.factored && !source_.map && passage_.linearises() && solver != nullptr && solver->step != nullptr &&
+    return random_.by_slopes && !source_.map && passage_.linearises() && solver != nullptr && solver->step != nullptr &&
            states_ <= most_by_slopes;
   }
 

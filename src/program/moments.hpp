@@ -24,11 +24,12 @@ struct RandomStates {
   /// The state whose column of the Cholesky factor comes first, those after it next, then those before: where the covariance is
   /// nearly singular, states that determine others come before them.
   int first_column = 0;
-  /// Not the covariance P itself but U and D of P = U D U' are states, U with ones on and zeros below its diagonal, D diagonal,
-  /// where there is a step that moves them: where an extended filter or everything linear meets a linear map, an exact method, or
-  /// few states and a method with fixed steps. Nothing is subtracted from D, so that no variance becomes negative, and little is
-  /// lost where a start is hardly known and a sensor is precise.
-  bool factored = false;
+  /// Where a step has slopes F, and V is what the noise adds, P <- F P F' + V takes the place of the equation of P: with an exact
+  /// method, and for up to three states with other fixed steps where an extended filter meets them. So a step that is too long gives
+  /// no negative variance. An exact method and a linear map move not P itself but U and D of P = U D U', U with ones on and zeros
+  /// below its diagonal, D diagonal: nothing is subtracted from D, and little is lost where a start is hardly known and a sensor is
+  /// precise.
+  bool by_slopes = false;
 };
 
 /// A channel with normal noise: expressions of states, inputs, time and parameters.

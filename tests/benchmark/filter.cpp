@@ -38,7 +38,7 @@ SimulationSource filtered(SimulationSource source, int masses) {
   RandomStates random;
   random.noises.push_back({g.constant(1e-3), false});
   random.initial_variances.resize(source.derivative.size());
-  random.factored = true;
+  random.by_slopes = true;
   source.channels.clear();
   source.records.clear();
   Moments moments = with_moments(std::move(source), random, channels, MomentRule::linearised);
