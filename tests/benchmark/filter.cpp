@@ -6,7 +6,7 @@
 
 #include "cases.hpp"
 #include "processor_time.hpp"
-#include "program/moments.hpp"
+#include "program/moments/moments.hpp"
 
 using namespace benchmark_cases;
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "program/moment_passage.hpp"
+#include "program/moments/moment_passage.hpp"
 #include "program/simulation_program.hpp"
 
 namespace sysid {
@@ -25,10 +25,10 @@ struct RandomStates {
   /// nearly singular, states that determine others come before them.
   int first_column = 0;
   /// Where a step has slopes F, and V is what the noise adds, P <- F P F' + V takes the place of the equation of P: with an exact
-  /// method, and for up to three states with other fixed steps where an extended filter meets them. So a step that is too long gives
-  /// no negative variance. An exact method and a linear map move not P itself but U and D of P = U D U', U with ones on and zeros
-  /// below its diagonal, D diagonal: nothing is subtracted from D, and little is lost where a start is hardly known and a sensor is
-  /// precise.
+  /// method, and for up to three states with other fixed steps where an extended filter meets them. So a step that is too long
+  /// gives no negative variance. An exact method and a linear map move not P itself but U and D of P = U D U', U with ones on and
+  /// zeros below its diagonal, D diagonal: nothing is subtracted from D, and little is lost where a start is hardly known and a
+  /// sensor is precise.
   bool by_slopes = false;
 };
 

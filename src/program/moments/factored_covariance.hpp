@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "expression/graph.hpp"
-#include "program/moment_passage.hpp"
+#include "program/moments/moment_passage.hpp"
 
 namespace sysid {
 

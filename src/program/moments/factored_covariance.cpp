@@ -1,5 +1,5 @@
 // Thornton's step and Bierman's correction, written out entry by entry.
-#include "program/factored_covariance.hpp"
+#include "program/moments/factored_covariance.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // The equations of the moments, written out entry by entry; what is zero whatever the parameters takes no state.
-#include "program/moments.hpp"
+#include "program/moments/moments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "core/text/diagnostic.hpp"
 #include "expression/finite_slope.hpp"
 #include "program/embedded.hpp"
-#include "program/factored_covariance.hpp"
+#include "program/moments/factored_covariance.hpp"
 #include "solver/exact_moments.hpp"
 #include "solver/solver.hpp"
 
