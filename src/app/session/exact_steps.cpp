@@ -33,4 +33,13 @@ FitTask with_exact_steps(Session& session, FitTask what) {
   return with_exact_steps(std::move(what), model, data);
 }
 
+SolverSettings solver_along(Session& session, FitTask const& fit, SolverSettings const& fitted, PredictTask const& what) {
+  Model const& model = session.file.models[static_cast<std::size_t>(fit.model)];
+  if (!fitted.row().exact || !may_step_exactly(fit, model)) return fitted;
+  auto const data = load_experiments(session, what.experiments, model, what.start, what.prediction);
+  bool const suits =
+      std::ranges::all_of(data, [&](ExperimentData const& each) { return allows_exact_steps(each.experiment, model); });
+  return suits ? fitted : SolverSettings{.method = std::string(adaptive_solver().name)};
+}
+
 }  // namespace sysid

@@ -9,4 +9,8 @@ namespace sysid {
 FitTask with_exact_steps(Session& session, FitTask what);
 FitTask with_exact_steps(FitTask what, Model const& model, std::vector<ExperimentData> const& data);
 
+/// The solver of a prediction: as the fit had it, but an exact one that the task did not state gives way to adaptive steps where
+/// the data that are predicted do not suit it. fit: with the errors that inputs have there.
+SolverSettings solver_along(Session& session, FitTask const& fit, SolverSettings const& fitted, PredictTask const& what);
+
 }  // namespace sysid
