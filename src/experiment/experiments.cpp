@@ -247,7 +247,7 @@ std::optional<CurvedInput> curved_input(Experiment const& experiment, Model cons
 }  // namespace
 
 bool allows_exact_steps(Experiment const& experiment, Model const& model) {
-  return model.integrated() && !model.implicit && model.simulated_states() <= most_exact_states &&
+  return model.integrated() && !model.implicit && std::ssize(model.states) <= most_exact_states &&
          !find_nonlinear(model.graph, derivatives_of(model)) && unequal_step(experiment.time) == 0 &&
          !curved_input(experiment, model);
 }

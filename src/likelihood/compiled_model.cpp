@@ -104,14 +104,16 @@ void compile_programs(CompiledModel& compiled) {
   compiled.trajectory = finish(folded, std::move(trajectory));
 }
 
-/// Behind the means come the covariances that there are.
+/// Behind the means come the covariances that there are, or their factors.
 ProgramNames filtered_names(CompiledModel const& compiled, ProgramNames names) {
   Folded folded(compiled.model);
   ModelSource const source = source_of(folded, compiled);
-  for (std::size_t i = 0; i < source.moments->means; ++i)
-    for (std::size_t j = 0; j <= i; ++j)
-      if (!folded.graph.is_constant(source.moments->of(static_cast<int>(i), static_cast<int>(j)), 0))
-        names.states.push_back(fmt::format("cov({}, {})", names.states[i], names.states[j]));
+  for (auto const& [i, j] : source.moments->entries) {
+    auto const &a = names.states[static_cast<std::size_t>(i)], &b = names.states[static_cast<std::size_t>(j)];
+    names.states.push_back(!source.moments->factored ? fmt::format("cov({}, {})", a, b)
+                           : i == j                  ? fmt::format("D({})", a)
+                                                     : fmt::format("U({}, {})", b, a));
+  }
   for (Channel const& channel : compiled.model.channels) names.channels.push_back(channel.name);
   return names;
 }

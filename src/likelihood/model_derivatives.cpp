@@ -60,6 +60,11 @@ DerivativeSource ModelTarget::derivatives() const {
   return compiled_->gradient_by.empty() ? DerivativeSource::differences : DerivativeSource::mixed;
 }
 
+bool ModelTarget::climbs_by_gradient() const {
+  return compiled_->differentiated.empty() &&
+         std::ranges::all_of(parts_, [](Part const& part) { return part.likelihood.settles(); });
+}
+
 double ModelTarget::derivative_cost() const {
   double const each = derivatives() == DerivativeSource::exact ? 1 : 2;
   double lanes = 0, samples = 0;

@@ -90,6 +90,7 @@ void filter(Folded& folded, CompiledModel const& compiled, bool since, ModelSour
   for (Disturbance const& each : model.disturbances) random.noises.push_back({folded(each.intensity), each.held});
   for (State const& state : model.states)
     random.initial_variances.push_back(state.initial_variance ? std::optional(folded(*state.initial_variance)) : std::nullopt);
+  random.by_slopes = true;
   std::vector<NormalChannel> channels;
   for (Distribution& noise : source.noise) noise = normal_approximation(graph, noise);
   for (Distribution const& noise : source.noise)

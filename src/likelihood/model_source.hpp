@@ -5,7 +5,7 @@
 
 #include "likelihood/compiled_model.hpp"
 #include "model/model.hpp"
-#include "program/moments.hpp"
+#include "program/moments/moments.hpp"
 #include "program/simulation_program.hpp"
 
 namespace sysid {

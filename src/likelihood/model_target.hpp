@@ -50,6 +50,7 @@ class ModelTarget : public Target {
   // with a gradient is that of another program, and equal to rounding. An experiment is simulated for the coordinates that it
   // reads; by others its derivatives are 0.
   DerivativeSource derivatives() const override;
+  bool climbs_by_gradient() const override;
   double derivative_cost() const override;
   void log_likelihood_gradient(ConstLanes theta, std::span<double> out, Lanes gradient, Ledger& ledger) const override;
   void residuals_with_jacobian(ConstLanes theta, Lanes out, Lanes jacobian, Ledger& ledger) const override;

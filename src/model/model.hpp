@@ -126,11 +126,6 @@ struct Model {
       if (each.initial_variance) return true;
     return false;
   }
-  /// Of its simulations: with random states, the covariances that there may be besides.
-  int simulated_states() const {
-    int const n = static_cast<int>(states.size());
-    return filtered() ? n + n * (n + 1) / 2 : n;
-  }
   /// The first parameter whose prior cannot be drawn from; null where all can.
   Parameter const* improper() const {
     for (Parameter const& each : parameters)

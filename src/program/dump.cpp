@@ -48,8 +48,8 @@ class Dump {
     text_ = fmt::format(
         "# {}; registers: {} parameters, {} hoisted, {} states, {} accumulators, {} records, {} sums, {} temporaries\n"
         "# a step and its observations touch {} of them; _ is the accumulator\n",
-        program_.source.map ? "map from sample to sample" : "integrator " + program_.source.integrator, layout.parameters,
-        layout.hoisted, layout.states, layout.accumulators, layout.records, layout.sums, layout.temporaries,
+        program_.source.map && !program_.source.stepped ? "map from sample to sample" : "integrator " + program_.source.integrator,
+        layout.parameters, layout.hoisted, layout.states, layout.accumulators, layout.records, layout.sums, layout.temporaries,
         program_.hot_registers);
     section("prologue: once per parameter vector", program_.prologue, "");
     section("start: initial states", program_.start, "");

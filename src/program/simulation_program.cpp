@@ -12,6 +12,7 @@
 #include "program/embedded.hpp"
 #include "program/emit.hpp"
 #include "program/registers.hpp"
+#include "program/settled.hpp"
 #include "solver/solver.hpp"
 
 namespace sysid {
@@ -359,6 +360,13 @@ int SimulationProgram::sum_count() const { return registers.sums; }
 
 int SimulationProgram::sum_row(int channel, int k) const { return first_sums[static_cast<std::size_t>(channel)] + k; }
 
-SimulationProgram compile(SimulationSource source) { return Compilation(std::move(source)).compile(); }
+SimulationProgram compile(SimulationSource source) {
+  std::optional<SettledSource> settled = settled_source(source);
+  SimulationProgram program = Compilation(std::move(source)).compile();
+  if (settled)
+    program.settled = std::make_shared<SettledProgram const>(
+        SettledProgram{Compilation(std::move(settled->source)).compile(), std::move(settled->moving), std::move(settled->fixed)});
+  return program;
+}
 
 }  // namespace sysid

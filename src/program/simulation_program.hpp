@@ -31,6 +31,14 @@ struct ChannelSource {
 /// where that is summed, else NaN), or after all.
 constexpr int before_channels = -1, after_channels = 1 << 20;
 
+/// A state that a filter moves towards a limit, whatever the samples are: entry (row, column) of a covariance whose entries follow
+/// one another in the states; or, factored, of its factors (Moments::entries).
+struct SettlingState {
+  int state = 0;
+  int row = 0, column = 0;
+  bool factored = false;
+};
+
 struct SimulationSource {
   Graph graph;
   int parameters = 0;  // parameter leaves 0 ... parameters - 1
@@ -40,6 +48,7 @@ struct SimulationSource {
   std::vector<NodeId> derivative;  // one per differential state: expressions of state, input, input_rate, parameter, time
   /// The derivatives are no derivatives but the states at the next sample, which read data at this one: no integrator.
   bool map = false;
+  bool stepped = false;  // a map that reads data of the interval to the next sample, as a step does
   /// The last differential states remember: each takes the value of its expression at every sample, before the step from it; their
   /// derivatives are zero.
   std::vector<NodeId> memories;
@@ -50,6 +59,8 @@ struct SimulationSource {
   std::string integrator = "rk4";  // a solver's name
   /// Parameters by which an adjoint gives the derivative of all sums together (program/adjoint.hpp); empty: there is none.
   std::vector<int> adjoint_by;
+  /// Those that make up a covariance, where samples correct it alike; empty: there is nothing that settles.
+  std::vector<SettlingState> settling;
 
   int states() const { return static_cast<int>(derivative.size() + constraints.size()); }
   /// Whether samples change the states.
@@ -110,6 +121,8 @@ struct ReverseSections {
   std::vector<Direct> direct;  // rows of the sums that are derivatives by parameters where states do not move: to be added
 };
 
+struct SettledProgram;  // program/settled.hpp
+
 struct SimulationProgram {
   SimulationSource source;
 
@@ -132,6 +145,9 @@ struct SimulationProgram {
   std::vector<int> first_sums;                          // per channel: the row of its first
 
   std::shared_ptr<native::MachineCode> machine_code = std::make_shared<native::MachineCode>();  // of its loops, as they are wanted
+
+  /// What goes on once its covariance has settled; null: nothing does.
+  std::shared_ptr<SettledProgram const> settled;
 
   // The step as expressions, before algebra: where a failed solve is looked into.
   Graph graph;                      // source.graph, grown

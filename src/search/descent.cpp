@@ -154,7 +154,7 @@ Climber climber_at(Eigen::VectorXd theta, double log_density) { return {std::mov
 
 void climb(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
            std::function<bool()> const& stop, Journal* journal) {
-  if (objective.target.is_expensive()) return climb_by_gradient(objective, climbers, rounds, ledger, stop, journal);
+  if (objective.target.climbs_by_gradient()) return climb_by_gradient(objective, climbers, rounds, ledger, stop, journal);
   std::size_t const width = per_block(objective, objective.target.derivative_cost());
   if (stop && stop()) return;
   ClimbingStep kept(journal, "climb", climbers, ledger);

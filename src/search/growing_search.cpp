@@ -298,7 +298,7 @@ class GrowingSearch {
 }  // namespace
 
 bool worth_growing(Target const& target, ShorterRecords const& records) {
-  if (!records.make || target.is_expensive() || target.dimension() == 0) return false;
+  if (!records.make || target.climbs_by_gradient() || target.dimension() == 0) return false;
   double const numbers = static_cast<double>(target.residual_count()) * target.dimension();
   return numbers >= long_jacobian && first_share(target, records) <= longest_first_part;
 }

@@ -155,7 +155,7 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
     mode.hits = climber.hits;
     mode.stalled = climber.stalled;
     // Widths say little where the density is flat up to a bound.
-    bool const bounded = objective.objective_kind != ObjectiveKind::posterior && !objective.target.is_expensive();
+    bool const bounded = objective.objective_kind != ObjectiveKind::posterior && !objective.target.climbs_by_gradient();
     auto const same = std::find_if(modes.begin(), modes.end(), [&](Mode const& other) {
       return distance(mode, other) < same_mode ||
              (bounded && kept_answer(journal, stop, [&] { return connected(objective, mode, other); }));

@@ -28,8 +28,8 @@ std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std:
   if (points.empty()) return {};
   std::vector<double> const density = log_density_in_blocks(objective, to_lanes(points), ledger, stop, journal);
   for (std::size_t m = 0; m < modes.size(); ++m) climbers.push_back(climber_at(points[m], density[m]));
-  climb(objective, climbers, target.is_expensive() || objective_kind == ObjectiveKind::posterior ? evaluations : rounds, ledger,
-        stop, journal);
+  climb(objective, climbers, target.climbs_by_gradient() || objective_kind == ObjectiveKind::posterior ? evaluations : rounds,
+        ledger, stop, journal);
   settle(objective, climbers, settling_rounds, ledger, stop, journal);
   std::vector<Mode> result;
   for (std::size_t m = 0; m < modes.size(); ++m) {

@@ -162,7 +162,7 @@ void restore_settlers(ClimbingStep const& kept, std::vector<Settler>& settlers) 
 
 void settle(Objective const& objective, std::vector<Climber>& climbers, int rounds, Ledger& ledger,
             std::function<bool()> const& stop, Journal* journal) {
-  if (objective.target.is_expensive() || (stop && stop())) return;
+  if (objective.target.climbs_by_gradient() || (stop && stop())) return;
   ClimbingStep kept(journal, "settle", climbers, ledger);
   if (kept.over()) return;
   Box const box(objective);

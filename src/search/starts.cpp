@@ -48,7 +48,9 @@ class Pulled {
 
 }  // namespace
 
-Breadth const& breadth_of(Target const& target) { return target.is_expensive() ? narrow : has_coefficients(target) ? few : broad; }
+Breadth const& breadth_of(Target const& target) {
+  return target.climbs_by_gradient() ? narrow : has_coefficients(target) ? few : broad;
+}
 
 bool has_coefficients(Target const& target) {
   return std::any_of(target.parameters().begin(), target.parameters().end(),
@@ -57,7 +59,7 @@ bool has_coefficients(Target const& target) {
 
 std::uint64_t simulations_per_round(Target const& target) {
   constexpr std::uint64_t trials = 4;
-  return target.is_expensive() ? 1 : 2 * static_cast<std::uint64_t>(target.dimension()) + 1 + trials;
+  return target.climbs_by_gradient() ? 1 : 2 * static_cast<std::uint64_t>(target.dimension()) + 1 + trials;
 }
 
 LaneArray draw_prior(Target const& target, StreamKey key, int count) {

@@ -154,9 +154,10 @@ void Block::correct_recorded(int sample) {
   run(*program_.record_after.linked, executor_, file_.file);
 }
 
-void Block::finish() {
-  std::vector<double> const& row = schedule_.epilogue_row();
-  file_.load_row(row.data(), static_cast<int>(row.size()));
+void Block::finish() { finish(schedule_.epilogue_row()); }
+
+void Block::finish(std::span<double const> counts) {
+  file_.load_row(counts.data(), static_cast<int>(counts.size()));
   run(*program_.epilogue.linked, executor_, file_.file);
 }
 
@@ -171,6 +172,16 @@ void Block::load(ConstLanes registers) {
 void Block::store(Lanes registers) const {
   for (int r = 0; r < registers.rows(); ++r)
     std::copy_n(file_.registers + r * executor_.stride(), lanes_, registers.row(r).begin());
+}
+
+void Block::enter(int lane, std::span<double const> states) {
+  double* row = file_.registers + program_.registers.first_state() * executor_.stride() + lane;
+  for (double const state : states) {
+    *row = state;
+    row += executor_.stride();
+  }
+  row = file_.registers + program_.registers.first_accumulator() * executor_.stride() + lane;
+  for (int r = 0; r < program_.registers.accumulators; ++r, row += executor_.stride()) *row = 0;
 }
 
 // Most blocks have nothing to bury, most of the time; this takes a few vector instructions.

@@ -3,6 +3,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/numeric/lanes.hpp"
@@ -38,8 +39,10 @@ class Block {
   void step_to(int from, int to);
   /// What a sample that is neither recorded nor summed does to the states, where samples correct them.
   void pass(int sample);
-  /// Computes the sums from the accumulators; read them with `sums`.
+  /// Computes the sums from the accumulators; read them with `sums`. The states stay as they are.
   void finish();
+  /// The same where so many samples of each channel have been summed so far; of programs without sums of data alone.
+  void finish(std::span<double const> counts);
 
   // With a program that has an adjoint, and the loop `tape`:
   /// As `advance`, and the states before each step go to `tape`: substeps x states x executor.width for each sample, and one more
@@ -61,6 +64,8 @@ class Block {
   /// Goes on from these states [states x lanes], which may be anybody's at that sample: a solver that remembers earlier steps
   /// begins anew.
   void take_states(ConstLanes states);
+  /// The same of one lane, by a method with fixed steps; its accumulators become empty.
+  void enter(int lane, std::span<double const> states);
 
   /// Whether many samples are one call of machine code.
   bool runs_loops() const { return (observe_loop_ != nullptr || record_loop_ != nullptr) && fixed_step(); }

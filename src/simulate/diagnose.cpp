@@ -110,8 +110,9 @@ class Solve {
       return Diagnosis{node, schedule_.at_step({LeafKind::time, 0, stage}, sample, substep), sample};
     };
     if (program_.source.map) {
-      auto const node =
-          first_not_finite(graph, program_.source.derivative, [&](NodeId id) { return leaf(graph[id], sample, -1, states_); });
+      auto const node = first_not_finite(graph, program_.source.derivative, [&](NodeId id) {
+        return leaf(graph[id], sample, program_.source.stepped ? substep : -1, states_);
+      });
       return at(Stage::begin, node.value_or(program_.source.derivative[failed]));
     }
     for (StageVisit const& visit : program_.visited) {

@@ -29,7 +29,7 @@ bool suits_exact_steps(Experiment const& experiment) {
 }  // namespace
 
 Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver)
-    : experiment_(experiment), solver_(solver), map_(program.source.map) {
+    : experiment_(experiment), solver_(solver), map_(program.source.map && !program.source.stepped) {
   std::size_t const channels = program.source.channels.size();
   if (solver.substeps < 1 || (map_ && solver.substeps > 1) || solver.method != program.source.integrator ||
       static_cast<int>(experiment.inputs.size()) < program.source.inputs ||
@@ -82,6 +82,21 @@ bool Schedule::summed(int channel, int sample) const {
 }
 
 int Schedule::count(int channel) const { return counts_[static_cast<std::size_t>(channel)]; }
+
+std::vector<double> Schedule::counts(int from, int to) const {
+  std::vector<double> result;
+  for (std::vector<std::uint8_t> const& each : summed_)
+    result.push_back(static_cast<double>(std::count(each.begin() + from, each.begin() + to, std::uint8_t{1})));
+  return result;
+}
+
+int Schedule::without_gaps() const {
+  int first = last_summed_;
+  while (first > 0 &&
+         std::ranges::all_of(summed_, [&](auto const& each) { return each[static_cast<std::size_t>(first - 1)] == 1; }))
+    --first;
+  return first;
+}
 
 bool Schedule::jumps(int sample) const {
   if (sample == 0) return true;

@@ -34,6 +34,10 @@ class Schedule {
   std::uint8_t const* summed(int channel) const { return summed_[static_cast<std::size_t>(channel)].data(); }
   /// The number of summed samples of a channel.
   int count(int channel) const;
+  /// Of those in [from, to), of all channels.
+  std::vector<double> counts(int from, int to) const;
+  /// The first sample from which on all channels are summed up to the last one that is.
+  int without_gaps() const;
   /// One past the last sample that is summed in any channel.
   int last_summed() const { return last_summed_; }
 

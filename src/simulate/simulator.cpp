@@ -12,6 +12,7 @@
 #include "simulate/block.hpp"
 #include "simulate/looks.hpp"
 #include "simulate/machine_loop.hpp"
+#include "simulate/settling.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
@@ -52,7 +53,8 @@ Simulator::Simulator(std::shared_ptr<SimulationProgram const> program, Schedule 
     : program_(std::move(program)),
       schedule_(std::move(schedule)),
       options_(options),
-      pool_(pool ? std::move(pool) : make_pool(options)) {}
+      pool_(pool ? std::move(pool) : make_pool(options)),
+      settled_(settled_simulator(*program_, schedule_, options_)) {}
 
 int Simulator::threads() const { return pool_ ? pool_->threads() : 1; }
 
@@ -131,6 +133,12 @@ Work Simulator::constant_sums_work(ConstLanes parameters, Lanes out, std::span<O
 }
 
 Work Simulator::sums_to(int end, ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
+  if (settled_ && end > 0)
+    return blocks(parameters.width(), end, native::LoopKind::observe, [=, this](Block& block, int lane, int lanes) {
+      SettlingLanes(*this, *settled_, block, out.columns(lane, lanes),
+                    outcome.subspan(static_cast<std::size_t>(lane), static_cast<std::size_t>(lanes)))
+          .run(parameters.columns(lane, lanes));
+    });
   return blocks(parameters.width(), end, native::LoopKind::observe, [=, this](Block& block, int lane, int lanes) {
     block.set_parameters(parameters.columns(lane, lanes));
     block.start();

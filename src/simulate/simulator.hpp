@@ -74,6 +74,8 @@ class Simulator {
   Schedule const& schedule() const { return schedule_; }
   ExecutionOptions const& options() const { return options_; }
   int threads() const;
+  /// Whether sums may be those of a covariance that settles, at a fraction of the cost of records.
+  bool settles() const { return settled_ != nullptr; }
   /// As the options say; what has no result then is not looked into either.
   bool stopped() const { return options_.stopped != nullptr && options_.stopped(); }
   /// For Work::given_up.
@@ -133,7 +135,8 @@ class Simulator {
   std::shared_ptr<SimulationProgram const> program_;
   Schedule schedule_;
   ExecutionOptions options_;
-  std::shared_ptr<ThreadPool> pool_;  // absent for one thread
+  std::shared_ptr<ThreadPool> pool_;          // absent for one thread
+  std::shared_ptr<Simulator const> settled_;  // of SimulationProgram::settled; absent where nothing settles
 };
 
 }  // namespace sysid

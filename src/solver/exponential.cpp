@@ -5,12 +5,18 @@
 // 2003, method 3), with X in place of exp(hA), which would round the slow part of a step to that of 1:
 //   X(2z) = 2 X + X^2,   phi_1(2z) = phi_1 + X phi_1/2,   phi_2(2z) = (2 phi_2 + phi_1 + X phi_2)/4
 // The matrices read parameters and the sampling step alone, so that they are computed once per parameter vector.
+//
+// White noise of intensity Q adds the covariance V = integral of exp(sA) Q exp(sA)' over the step, which comes in the same way:
+//   V(2z) = V + (1 + X) V (1 + X)'
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "core/text/diagnostic.hpp"
+#include "solver/exact_moments.hpp"
 #include "solver/linear_structure.hpp"
+#include "solver/matrix_expressions.hpp"
 #include "solver/stages.hpp"
 
 namespace sysid {
@@ -23,79 +29,26 @@ constexpr int degree = 15;  // of the series of phi_2; what it leaves out is bel
 constexpr double most_scaled = 0.5;
 constexpr int power_of_check = 8;
 
-/// Entries that are zero are a constant zero, which is what products skip.
-class Matrix {
- public:
-  Matrix(int rows, int columns, NodeId zero)
-      : rows_(rows), columns_(columns), entries_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), zero) {}
-  int rows() const { return rows_; }
-  int columns() const { return columns_; }
-  NodeId& operator()(int i, int j) { return entries_[static_cast<std::size_t>(i * columns_ + j)]; }
-  NodeId operator()(int i, int j) const { return entries_[static_cast<std::size_t>(i * columns_ + j)]; }
-
- private:
-  int rows_, columns_;
-  std::vector<NodeId> entries_;
-};
-
-class Matrices {
- public:
-  explicit Matrices(Graph& graph) : graph_(graph), zero_(graph.constant(0)) {}
-
-  Matrix zeros(int rows, int columns) const { return {rows, columns, zero_}; }
-  bool is_zero(NodeId entry) const { return graph_.is_constant(entry, 0); }
-
-  /// to + a b
-  Matrix add_product(Matrix to, Matrix const& a, Matrix const& b) {
-    for (int i = 0; i < a.rows(); ++i)
-      for (int k = 0; k < a.columns(); ++k)
-        for (int j = 0; j < b.columns() && !is_zero(a(i, k)); ++j) add_product(to(i, j), a(i, k), b(k, j));
-    return to;
-  }
-  Matrix product(Matrix const& a, Matrix const& b) { return add_product(zeros(a.rows(), b.columns()), a, b); }
-
-  /// to + factor a
-  Matrix add_scaled(Matrix to, NodeId factor, Matrix const& a) {
-    for (int i = 0; i < a.rows(); ++i)
-      for (int j = 0; j < a.columns(); ++j) add_product(to(i, j), factor, a(i, j));
-    return to;
-  }
-  Matrix add_scaled(Matrix to, double factor, Matrix const& a) { return add_scaled(std::move(to), graph_.constant(factor), a); }
-  Matrix scaled(double factor, Matrix const& a) { return add_scaled(zeros(a.rows(), a.columns()), factor, a); }
-  Matrix scaled(NodeId factor, Matrix const& a) { return add_scaled(zeros(a.rows(), a.columns()), factor, a); }
-
-  Matrix add_to_diagonal(Matrix a, double value) {
-    for (int i = 0; i < a.rows(); ++i) a(i, i) = graph_.add(a(i, i), graph_.constant(value));
-    return a;
-  }
-
-  static Matrix columns_of(Matrix const& a, std::vector<int> const& columns, NodeId zero) {
-    Matrix result(a.rows(), static_cast<int>(columns.size()), zero);
-    for (int i = 0; i < a.rows(); ++i)
-      for (int j = 0; j < result.columns(); ++j) result(i, j) = a(i, columns[static_cast<std::size_t>(j)]);
-    return result;
-  }
-
- private:
-  void add_product(NodeId& to, NodeId a, NodeId b) {
-    if (is_zero(a) || is_zero(b)) return;
-    to = is_zero(to) ? graph_.multiply(a, b) : graph_.fused(a, b, to);
-  }
-
-  Graph& graph_;
-  NodeId zero_;
-};
+// Of the series of V, which has twice the matrix in place of the matrix: fewer terms, from a smaller matrix.
+constexpr int doublings_of_noise = 24;
+constexpr int degree_of_noise = 7;
+constexpr double most_scaled_of_noise = 1.0 / 64;
 
 /// exp(hA) - 1, and columns of phi_1(hA) and phi_2(hA).
 struct Exponential {
   Matrix x, phi_1, phi_2;
+  // Where there is noise: all columns of phi_1; the lower triangle of V.
+  Matrix whole_phi_1, noise;
 };
 
 class Writer {
  public:
-  explicit Writer(Stages const& stages)
+  /// noisy: with room for the covariance of a noise.
+  explicit Writer(Stages const& stages, bool noisy = false)
       : graph_(stages.graph),
         matrices_(graph_),
+        doublings_(noisy ? doublings_of_noise : doublings),
+        most_scaled_(noisy ? most_scaled_of_noise : most_scaled),
         states_(stages.states),
         h_(graph_.leaf(LeafKind::equal_step)),
         zero_(graph_.constant(0)) {
@@ -108,8 +61,25 @@ class Writer {
         forced_.push_back(i);
   }
 
-  std::vector<NodeId> next(std::span<NodeId const> derivative) {
-    Exponential const exact = exponential(jacobian(derivative));
+  std::vector<NodeId> next(std::span<NodeId const> derivative) { return next(exponential(jacobian(derivative), false)); }
+
+  ExactMoments moments(std::span<NodeId const> derivative, std::span<NodeId const> intensity) {
+    Matrix const a = jacobian(derivative);
+    noise_ = intensity;
+    Exponential const exact = exponential(a, true);
+    ExactMoments result;
+    for (int i = 0; i < size(); ++i)
+      for (int j = 0; j < size(); ++j) {
+        result.transition.push_back(i == j ? graph_.add(exact.x(i, j), graph_.constant(1)) : exact.x(i, j));
+        result.integral.push_back(graph_.multiply(h_, exact.whole_phi_1(i, j)));
+        result.added.push_back(exact.noise(std::max(i, j), std::min(i, j)));
+      }
+    result.states = next(exact);
+    return result;
+  }
+
+ private:
+  std::vector<NodeId> next(Exponential const& exact) {
     std::vector<NodeId> result;
     for (int i = 0; i < size(); ++i) {
       NodeId sum = states_[static_cast<std::size_t>(i)];
@@ -120,7 +90,6 @@ class Writer {
     return result;
   }
 
- private:
   int size() const { return static_cast<int>(states_.size()); }
 
   Matrix jacobian(std::span<NodeId const> derivative) {
@@ -140,8 +109,9 @@ class Writer {
     return graph_.add(graph_.multiply(early, begin_[state]), graph_.multiply(late, end_[state]));
   }
 
-  Exponential exponential(Matrix const& a) {
-    Matrix const z = matrices_.scaled(graph_.multiply(h_, graph_.constant(std::ldexp(1.0, -doublings))), a);
+  Exponential exponential(Matrix const& a, bool noisy) {
+    NodeId const least = graph_.multiply(h_, graph_.constant(std::ldexp(1.0, -doublings_)));
+    Matrix const z = matrices_.scaled(least, a);
     Matrix const z2 = matrices_.product(z, z), z3 = matrices_.product(z2, z), z4 = matrices_.product(z2, z2);
     // sum z^k/(k + 2)!, four terms at a time (Paterson & Stockmeyer 1973).
     Matrix phi_2 = matrices_.zeros(size(), size());
@@ -152,15 +122,51 @@ class Writer {
     }
     Matrix phi_1 = matrices_.add_to_diagonal(matrices_.product(z, phi_2), 1);
     Matrix x = matrices_.product(z, phi_1);
+    Matrix whole = noisy ? phi_1 : matrices_.zeros(0, 0), noise = noisy ? least_noise(z, least) : matrices_.zeros(0, 0);
     phi_1 = Matrices::columns_of(phi_1, forced_, zero_);
     phi_2 = Matrices::columns_of(phi_2, forced_, zero_);
-    for (int i = 0; i < doublings; ++i) {
+    for (int i = 0; i < doublings_; ++i) {
       phi_2 =
           matrices_.add_product(matrices_.add_scaled(matrices_.scaled(0.5, phi_2), 0.25, phi_1), matrices_.scaled(0.25, x), phi_2);
       phi_1 = matrices_.add_product(phi_1, matrices_.scaled(0.5, x), phi_1);
+      if (noisy) {
+        whole = matrices_.add_product(whole, matrices_.scaled(0.5, x), whole);
+        noise = doubled(noise, x);
+      }
       x = matrices_.add_product(matrices_.scaled(2.0, x), x, x);
     }
-    return {failing_beyond_reach(std::move(x), matrices_.product(z4, z4), a), std::move(phi_1), std::move(phi_2)};
+    return {failing_beyond_reach(std::move(x), matrices_.product(z4, z4), a), std::move(phi_1), std::move(phi_2), std::move(whole),
+            std::move(noise)};
+  }
+
+  /// V of the smallest step: step * sum L^k(Q)/(k + 1)!, L(Q) = Z Q + Q Z'. Whole.
+  Matrix least_noise(Matrix const& z, NodeId step) {
+    Matrix power = matrices_.zeros(size(), size());
+    for (int i = 0; i < size(); ++i)
+      for (int j = 0; j < size(); ++j) power(i, j) = noise_[static_cast<std::size_t>(i * size() + j)];
+    Matrix sum = power;
+    double factorial = 1;
+    for (int k = 1; k <= degree_of_noise; ++k) {
+      Matrix const half = matrices_.product(z, power);
+      for (int i = 0; i < size(); ++i)
+        for (int j = 0; j <= i; ++j) power(i, j) = power(j, i) = graph_.add(half(i, j), half(j, i));
+      factorial *= k + 1;
+      sum = matrices_.add_scaled(std::move(sum), 1 / factorial, power);
+    }
+    return matrices_.scaled(step, sum);
+  }
+
+  /// V + (1 + X) V (1 + X)'
+  Matrix doubled(Matrix const& v, Matrix const& x) {
+    Matrix const moved = matrices_.add_product(v, x, v);  // (1 + X) V
+    Matrix result = v;
+    for (int i = 0; i < size(); ++i)
+      for (int j = 0; j <= i; ++j) {
+        NodeId entry = graph_.add(v(i, j), moved(i, j));
+        for (int k = 0; k < size(); ++k) matrices_.add_product(entry, moved(i, k), x(j, k));
+        result(i, j) = result(j, i) = entry;
+      }
+    return result;
   }
 
   static double coefficient(int k) { return 1 / std::tgamma(k + 3.0); }
@@ -180,7 +186,7 @@ class Writer {
     }
     NodeId largest = zero_;
     for (NodeId const norm : norms) largest = largest == zero_ ? norm : graph_.binary(Operation::maximum, largest, norm);
-    NodeId const within = graph_.binary(Operation::less_equal, largest, graph_.constant(std::pow(most_scaled, power_of_check)));
+    NodeId const within = graph_.binary(Operation::less_equal, largest, graph_.constant(std::pow(most_scaled_, power_of_check)));
     NodeId const nothing = graph_.select(within, zero_, graph_.constant(std::numeric_limits<double>::quiet_NaN()));
     for (int i = 0; i < size(); ++i)
       for (int j = 0; j < size(); ++j)
@@ -202,14 +208,21 @@ class Writer {
 
   Graph& graph_;
   Matrices matrices_;
+  int doublings_;
+  double most_scaled_;
   std::vector<NodeId> states_;
   NodeId h_, zero_;
   std::vector<NodeId> begin_, end_;  // the derivative at rest, at the ends of the step: b
   std::vector<int> forced_;          // where that is not zero
+  std::span<NodeId const> noise_;    // Q [n x n]
 };
 
 }  // namespace
 
 std::vector<NodeId> exponential_step(Stages const& stages) { return Writer(stages).next(stages.derivative); }
+
+ExactMoments exact_moments(Stages const& stages, std::span<NodeId const> intensity) {
+  return Writer(stages, true).moments(stages.derivative, intensity);
+}
 
 }  // namespace sysid

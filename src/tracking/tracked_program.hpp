@@ -9,7 +9,7 @@
 
 #include "model/model.hpp"
 #include "program/kernel.hpp"
-#include "program/moments.hpp"
+#include "program/moments/moments.hpp"
 #include "program/simulation_program.hpp"
 
 namespace sysid {

@@ -6,7 +6,7 @@
 
 #include "cases.hpp"
 #include "processor_time.hpp"
-#include "program/moments.hpp"
+#include "program/moments/moments.hpp"
 
 using namespace benchmark_cases;
 
@@ -38,6 +38,7 @@ SimulationSource filtered(SimulationSource source, int masses) {
   RandomStates random;
   random.noises.push_back({g.constant(1e-3), false});
   random.initial_variances.resize(source.derivative.size());
+  random.by_slopes = true;
   source.channels.clear();
   source.records.clear();
   Moments moments = with_moments(std::move(source), random, channels, MomentRule::linearised);

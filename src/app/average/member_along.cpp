@@ -108,10 +108,9 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
   Trajectory const trajectory = member.trajectory(e);
   LaneArray const parameters = member.parameters(e);
   Trajectory::Result result = member.run(e, trajectory, parameters, true);
-  add(check_ranges(member.model(), out.experiment, member.fitted().solver, member.start_rows(), parameters, session.abandonable()),
-      out);
+  add(check_ranges(member.model(), out.experiment, member.solver(), member.start_rows(), parameters, session.abandonable()), out);
   if (!member.model().expansions.empty())
-    add(check_reach(member.model(), member.fitted_runs(), {out.experiment, member.start_rows(), parameters}, member.fitted().solver,
+    add(check_reach(member.model(), member.fitted_runs(), {out.experiment, member.start_rows(), parameters}, member.solver(),
                     session.abandonable()),
         out);
   add(drift_findings(session.source, member.model(), result, out.experiment.name), out);

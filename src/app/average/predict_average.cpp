@@ -98,7 +98,7 @@ class PredictAverage {
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)},
                        {"weights", std::string(word(what_.weights))},
                        {"start", start_text(what_.start)}};
-    if (model.integrated()) add_solver(members_[lead_]->fitted().solver, report.settings);
+    if (model.integrated()) add_solver(members_[lead_]->solver(), report.settings);
     if (std::string const predicted = predicted_text(model, what_.prediction); !predicted.empty())
       report.settings.emplace_back("prediction", two_kinds() ? "of each model" : predicted);
     add_average_tables(*report.average, weighed_.notes, report.tables);

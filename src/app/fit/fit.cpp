@@ -12,6 +12,7 @@
 #include "app/fit/fit_criteria.hpp"
 #include "app/fit/fit_preparation.hpp"
 #include "app/fit/hierarchies.hpp"
+#include "app/session/exact_steps.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
@@ -388,11 +389,13 @@ class Fit {
 
 std::optional<UnkeptFit> fit_unkept(Session& session, int index, Task const& task, FitTask const& what, std::uint64_t seed,
                                     std::vector<double> const& at, BackendRow const* backend) {
-  return Fit(session, index, task, what, TaskCheckpoint(session, task, Unkept{seed}), backend).run_unkept(at);
+  FitTask const suited = with_exact_steps(session, what);
+  return Fit(session, index, task, suited, TaskCheckpoint(session, task, Unkept{seed}), backend).run_unkept(at);
 }
 
 ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what) {
-  return Fit(session, index, task, what).run();
+  FitTask const suited = with_exact_steps(session, what);
+  return Fit(session, index, task, suited).run();
 }
 
 }  // namespace sysid

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "app/session/exact_steps.hpp"
 #include "app/session/stored_draws.hpp"
 #include "diagnostics/bands.hpp"
 
@@ -34,11 +35,12 @@ PosteriorTrajectories::PosteriorTrajectories(Session& session, PredictTask const
       what_(what),
       fitted_(fitted_model(session, what.fit)),
       fit_(fit_of(session, what)),
+      solver_(solver_along(session, fit_, fitted_.solver, what)),
       free_start_(what.start.kind == StartRule::Kind::estimated),
-      compiled_(session.compiled(fit_, free_start_, fitted_.solver.method, what.prediction)),
+      compiled_(session.compiled(fit_, free_start_, solver_.method, what.prediction)),
       space_(parameter_space(compiled_->model, fit_.experiments)),
       data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(fit_.model)], what.start,
-                             what.prediction, fitted_.solver)),
+                             what.prediction, solver_)),
       seed_(seed),
       wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {
   if (model().filtered())
@@ -89,7 +91,7 @@ LaneArray PosteriorTrajectories::parameters(int e) const {
 Trajectory PosteriorTrajectories::trajectory(int e) const {
   return {compiled_,
           data_[static_cast<std::size_t>(e)].experiment,
-          fitted_.solver,
+          solver_,
           start_rows(),
           session_.abandonable(),
           [this](NodeId node, Graph const& graph) { return session_.describe(fit_.model, graph, node); }};
@@ -110,7 +112,7 @@ Trajectory::Result PosteriorTrajectories::by_particles(int e, ConstLanes paramet
 }
 
 PointwiseLikelihood PosteriorTrajectories::pointwise(int e) const {
-  return {compiled_, data_[static_cast<std::size_t>(e)].experiment, fitted_.solver, start_rows(), session_.abandonable()};
+  return {compiled_, data_[static_cast<std::size_t>(e)].experiment, solver_, start_rows(), session_.abandonable()};
 }
 
 }  // namespace sysid

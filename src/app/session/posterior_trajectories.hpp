@@ -23,6 +23,7 @@ class PosteriorTrajectories {
   PosteriorTrajectories(Session& session, PredictTask const& what, std::uint64_t seed);
 
   FittedModel const& fitted() const { return fitted_; }
+  SolverSettings const& solver() const { return solver_; }
   Model const& model() const { return compiled_->model; }
   std::vector<ExperimentData> const& data() const { return data_; }
   /// Trajectories per experiment.
@@ -48,6 +49,7 @@ class PosteriorTrajectories {
   PredictTask const& what_;
   FittedModel const& fitted_;
   FitTask fit_;
+  SolverSettings solver_;
   bool free_start_;
   std::shared_ptr<CompiledModel const> compiled_;
   std::shared_ptr<ParameterSpace const> space_;

@@ -66,7 +66,7 @@ class Predict {
     report.settings = {{"draws", static_cast<std::int64_t>(trajectories_.wanted())},
                        {"redraw", std::string(what_.redraw_each_step ? "step" : "trajectory")},
                        {"start", start_text(what_.start)}};
-    if (model_.integrated()) add_solver(trajectories_.fitted().solver, report.settings);
+    if (model_.integrated()) add_solver(trajectories_.solver(), report.settings);
     if (!predicted_.empty()) report.settings.emplace_back("prediction", predicted_);
     bool const missed = add_coverage(report, model_.dynamics == Dynamics::discrete && !model_.states.empty());
     report.verdict = prediction_verdict(report, missed);
@@ -93,11 +93,11 @@ class Predict {
     stop_if_interrupted();
     report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model_));
     for (Finding& finding :
-         check_ranges(model_, experiment, trajectories_.fitted().solver, trajectories_.start_rows(), draws, session_.abandonable()))
+         check_ranges(model_, experiment, trajectories_.solver(), trajectories_.start_rows(), draws, session_.abandonable()))
       report.findings.push_back(std::move(finding));
     if (!model_.expansions.empty())
       for (Finding& finding : check_reach(model_, trajectories_.fitted_runs(), {experiment, trajectories_.start_rows(), draws},
-                                          trajectories_.fitted().solver, session_.abandonable()))
+                                          trajectories_.solver(), session_.abandonable()))
         report.findings.push_back(std::move(finding));
     // Parameters that change from step to step have no force of their own.
     if (!what_.redraw_each_step) add_restoring_forces(model_, trajectory.quantities(), result, draws, experiment, report.forces);

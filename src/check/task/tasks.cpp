@@ -69,9 +69,8 @@ void TaskChecker::suit_exact(SolverSettings const& solver, Model const& model) {
   else if (found)
     diagnostics_.add(errors::solver_of_linear_equations(option, solver.method, place_of(model.graph, found->node),
                                                         found->why == NotLinear::Why::varies));
-  else if (model.simulated_states() > most_exact_states)
-    diagnostics_.add(errors::solver_of_few_states(option, solver.method, model.name,
-                                                  static_cast<std::size_t>(model.simulated_states()), most_exact_states));
+  else if (std::ssize(model.states) > most_exact_states)
+    diagnostics_.add(errors::solver_of_few_states(option, solver.method, model.name, model.states.size(), most_exact_states));
 }
 
 void TaskChecker::suit(SolverSettings& solver, Model const& model) {

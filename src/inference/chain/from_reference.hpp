@@ -43,6 +43,7 @@ class FromReference : public Target {
   int residual_count() const override { return target_.residual_count(); }
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override { target_.residuals(theta, out, ledger); }
   bool is_expensive() const override { return target_.is_expensive(); }
+  bool climbs_by_gradient() const override { return target_.climbs_by_gradient(); }
   double roughness() const override { return target_.roughness(); }
   void constrain(ConstLanes theta, Lanes declared) const override { target_.constrain(theta, declared); }
   void unconstrain(ConstLanes declared, Lanes theta) const override { target_.unconstrain(declared, theta); }

@@ -49,6 +49,7 @@ class ProperPriors : public Target {
     target_.gauss_newton(theta, steps, gradient, curvature, ledger);
   }
   bool is_expensive() const override { return target_.is_expensive(); }
+  bool climbs_by_gradient() const override { return target_.climbs_by_gradient(); }
   DerivativeSource derivatives() const override { return target_.derivatives(); }
   double derivative_cost() const override { return target_.derivative_cost(); }
   double roughness() const override { return target_.roughness(); }

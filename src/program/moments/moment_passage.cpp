@@ -1,5 +1,5 @@
 // The Cholesky factor, the points and what they give, written out entry by entry.
-#include "program/moment_passage.hpp"
+#include "program/moments/moment_passage.hpp"
 
 #include <cmath>
 

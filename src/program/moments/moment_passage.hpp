@@ -44,11 +44,12 @@ struct MomentRow {
 /// factor, which at the stages of an integrator, near a known start, it need not.
 class MomentPassage {
  public:
-  /// means: leaves. covariance: leaves, or a constant zero where there is none; complete before anything passes. Both outlive it.
-  /// first_column: the state whose column of L comes first, those after it next, then those before.
+  /// means: leaves. covariance: expressions, or a constant zero where there is none; complete before anything passes. Both outlive
+  /// it. first_column: the state whose column of L comes first, those after it next, then those before.
   MomentPassage(Graph& graph, std::vector<NodeId> const& means, Symmetric const& covariance, MomentRule rule, int first_column);
 
   MomentRow row(NodeId value) const;
+  bool linearises() const { return rule_ == MomentRule::linearised; }
   NodeId expectation(MomentRow const& row);
   /// cov(x_j, row)
   NodeId with_state(MomentRow const& row, int j);

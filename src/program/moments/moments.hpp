@@ -4,9 +4,10 @@
 #pragma once
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "program/moment_passage.hpp"
+#include "program/moments/moment_passage.hpp"
 #include "program/simulation_program.hpp"
 
 namespace sysid {
@@ -23,6 +24,12 @@ struct RandomStates {
   /// The state whose column of the Cholesky factor comes first, those after it next, then those before: where the covariance is
   /// nearly singular, states that determine others come before them.
   int first_column = 0;
+  /// Where a step has slopes F, and V is what the noise adds, P <- F P F' + V takes the place of the equation of P: with an exact
+  /// method, and for up to three states with other fixed steps where an extended filter meets them. So a step that is too long
+  /// gives no negative variance. An exact method and a linear map move not P itself but U and D of P = U D U', U with ones on and
+  /// zeros below its diagonal, D diagonal: nothing is subtracted from D, and little is lost where a start is hardly known and a
+  /// sensor is precise.
+  bool by_slopes = false;
 };
 
 /// A channel with normal noise: expressions of states, inputs, time and parameters.
@@ -54,6 +61,10 @@ struct Moments {
   std::vector<NodeId> covariance;
   NodeId of(int i, int j) const { return covariance[static_cast<std::size_t>(i) * means + static_cast<std::size_t>(j)]; }
   std::size_t means = 0;
+  /// Behind the means: the entries (i, j), j <= i, of the covariance that are states; where it is `factored`, D at i = j and the
+  /// entry (j, i) of U elsewhere.
+  std::vector<std::pair<int, int>> entries;
+  bool factored = false;
   std::optional<SincePastSample> since;
 };
 
@@ -69,6 +80,11 @@ struct Moments {
 ///   C' = A C,  u' = A u + G q         and of a map C <- cov(f(x), x), u <- G q
 /// where from sigma points A stands for cov(f, x) P^-1, by which also P moves; C and u lie in the range of P, which may be
 /// singular.
+///
+/// An exact method (SolverRow::exact) makes a map of all this, with exp(hA) and what noise adds over a step
+/// (solver/exact_moments.hpp). A method with fixed steps makes one of few states, whose F are the slopes of the step itself and
+/// whose V that of its answers to noise that is a straight line over the step. Factored, P <- F P F' + V comes from the rows of (F
+/// U | factor of V) by Gram and Schmidt (Thornton 1976), corrections are those of Bierman 1977, ch. V.
 ///
 /// dynamics: without channels, records, memories and constraints.
 Moments with_moments(SimulationSource dynamics, RandomStates const& random, std::span<NormalChannel const> channels,
