@@ -48,10 +48,10 @@ class Target {
   /// Whether one value costs so much that a search begins at few places and climbs by the gradient (Gaussian processes), instead of
   /// by Levenberg-Marquardt from many.
   virtual bool is_expensive() const { return false; }
+  /// As `is_expensive`, for searches alone: also where residuals cost far more than the density (filters whose covariance settles).
+  virtual bool climbs_by_gradient() const { return is_expensive(); }
   /// Whether the log likelihood is that of an estimate, which varies from place to place for no reason but its random numbers.
   virtual bool is_estimated() const { return false; }
-  /// The same for searches alone: also where residuals cost far more than the density (filters whose covariance settles).
-  virtual bool climbs_by_gradient() const { return is_expensive(); }
   /// Where `log_likelihood_gradient` and `gauss_newton` take derivatives from. Differences cost 2 P + 1 values and are known to
   /// about half the digits.
   virtual DerivativeSource derivatives() const { return DerivativeSource::differences; }

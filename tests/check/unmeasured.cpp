@@ -178,7 +178,7 @@ TEST_CASE("particles are for back ends that sample with estimates, and chosen fo
   for (std::string const backend : {"nuts", "tempering", "map", "ml"})
     CHECK(refused(with_tasks(white, "f = fit m to exact with " + backend + ", filter = particle"), "E3319"));
   CHECK(refused(with_tasks(white, "f = fit m to exact with mh, filter = particle, start = estimated(rows = 5)"), "E3319"));
-  CHECK(refused(with_tasks(white, "f = fit m to exact with mh, particles = 100"), "E3320"));
+  CHECK(refused(with_tasks(white, "f = fit m to exact with mh, particles = 100"), "E3321"));
   CHECK(refused(with_tasks(white, "f = fit m to exact with mh, filter = particle, particles = 3"), "E6005"));
   CheckedFile const chosen = checked(of_heavy_tails("f = fit m to exact with mh"));
   auto const& fit = std::get<FitTask>(chosen.tasks.back().what);

@@ -46,10 +46,10 @@ std::string preference(Comparison const& comparison) {
 std::string sizes(OrderedJson const& with, std::vector<DisturbedEquation> const& equations) {
   std::string text;
   OrderedJson const parameters = with.value("parameters", OrderedJson::object());
-  // An optimum has no quantities derived from its parameters.
+  // An optimum has no sds of quantities derived from its parameters.
   auto const derived = [&](DisturbedEquation const& each) {
     for (auto const& [name, entry] : parameters.items())
-      if (name == each.name + "_rms" || name.ends_with("." + each.name + "_rms")) return true;
+      if ((name == each.name + "_rms" || name.ends_with("." + each.name + "_rms")) && estimate(with, name)) return true;
     return false;
   };
   for (auto const& [name, entry] : parameters.items())

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -14,6 +13,7 @@
 #include "diagnostics/bands.hpp"
 #include "diagnostics/scores.hpp"
 #include "inference/backend/backend.hpp"
+#include "linear_algebra/decompositions.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 
@@ -62,7 +62,7 @@ double upper_quartile(std::vector<double> values) {
 
 /// Draws of the normal distribution at a mode.
 LaneArray around(Mode const& mode, StreamKey key) {
-  Eigen::MatrixXd const factor = Eigen::LLT<Eigen::MatrixXd>(covariance_of(mode)).matrixL();
+  Eigen::MatrixXd const factor = cholesky_or_diagonal(covariance_of(mode));
   LaneArray theta(static_cast<int>(mode.theta.size()), looked_at);
   for (int w = 0; w < looked_at; ++w) {
     Stream stream(key.with_step(static_cast<std::uint64_t>(w)));

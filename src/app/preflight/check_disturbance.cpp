@@ -284,8 +284,9 @@ class SizesApart {
 
 void describe_disturbances(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& draws) {
   Model const& model = preflight.model();
-  if (model.disturbances.empty() || draws.empty() || preflight.effort.examined == 0 || model.simulated_states() > many_moments)
-    return;
+  auto const states = static_cast<int>(model.states.size());
+  int const moments = states + states * (states + 1) / 2;
+  if (model.disturbances.empty() || draws.empty() || preflight.effort.examined == 0 || moments > many_moments) return;
   SizesApart(preflight, prior, draws).describe();
 }
 

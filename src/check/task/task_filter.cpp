@@ -76,7 +76,7 @@ void TaskChecker::filter(ast::Option const& option, FilterRule& rule) {
 void TaskChecker::report_needless_filter(FilterRule filter) {
   if (particles_ && filter != FilterRule::particle && !diagnostics_.has_errors(before_))
     diagnostics_.add(errors::particles_of_other_filter(*particles_, std::string(filter_name(filter))));
-  if (filter_ && !filter_needed_) diagnostics_.add(errors::filter_of_nothing(*filter_, tree_.subject.text));
+  if (filter_ && !filter_needed_ && !diagnostics_.has_errors(before_)) diagnostics_.add(errors::filter_of_nothing(*filter_, tree_.subject.text));
 }
 
 std::vector<double> TaskChecker::input_errors(std::vector<ExperimentUse> const& experiments, Model const& model) {

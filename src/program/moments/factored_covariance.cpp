@@ -4,6 +4,12 @@
 #include <algorithm>
 
 namespace sysid {
+namespace {
+
+/// A variance below this, of a state that decays without noise, is none: one over it, and more so the derivative, would overflow.
+constexpr double no_variance = 1e-140;
+
+}  // namespace
 
 NodeId FactoredCovariance::inverse(NodeId pivot, NodeId least) const {
   NodeId const positive = graph_.binary(Operation::less, least, pivot), one = graph_.constant(1);
@@ -65,7 +71,7 @@ FactoredCovariance FactoredCovariance::moved(std::vector<NodeId> const& transiti
     }
     result.entries_(static_cast<int>(i), static_cast<int>(i)) = sum;
     if (is_zero(sum)) continue;
-    NodeId const inverse = result.inverse(sum, zero_);
+    NodeId const inverse = result.inverse(sum, graph_.constant(no_variance));
     for (std::size_t j = 0; j < i; ++j) {
       NodeId with = zero_;
       for (std::size_t k = 0; k < columns; ++k)

@@ -126,7 +126,6 @@ TEST_CASE("each equation of motion gets a disturbance of its own, and nothing el
   REQUIRE(first_order.equations.size() == 2);
   CHECK(first_order.equations[0].name == "unmeasured_v");
   CHECK(first_order.equations[1].name == "unmeasured_g");
-  CHECK(can_be_loaded(first_order.changed({"m/s", 1, 0.1})));
 }
 
 TEST_CASE("a vector equation gets a vector, a part its own, and a model in discrete time noise from sample to sample") {

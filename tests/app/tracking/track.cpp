@@ -191,7 +191,7 @@ TEST_CASE("what cannot be tracked is refused, with the reason") {
   Beam const beam(oscillator + "best = fit oscillator to beam.train with map, seed = 1, solver = rk4\n");
   TrackOptions options = beam.options();
   options.parameters = {"sigma"};
-  CHECK(beam.refusal(options) == "`sigma` is no parameter that can be tracked");
+  CHECK(beam.refusal(options) == "`sigma` cannot be tracked");
   options.parameters.clear();
   options.data = "bench";
   CHECK(beam.refusal(options) == "the fit has no data `bench`");

@@ -20,7 +20,7 @@ using Rates = std::function<Pair(Pair const&)>;
 
 /// 150 samples of two states, Runge and Kutta's steps of a hundredth of a sample; noise in proportion to each value, or of this
 /// part of a channel's sd; written with so many digits.
-struct Record {
+struct Trial {
   Rates rates;
   Pair start;
   double length;
@@ -85,7 +85,7 @@ Pair competing(Pair const& s) {
 TEST_CASE("a record that is exact to its digits gives exactly its terms, and none of the size of the last digit") {
   for (int const digits : {7, 15}) {
     CAPTURE(digits);
-    Record const record{.rates = hunting, .start = {4, 1.5}, .length = 12, .digits = digits};
+    Trial const record{.rates = hunting, .start = {4, 1.5}, .length = 12, .digits = digits};
     CHECK(record.found(narrow).at("terms") == "x': x, x*y; y': y, x*y");
     CHECK(record.found(wide).at("terms") == "x': x, x*y; y': y, x*y");
   }
@@ -94,12 +94,12 @@ TEST_CASE("a record that is exact to its digits gives exactly its terms, and non
 TEST_CASE("noise that grows with the signal is named, and the terms are found with it") {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     CAPTURE(seed);
-    Record const record{.rates = hunting, .start = {4, 1.5}, .length = 12, .proportional = 0.05, .seed = seed};
+    Trial const record{.rates = hunting, .start = {4, 1.5}, .length = 12, .proportional = 0.05, .seed = seed};
     json const first = record.found(narrow);
     CHECK(first.at("terms") == "x': x, x*y; y': y, x*y");
     for (json const& channel : first.at("channels")) CHECK(channel.at("noise_grows_beyond").is_number());
   }
-  Record const record{.rates = hunting, .start = {4, 1.5}, .length = 12, .constant = 0.05};
+  Trial const record{.rates = hunting, .start = {4, 1.5}, .length = 12, .constant = 0.05};
   json const first = record.found(narrow);
   CHECK(first.at("terms") == "x': x, x*y; y': y, x*y");
   for (json const& channel : first.at("channels")) CHECK(channel.at("noise_grows_beyond").is_null());
@@ -109,7 +109,7 @@ TEST_CASE("terms that the regression exchanges for others are found by simulatio
   // By the regression x' = sin(x), y^2 and the like: four swaps from the truth.
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     CAPTURE(seed);
-    Record const record{.rates = competing, .start = {0.5, 0.4}, .length = 12, .proportional = 0.01, .seed = seed};
+    Trial const record{.rates = competing, .start = {0.5, 0.4}, .length = 12, .proportional = 0.01, .seed = seed};
     CHECK(record.found(narrow).at("terms") == "x': x, x^2, x*y; y': y, x*y, y^2");
   }
 }
