@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -19,7 +20,11 @@ struct Judged : Discovered {
 
   json const& judged() const { return summary.at("discovery").at("judged"); }
   json const& first() const { return judged().at("structures").at(0); }
-  bool found(std::string const& code) const { return result.out.find("[" + code + "]") != std::string::npos; }
+  /// Among all findings: the terminal shows five.
+  bool found(std::string const& code) const {
+    json const& all = summary.at("findings");
+    return std::any_of(all.begin(), all.end(), [&](json const& each) { return each.at("code") == code; });
+  }
 };
 
 }  // namespace

@@ -193,7 +193,7 @@ Diagnostic likelihood_by_particles(Span place, Subject const& what, std::string 
 }
 
 Diagnostic particles_of_other_filter(Span option, std::string const& filter) {
-  return about({"particles", "filter"},
+  return about({"particles", "filter", filter},
                error("E3321", option, fmt::format("`particles` belongs to `filter = particle`, and the filter is `{}`", filter),
                      "remove the option, or write `filter = particle`"));
 }

@@ -197,7 +197,7 @@ TEST_CASE("what cannot be tracked is refused, with the reason") {
   CHECK(beam.refusal(options) == "the fit has no data `bench`");
   options.data.clear();
   options.result = beam.folder.path() / "results/best";
-  CHECK(beam.refusal(options).find("holds an optimum") != std::string::npos);
+  CHECK(beam.refusal(options).find("contains an optimum") != std::string::npos);
   options = beam.options();
   options.first_row = 2000;
   CHECK(beam.refusal(options).find("1500") != std::string::npos);
