@@ -106,7 +106,8 @@ class Finder {
     if (!enough(columns)) return std::move(found_);
     for (FoundTerm& term : found_.terms) term.excluded = true;
     for (int const term : usable_) found_.terms[static_cast<std::size_t>(term)].excluded = false;
-    report(columns, choose(columns));
+    std::optional<Choice> const choice = choose(columns);
+    if (choice) report(columns, *choice);
     return std::move(found_);
   }
 
@@ -138,7 +139,8 @@ class Finder {
     return false;
   }
 
-  Choice choose(Columns const& columns) {
+  /// Nothing, with a concern, where the moving average that is asked for leaves too few rows.
+  std::optional<Choice> choose(Columns const& columns) {
     auto const count = static_cast<Eigen::Index>(equation_.terms.size());
     SelectorContext const context{method_.seed, static_cast<std::uint64_t>(index_), method_.interrupted};
     auto const select = [&] {
@@ -171,7 +173,8 @@ class Finder {
   ///
   /// which counts that the k terms were chosen; no more orders are tried once two have been worse than the best.
   template <class Select, class Fitted>
-  Choice choose_with(NoiseOfEquation const& noise, Columns const& columns, Select const& select, Fitted const& fitted) {
+  std::optional<Choice> choose_with(NoiseOfEquation const& noise, Columns const& columns, Select const& select,
+                                    Fitted const& fitted) {
     auto const count = static_cast<Eigen::Index>(equation_.terms.size());
     auto const usable = static_cast<double>(usable_.size());
     Eigen::VectorXd const all_terms = fitted(columns);
@@ -222,8 +225,16 @@ class Finder {
       if (!exact) errors_ = left.errors;
       runs_ = left.runs;
     }
+    if (!best) {
+      Concern concern{.kind = Concern::Kind::too_few_rows, .value = static_cast<double>(found_.rows)};
+      concern.clause =
+          fmt::format("{} samples are too few for a moving average of order {}: ten for each of its coefficients are needed",
+                      found_.rows, noise.orders().front());
+      found_.concerns.push_back(std::move(concern));
+      return std::nullopt;
+    }
     whitened_ = std::move(best_whitened);
-    return std::move(*best);
+    return best;
   }
 
   /// Choices and whitenings in turns until a support repeats.

@@ -145,6 +145,21 @@ TEST_CASE("forward selection finds them as well") {
   for (double const average : {0.0, 0.6}) check_records({.equation = 0.05, .average = average}, "forward");
 }
 
+TEST_CASE("a moving average that is too long for the record is refused") {
+  TemporaryFolder folder;
+  write_file(folder.path() / "made.csv", record(1, 200, {.equation = 0.05}));
+  RunOptions options;
+  options.output = folder.path() / "results";
+  auto const run =
+      run_text(folder.path() / "made.sysid",
+               "dictionary narmax {\n time discrete\n input u\n state y = position\n target = y\n terms = lags(y, 1..2), u\n}\n"
+               "data bench { file \"made.csv\"; step 0.1 [s]; input u = u; measure position = y }\n"
+               "found = discover narmax from bench with spike_slab(moving_average = 50), seed = 1\n",
+               options);
+  CHECK(run.exit != 0);
+  CHECK(run.out.find("too_few_rows") != std::string::npos);
+}
+
 TEST_CASE("noise that is white by order leaves coloured noise to be seen, and biases") {
   Found const found(record(1, 1000, {.equation = 0.2, .average = 0.9}), "spike_slab(moving_average = 0)");
   CHECK(found.out.find("residual_correlated") != std::string::npos);
