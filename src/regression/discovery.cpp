@@ -11,6 +11,7 @@
 #include "core/numeric/elementary.hpp"
 #include "regression/choice/triangle.hpp"
 #include "regression/column/dependence.hpp"
+#include "regression/error_concerns.hpp"
 #include "regression/input_rules.hpp"
 #include "regression/propagated_noise.hpp"
 
@@ -22,8 +23,6 @@ constexpr int most_choices = 5;
 /// Steps for coefficients and moving average together, for each choice of terms: until none moves by this part of its sd.
 constexpr int most_whitenings = 50;
 constexpr double settled_step = 0.02;
-/// Rows that follow one another, below which a moving average of the noise is hardly seen, nor that it is missing.
-constexpr Eigen::Index shortest_runs = 10;
 /// Residual of all terms, of the target: rounding.
 constexpr double exact_below = 1e-10;
 /// Residual against noise from which on something is missing in the dictionary, and the least share that makes it worth a word.
@@ -298,7 +297,10 @@ class Finder {
     for (Concern& near : near_dependence(equation_, whitened_, found_.chosen.terms))
       if (std::any_of(near.terms.begin(), near.terms.end(), [&](int j) { return !is_settled(j); }))
         found_.concerns.push_back(std::move(near));
-    if (projection_.noise_of_equation() != nullptr) check_errors();
+    if (NoiseOfEquation const* noise = projection_.noise_of_equation()) {
+      Concerns const of_errors = error_concerns(*noise, index_, errors_, runs_, !found_.chosen.terms.empty());
+      found_.concerns.insert(found_.concerns.end(), of_errors.begin(), of_errors.end());
+    }
     if (projection_.residual_size() == ResidualSize::one) {
       Columns const by_channels = found_.own_noise > 0 ? projection_.whitened(index_, weights_, 0) : whitened_;
       Eigen::VectorXd against_noise = by_channels.known;
@@ -331,49 +333,6 @@ class Finder {
         "missing{}",
         found_.noise_ratio, found_.own_noise > 0 ? ", or a recorded input is itself noisy" : "");
     found_.concerns.push_back(std::move(concern));
-  }
-
-  // Errors of a difference equation: independent of each other, and of the inputs before them.
-  void check_errors() {
-    if (errors_.size() == 0) return;
-    if (errors_.size() < shortest_runs * runs_) {
-      Concern concern{.kind = Concern::Kind::short_runs, .value = static_cast<double>(errors_.size()) / runs_};
-      concern.clause = fmt::format(
-          "missing samples leave {:.1f} rows in sequence on average: correlation of the noise is hardly seen", concern.value);
-      found_.concerns.push_back(std::move(concern));
-    }
-    Eigen::Index const rows = errors_.size(), most = std::min(lags, rows / 4);
-    double portmanteau = 0;
-    double const squares = errors_.squaredNorm();
-    for (Eigen::Index lag = 1; lag <= most; ++lag) {
-      double const r = errors_.head(rows - lag).dot(errors_.tail(rows - lag)) / squares;
-      portmanteau += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
-    }
-    // Once in a million: Wilson and Hilferty 1931.
-    double const part = 2 / (9.0 * static_cast<double>(std::max<Eigen::Index>(most, 1))), root = 1 - part + 4.753 * std::sqrt(part);
-    double const limit = static_cast<double>(most) * root * root * root;
-    if (most >= 3 && portmanteau > limit) {
-      Concern concern{.kind = Concern::Kind::not_white, .value = portmanteau};
-      concern.clause =
-          fmt::format("the residual is not white: its chi-squared over {} lags is {:.0f}, that of white noise below {:.0f}", most,
-                      portmanteau, limit);
-      found_.concerns.push_back(std::move(concern));
-    }
-    if (auto const trace = projection_.noise_of_equation()->input_in(index_, errors_)) {
-      Concern concern{.kind = Concern::Kind::input_left, .input = trace->input, .value = trace->correlation};
-      concern.clause =
-          fmt::format("the residual is correlated with {} (correlation {:.2f})",
-                      fmt::format("{} {}", trace->square ? "its square" : "its sample",
-                                  trace->lag == 0 ? "in the same row"
-                                                  : fmt::format("{} {} before", trace->lag, trace->lag == 1 ? "row" : "rows")),
-                      trace->correlation);
-      found_.concerns.push_back(std::move(concern));
-    }
-    if (found_.chosen.terms.empty()) {
-      Concern concern{.kind = Concern::Kind::explains_nothing};
-      concern.clause = "no term of the dictionary explains the target";
-      found_.concerns.push_back(std::move(concern));
-    }
   }
 
   // Independent rows are what sds and probabilities count on.

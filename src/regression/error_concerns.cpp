@@ -1,0 +1,62 @@
+// A portmanteau test with as many lags as the rows allow, the inputs, and whether gaps leave anything to be seen.
+#include "regression/error_concerns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sysid::regression {
+namespace {
+
+constexpr Eigen::Index most_lags = 20;
+/// Rows that follow one another, below which a moving average of the noise is hardly seen, nor that it is missing.
+constexpr Eigen::Index shortest_runs = 10;
+
+}  // namespace
+
+Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::VectorXd const& errors, int runs, bool any_term) {
+  Concerns concerns;
+  if (errors.size() == 0) return concerns;
+  if (errors.size() < shortest_runs * runs) {
+    Concern concern{.kind = Concern::Kind::short_runs, .value = static_cast<double>(errors.size()) / runs};
+    concern.clause = fmt::format(
+        "missing samples leave {:.1f} rows in sequence on average: correlation of the noise is hardly seen", concern.value);
+    concerns.push_back(std::move(concern));
+  }
+  Eigen::Index const rows = errors.size(), most = std::min(most_lags, rows / 4);
+  double portmanteau = 0;
+  double const squares = errors.squaredNorm();
+  for (Eigen::Index lag = 1; lag <= most; ++lag) {
+    double const r = errors.head(rows - lag).dot(errors.tail(rows - lag)) / squares;
+    portmanteau += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
+  }
+  // Once in a million: Wilson and Hilferty 1931.
+  double const part = 2 / (9.0 * static_cast<double>(std::max<Eigen::Index>(most, 1))), root = 1 - part + 4.753 * std::sqrt(part);
+  double const limit = static_cast<double>(most) * root * root * root;
+  if (most >= 3 && portmanteau > limit) {
+    Concern concern{.kind = Concern::Kind::not_white, .value = portmanteau};
+    concern.clause =
+        fmt::format("the residual is not white: its chi-squared over {} lags is {:.0f}, that of white noise below {:.0f}", most,
+                    portmanteau, limit);
+    concerns.push_back(std::move(concern));
+  }
+  if (auto const trace = noise.input_in(equation, errors)) {
+    Concern concern{.kind = Concern::Kind::input_left, .input = trace->input, .value = trace->correlation};
+    concern.clause =
+        fmt::format("the residual is correlated with {} (correlation {:.2f})",
+                    fmt::format("{} {}", trace->square ? "its square" : "its sample",
+                                trace->lag == 0 ? "in the same row"
+                                                : fmt::format("{} {} before", trace->lag, trace->lag == 1 ? "row" : "rows")),
+                    trace->correlation);
+    concerns.push_back(std::move(concern));
+  }
+  if (!any_term) {
+    Concern concern{.kind = Concern::Kind::explains_nothing};
+    concern.clause = "no term of the dictionary explains the target";
+    concerns.push_back(std::move(concern));
+  }
+  return concerns;
+}
+
+}  // namespace sysid::regression
