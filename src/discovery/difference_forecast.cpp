@@ -72,6 +72,14 @@ class DifferenceRun {
     return std::nullopt;
   }
 
+  /// Channels of a free run that began at row `begin`.
+  FreeMotion shown(int experiment, int begin, Samples const& free) const {
+    FreeMotion out{experiment, 0, begin, {}};
+    for (regression::Channel const& channel : dictionary_.channels)
+      out.channels.push_back(free[static_cast<std::size_t>(channel.state)]);
+    return out;
+  }
+
   /// From row `begin` on by its own samples, with the errors that `one_step` had before it: where noise is a moving average they
   /// tell where the motion is behind the noise of its samples. Errors to come are 0, or drawn where there is a stream.
   Samples free_run(int begin, Stream* stream) const {
@@ -163,10 +171,12 @@ double sd_of(std::vector<double> const& values) {
 
 }  // namespace
 
-std::vector<DifferenceErrors> difference_errors(regression::Dictionary const& dictionary, regression::Discovery const& discovery,
-                                                std::span<Experiment const> experiments, std::uint64_t seed) {
+DifferenceForecasts difference_forecasts(regression::Dictionary const& dictionary, regression::Discovery const& discovery,
+                                         std::span<Experiment const> experiments, std::uint64_t seed) {
   std::size_t const count = dictionary.equations.size();
-  std::vector<DifferenceErrors> out(count);
+  DifferenceForecasts forecasts;
+  std::vector<DifferenceErrors>& out = forecasts.errors;
+  out.resize(count);
   std::vector<std::vector<double>> measured(count);
   std::vector<MeanSquare> one_step(count), free_run(count);
   std::vector<std::vector<MeanSquare>> drawn(count, std::vector<MeanSquare>(drawn_runs));
@@ -175,6 +185,7 @@ std::vector<DifferenceErrors> difference_errors(regression::Dictionary const& di
     Samples const ahead = run.one_step();
     std::optional<int> const begin = run.begin();
     Samples const free = begin ? run.free_run(*begin, nullptr) : Samples();
+    if (begin) forecasts.runs.push_back(run.shown(static_cast<int>(k), *begin, free));
     auto const each_row = [&](std::size_t e, int from, auto const& visit) {
       std::vector<double> const& samples = run.measured()[run.state(e)];
       for (std::size_t i = static_cast<std::size_t>(from); i < samples.size(); ++i)
@@ -209,7 +220,7 @@ std::vector<DifferenceErrors> difference_errors(regression::Dictionary const& di
     std::sort(sizes.begin(), sizes.end());  // the median: few that diverge make no expectation
     out[e].expected = sizes[sizes.size() / 2];
   }
-  return out;
+  return forecasts;
 }
 
 Findings forecast_findings(CheckedDictionary const& dictionary, std::vector<DifferenceErrors> const& errors,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "check/checked/checked.hpp"
+#include "discovery/free_motion.hpp"
 #include "regression/discovery.hpp"
 #include "result/finding.hpp"
 
@@ -22,12 +23,17 @@ struct DifferenceErrors {
   std::optional<double> expected;  // of the free run, if the equations are right: by their errors and those of the coefficients
 };
 
+struct DifferenceForecasts {
+  std::vector<DifferenceErrors> errors;  // of each equation
+  std::vector<FreeMotion> runs;          // of each experiment in which one can begin, with the channels of the dictionary
+};
+
 /// A free run begins behind 50 rows, or a quarter of them, which tell the errors of samples before, and goes on by its own samples
 /// to the end of the experiment; inputs must be there. What to expect of it is the difference between runs whose errors
 /// and coefficients are drawn as the equations have them and the run without. discovery: of the dictionary, all equations found.
 /// experiments: with the dictionary's columns.
-std::vector<DifferenceErrors> difference_errors(regression::Dictionary const& dictionary, regression::Discovery const& discovery,
-                                                std::span<Experiment const> experiments, std::uint64_t seed);
+DifferenceForecasts difference_forecasts(regression::Dictionary const& dictionary, regression::Discovery const& discovery,
+                                         std::span<Experiment const> experiments, std::uint64_t seed);
 
 /// held_out: what the rows are called.
 Findings forecast_findings(CheckedDictionary const& dictionary, std::vector<DifferenceErrors> const& errors,

@@ -11,8 +11,7 @@
 namespace sysid {
 namespace {
 
-constexpr double lost = 0.4;         // of the sd
-constexpr double bound_factor = 10;  // half ranges
+constexpr double lost = 0.4;  // of the sd
 
 /// Squares of errors of one channel.
 struct Mean {
@@ -25,13 +24,22 @@ struct Mean {
   std::optional<double> root() const { return count == 0 ? std::nullopt : std::optional(std::sqrt(squares / count)); }
 };
 
+/// With 0 measured in every row: residuals are what is simulated.
+std::vector<Experiment> unmeasured(std::span<Experiment const> experiments) {
+  std::vector<Experiment> out(experiments.begin(), experiments.end());
+  for (Experiment& each : out)
+    for (std::vector<double>& channel : each.measured) std::fill(channel.begin(), channel.end(), 0.0);
+  return out;
+}
+
 /// Simulations of segments from starts that fit their first `window` rows.
 class Forecasts {
  public:
   Forecasts(ValidatedModel const& model, Eigen::VectorXd const& coefficients, std::span<double const> noise_sd,
             std::span<Experiment const> experiments, StartGuess& guess, ForecastSettings const& settings,
             std::vector<Segment> const& segments)
-      : simulation_(model.compiled, experiments, segments, simulated(model, coefficients, settings)) {
+      : experiments_(experiments),
+        simulation_(model.compiled, unmeasured(experiments), segments, simulated(model, coefficients, settings)) {
     std::vector<Segment> windows = segments;
     for (Segment& each : windows) each.count = settings.window;
     SegmentSimulation const start(model.compiled, experiments, windows, simulated(model, coefficients, settings));
@@ -40,11 +48,17 @@ class Forecasts {
     runs_ = simulation_.residuals(point);
   }
 
-  /// The error of a channel in a row of a segment; nothing where it is not measured.
+  /// A channel in a row of a segment.
+  double value(std::size_t segment, std::size_t channel, int row) const {
+    return runs_[segment].residual(static_cast<int>(channel) * simulation_.rows_of_channel(static_cast<int>(segment)) + row);
+  }
+
+  /// Its error; nothing where it is not measured.
   std::optional<double> error(std::size_t segment, std::size_t channel, int row) const {
-    int const place = static_cast<int>(channel) * simulation_.rows_of_channel(static_cast<int>(segment)) + row;
-    if (!simulation_.measured(static_cast<int>(segment), place)) return std::nullopt;
-    return runs_[segment].residual(place);
+    Segment const& of = simulation_.segments()[segment];
+    std::vector<double> const& samples = experiments_[static_cast<std::size_t>(of.experiment)].measured[channel];
+    double const sample = samples.empty() ? std::nan("") : samples[static_cast<std::size_t>(of.first + row)];
+    return std::isfinite(sample) ? std::optional(value(segment, channel, row) - sample) : std::nullopt;
   }
 
  private:
@@ -56,6 +70,7 @@ class Forecasts {
     return out;
   }
 
+  std::span<Experiment const> experiments_;
   SegmentSimulation simulation_;
   std::vector<SegmentSlopes> runs_;
 };
@@ -124,6 +139,10 @@ ForecastErrors forecast_errors(ValidatedModel const& model, Eigen::VectorXd cons
   for (std::size_t s = 0; s < whole.size(); ++s) {
     std::span<double const> const time = std::span(experiments[static_cast<std::size_t>(whole[s].experiment)].time)
                                              .subspan(static_cast<std::size_t>(whole[s].first));
+    FreeMotion run{whole[s].experiment, whole[s].first, window, std::vector<std::vector<double>>(channels)};
+    for (std::size_t c = 0; c < channels; ++c)
+      for (int i = 0; i < whole[s].count; ++i) run.channels[c].push_back(free_runs.value(s, c, i));
+    out.runs.push_back(std::move(run));
     bool followed = true;
     for (int i = window; i < whole[s].count; ++i)
       for (std::size_t c = 0; c < channels; ++c) {
@@ -158,14 +177,10 @@ int bounded_runs(ValidatedModel const& model, std::span<Experiment const> experi
     std::vector<Outcome> outcome(bounded.size());
     simulator.records(points[e], 0, rows, out, outcome);
     for (int r = 0; r < count; ++r) {
-      double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (double const y : experiment.measured[static_cast<std::size_t>(r)])
-        if (std::isfinite(y)) low = std::min(low, y), high = std::max(high, y);
-      double const middle = (low + high) / 2, most = bound_factor * (high - low) / 2;
+      Bounds const bounds(experiment.measured[static_cast<std::size_t>(r)]);
       for (int w = 0; w < out.width(); ++w)
         for (int i = 0; i < rows; ++i)
-          if (auto const lane = static_cast<std::size_t>(w);
-              !outcome[lane].ok || (low <= high && !(std::abs(out(i * count + r, w) - middle) <= most)))
+          if (auto const lane = static_cast<std::size_t>(w); !outcome[lane].ok || !bounds.hold(out(i * count + r, w)))
             bounded[lane] = false;
     }
   }

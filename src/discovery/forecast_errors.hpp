@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "discovery/free_motion.hpp"
 #include "discovery/simulated_structure.hpp"
 
 namespace sysid {
@@ -23,6 +24,7 @@ struct ForecastSettings {
 struct ForecastErrors {
   std::vector<double> sd;  // of what is measured
   std::vector<std::optional<double>> one_step, horizon, free_run;
+  std::vector<FreeMotion> runs;  // of each experiment in which one can begin
   double follows = 0;  // [s] from the end of the window until a channel of the first free run is off by 40 % of its sd; its whole
                        // length where none is
 };

@@ -70,7 +70,12 @@ class Validator {
     Validation out;
     report(out);
     if (any) out.findings = validation_findings(out.report);
-    if (is_validated(order_.front())) add_memory(order_.front(), out.findings);
+    if (is_validated(order_.front())) {
+      add_memory(order_.front(), out.findings);
+      for (FreeMotion const& run : scored_[order_.front()].errors.runs)
+        out.free_runs.push_back(shown_motion(run, rows_.held_out[static_cast<std::size_t>(run.experiment)], dictionary_.measured,
+                                             models_[order_.front()].channels));
+    }
     return out;
   }
 

@@ -7,6 +7,7 @@
 
 #include "discovery/found_source.hpp"
 #include "result/finding.hpp"
+#include "result/prediction.hpp"
 #include "result/simulation_validation.hpp"
 
 namespace sysid {
@@ -15,7 +16,8 @@ struct Validation {
   ValidationReport report;
   std::vector<FoundStructure> order;  // best first, parallel to report.structures
   Findings findings;
-  bool interrupted = false;  // nothing else is set
+  std::vector<Prediction> free_runs;  // of the first, along the rows that are scored; empty where none are, or it is not validated
+  bool interrupted = false;           // nothing else is set
 };
 
 /// structures: as best_structures gives them, the regression's choice first; at least one. unused: experiments that the task did

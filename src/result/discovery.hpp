@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "result/prediction.hpp"
 #include "result/simulation_validation.hpp"
 
 namespace sysid {
@@ -91,7 +92,8 @@ struct DiscoveryReport {
   std::optional<ValidationReport> validation;  // by simulation; absent: it was left out, or there is nothing to simulate
   std::string forecast_rows;                   // "bench.test"; empty: no row was held out, or the equations are differential ones
   std::vector<DifferenceForecast> forecasts;
-  std::string source;  // of the model that was found; empty: none
+  std::vector<Prediction> free_runs;  // of the equations found along rows that are held out, scored behind those that set the start
+  std::string source;                 // of the model that was found; empty: none
 };
 
 }  // namespace sysid

@@ -124,6 +124,37 @@ TEST_CASE("a long record is shown in part and says so") {
   CHECK(figure.script.size() < 200000);
 }
 
+TEST_CASE("a long record is shown as a whole, too, with its largest residual; a short one is not") {
+  Report report = example::duffing(40);
+  Prediction& prediction = report.predictions[0];
+  PredictedQuantity& quantity = prediction.quantities[0];
+  CHECK_FALSE(is_long(prediction, quantity));
+  Prediction long_one;
+  long_one.experiment = "e";
+  PredictedQuantity of;
+  of.name = "y";
+  of.unit = "mm";
+  for (int i = 0; i < 5000; ++i) {
+    long_one.time.push_back(i * 0.01);
+    of.response.mean.push_back(std::sin(i * 0.1));
+    of.measured.push_back(i % 7 == 0 ? std::nan("") : of.response.mean.back());
+  }
+  of.measured[4001] = of.response.mean[4001] - 0.5;
+  of.response.lower = of.response.upper = of.response.mean;
+  long_one.scored.assign(5000, 1);
+  long_one.quantities = {of};
+  REQUIRE(is_long(long_one, of));
+  plot::Figure const whole = whole_figure(long_one, of);
+  CHECK(whole.caption.ends_with("The largest residual, -0.500 mm, is at 40.010 s."));
+  CHECK(whole.script.size() < 60000);
+  report.predictions = {long_one};
+  std::vector<std::string> const all = names(figures(report));
+  CHECK(std::find(all.begin(), all.end(), "whole_e_y") == std::find(all.begin(), all.end(), "fit_e_y") + 1);
+  if (gnuplot_installed()) CHECK(draw(whole).has_value());
+  long_one.scored.assign(5000, 0);
+  CHECK_FALSE(is_long(long_one, of));
+}
+
 TEST_CASE("one trajectory is no posterior mean and has no band") {
   Report report = example::duffing(40);
   PredictedQuantity& quantity = report.predictions[0].quantities[0];

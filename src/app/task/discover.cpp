@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
@@ -118,6 +119,7 @@ class Discover {
       temper_by_simulation(validation->report, report.findings);
       report.findings.insert(report.findings.end(), validation->findings.begin(), validation->findings.end());
       discovery.validation = std::move(validation->report);
+      discovery.free_runs = std::move(validation->free_runs);
     }
     report.equations = equations(discovery);
     if (!what_.candidates && !structures.empty()) structures.resize(1);
@@ -146,7 +148,12 @@ class Discover {
     if (unused.empty()) return;
     for (ExperimentData const& each : unused)
       discovery.forecast_rows += (discovery.forecast_rows.empty() ? "" : ", ") + each.experiment.name;
-    std::vector<DifferenceErrors> const errors = difference_errors(dictionary_.numbers, found, experiments_of(unused), seed_);
+    auto const [errors, runs] = difference_forecasts(dictionary_.numbers, found, experiments_of(unused), seed_);
+    std::vector<std::size_t> channels(dictionary_.measured.channels.size());
+    std::iota(channels.begin(), channels.end(), std::size_t{0});
+    for (FreeMotion const& run : runs)
+      discovery.free_runs.push_back(
+          shown_motion(run, unused[static_cast<std::size_t>(run.experiment)].experiment, dictionary_.measured, channels));
     for (std::size_t e = 0; e < errors.size(); ++e) {
       DictionaryEquation const& equation = dictionary_.equations[e];
       double const scale = equation.unit ? equation.unit->scale : 1;

@@ -13,9 +13,6 @@ namespace {
 
 using namespace plot;
 
-/// More samples than this in a column are a blot.
-constexpr std::size_t shown_samples = 600;
-
 struct Window {
   std::size_t first = 0, count = 0;
   bool whole = true;
@@ -156,13 +153,14 @@ std::string samples_excluded(Prediction const& prediction, Window w) {
 
 }  // namespace
 
-Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
+namespace {
+
+Figure along_record(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view kind) {
   Window const w = window(prediction);
   Excerpt const of(prediction, quantity, w);
   Legend legend{keys_of(of)};
   legend.after_first_panel = true;
   int const left = 70, right = column_width - 14, legend_rows = legend.height();
-  std::string_view const kind = prediction.smoothed ? "smoothed" : of.has_data ? "fit" : "state";
   Drawing drawing{figure_name(kind, prediction, quantity), column_width, (of.has_data ? 330 : 200) + legend_rows,
                   std::move(legend)};
   Axis x = axis(of.time.front(), of.time.back(), 6);
@@ -181,6 +179,26 @@ Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantit
   std::string const caption = prediction.smoothed ? caption_of_smoothed(quantity) : caption_of(of, quantity.name);
   return {drawing.name, fmt::format("{}{} on {}", quantity.name, prediction.smoothed ? ", smoothed," : "", prediction.experiment),
           caption + samples_excluded(prediction, w), script(drawing), prediction.smoothed ? Topic::states : Topic::fit};
+}
+
+}  // namespace
+
+Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
+  return along_record(prediction, quantity, prediction.smoothed ? "smoothed" : !quantity.measured.empty() ? "fit" : "state");
+}
+
+Figure free_run_figure(Prediction const& run, PredictedQuantity const& quantity) {
+  Figure figure = along_record(run, quantity, "free_run");
+  auto const start = std::find(run.scored.begin(), run.scored.end(), 1) - run.scored.begin();
+  std::vector<double> const& mean = quantity.response.mean;
+  std::string caption = fmt::format(
+      "Measured {} and a free run of the equations found: its start is estimated from the {} rows before, and nothing that is "
+      "measured later enters it{}.",
+      quantity.name, start, run.inputs.empty() ? "" : " but the inputs");
+  if (!mean.empty() && !std::isfinite(mean.back()))
+    caption += " It is shown up to where it leaves ten times the range of what is measured.";
+  figure.caption = caption + samples_excluded(run, window(run));
+  return figure;
 }
 
 }  // namespace sysid

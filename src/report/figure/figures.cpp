@@ -59,10 +59,18 @@ std::vector<Figure> figures(Report const& report) {
     out.push_back(true_ranks_figure(*report.calibration));
     out.push_back(rank_difference_figure(*report.calibration));
   }
+  if (report.discovery)
+    for (Prediction const& run : report.discovery->free_runs)
+      for (PredictedQuantity const& quantity : run.quantities)
+        if (run.time.size() > 1) {
+          out.push_back(free_run_figure(run, quantity));
+          if (is_long(run, quantity)) out.push_back(whole_figure(run, quantity));
+        }
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (shows_something(quantity) && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity)) {
         out.push_back(fit_figure(prediction, quantity));
+        if (is_long(prediction, quantity)) out.push_back(whole_figure(prediction, quantity));
         if (report.verb == "track")
           out.back().caption = fmt::format("The parameter {} along the rows that were tracked, with its 95 % band.", quantity.name);
       }

@@ -14,6 +14,14 @@ std::vector<plot::Figure> figures(Report const& report);
 
 /// Mean, bands and data of a quantity along the record, with its residuals below when it was measured; of smoothed states, too.
 plot::Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity);
+/// The same of a free run of equations that a discovery found.
+plot::Figure free_run_figure(Prediction const& run, PredictedQuantity const& quantity);
+/// More samples than this in a column are a blot.
+inline constexpr std::size_t shown_samples = 600;
+/// Whether a measured quantity has more samples than `fit_figure` shows.
+bool is_long(Prediction const& prediction, PredictedQuantity const& quantity);
+/// The range of data, model and residuals in stretches of a long record.
+plot::Figure whole_figure(Prediction const& prediction, PredictedQuantity const& quantity);
 /// Whether a measured quantity has residuals, and so many that their correlations mean something.
 bool has_residuals(Prediction const& prediction, PredictedQuantity const& quantity);
 /// Autocorrelation of the residuals of a measured quantity, and their correlation with each input before them.

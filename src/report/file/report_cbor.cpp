@@ -306,6 +306,7 @@ std::string headline_alone(std::string const& stored) { return stored.substr(0, 
 std::string record_bytes(Report const& report) {
   json content = report;
   if (!report.states.empty()) content["states"] = report.states;  // those of before have none
+  if (report.discovery && !report.discovery->free_runs.empty()) content["free_runs"] = report.discovery->free_runs;
   return sealed_cbor(content, form);
 }
 
@@ -325,6 +326,7 @@ Report read_record(std::string const& bytes, std::filesystem::path const& path) 
     report.verdict = headline_alone(report.verdict);
     if (stored.contains("states")) stored.at("states").get_to(report.states);
     for (Prediction& each : report.states) each.smoothed = true;
+    if (report.discovery && stored.contains("free_runs")) stored.at("free_runs").get_to(report.discovery->free_runs);
     return report;
   } catch (json::exception const&) {
     throw other;

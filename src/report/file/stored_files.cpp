@@ -51,8 +51,9 @@ void throw_damaged(fs::path const& path) {
 
 bool is_stored_table(std::string const& name) {
   if (!name.ends_with(".csv")) return false;
-  if (name == "predict.csv" || name == "states.csv" || name == "pointwise.csv" || name == "ranks.csv") return true;
-  for (char const* begin : {"draws_", "particles_", "polished_", "predict_", "states_", "function_"})
+  if (name == "predict.csv" || name == "states.csv" || name == "free_run.csv" || name == "pointwise.csv" || name == "ranks.csv")
+    return true;
+  for (char const* begin : {"draws_", "particles_", "polished_", "predict_", "states_", "free_run_", "function_"})
     if (name.starts_with(begin)) return true;
   return false;
 }

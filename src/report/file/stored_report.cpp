@@ -149,6 +149,11 @@ Report read_result(fs::path const& folder) {
   for (std::size_t p = 0; p < report.predictions.size(); ++p) read_prediction(folder / prediction_names[p], report.predictions[p]);
   std::vector<std::string> const states_names = states_files(report);
   for (std::size_t e = 0; e < report.states.size(); ++e) read_prediction(folder / states_names[e], report.states[e]);
+  if (report.discovery) {
+    std::vector<Prediction>& runs = report.discovery->free_runs;
+    std::vector<std::string> const names = free_run_files(report);
+    for (std::size_t r = 0; r < runs.size(); ++r) read_prediction(folder / names[r], runs[r]);
+  }
   for (FunctionReport& function : report.functions) read_function(folder / function_file(function), function);
   if (!report.selection) return report;
   SelectionReport& selection = *report.selection;

@@ -40,9 +40,9 @@ bool is_result_file(std::string const& name, std::string const& task) {
   return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "report.cbor" ||
          name == "resolved.sysid" || name == "predict.csv" || name == "terms.csv" || name == "found.sysid" ||
          name == "structures.csv" || name == "pointwise.csv" || name == "refit.csv" || name == "ranks.csv" ||
-         name == "populations.csv" || name == "states.csv" || between("states_", ".csv") || between("draws_", ".csv") ||
-         between("function_", ".csv") || between("predict_", ".csv") || between("particles_", ".csv") ||
-         between("polished_", ".csv") || between("resolved_", ".sysid");
+         name == "populations.csv" || name == "states.csv" || name == "free_run.csv" || between("free_run_", ".csv") ||
+         between("states_", ".csv") || between("draws_", ".csv") || between("function_", ".csv") || between("predict_", ".csv") ||
+         between("particles_", ".csv") || between("polished_", ".csv") || between("resolved_", ".sysid");
 }
 
 bool is_figure_file(std::string const& name) {
@@ -125,8 +125,11 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c) write(draws_file(c), draws_csv(report, static_cast<int>(c)));
   if (report.selection)
     for (auto const& [name, content] : selection_files(report)) write(name, content);
-  if (report.discovery)
+  if (report.discovery) {
     for (auto const& [name, content] : discovery_files(report)) write(name, content);
+    std::vector<std::string> const names = free_run_files(report);
+    for (std::size_t r = 0; r < names.size(); ++r) write(names[r], predict_csv(report, report.discovery->free_runs[r]));
+  }
   if (report.calibration) write("ranks.csv", ranks_csv(report));
   for (FunctionReport const& function : report.functions) write(function_file(function), function_csv(function));
   std::vector<std::string> const prediction_names = prediction_files(report);
@@ -199,6 +202,10 @@ std::vector<std::string> files_along(std::vector<Prediction> const& predictions,
 std::vector<std::string> prediction_files(Report const& report) { return files_along(report.predictions, "predict"); }
 
 std::vector<std::string> states_files(Report const& report) { return files_along(report.states, "states"); }
+
+std::vector<std::string> free_run_files(Report const& report) {
+  return report.discovery ? files_along(report.discovery->free_runs, "free_run") : std::vector<std::string>();
+}
 
 std::string function_file(FunctionReport const& function) {
   return fmt::format("function_{}.csv", plot::identifier(function.name));

@@ -51,6 +51,8 @@ std::string undrawn_words(std::vector<std::string> const& undrawn);
 std::string draws_file(std::size_t chain);
 /// Of each prediction, in order.
 std::vector<std::string> prediction_files(Report const& report);
+/// Of each free run of a discovery, in order.
+std::vector<std::string> free_run_files(Report const& report);
 /// Of the smoothed states of each experiment, in order.
 std::vector<std::string> states_files(Report const& report);
 std::string function_file(FunctionReport const& function);
