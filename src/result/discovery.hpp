@@ -93,7 +93,8 @@ struct DiscoveryReport {
   std::string forecast_rows;                   // "bench.test"; empty: no row was held out, or the equations are differential ones
   std::vector<DifferenceForecast> forecasts;
   std::vector<Prediction> free_runs;  // of the equations found along rows that are held out, scored behind those that set the start
-  std::string source;                 // of the model that was found; empty: none
+  std::string answer;  // on form, coefficients and other rows: "the form is decided ..."; empty: nothing was validated
+  std::string source;  // of the model that was found; empty: none
 };
 
 }  // namespace sysid

@@ -363,6 +363,13 @@ TEST_CASE("the verdict's headline is words: capitalised before a colon, without 
   CHECK(page.find("<b>no equation found for <code>z'</code>; the checks pass</b>") != std::string::npos);
 }
 
+TEST_CASE("what a discovery answers stands below the verdict") {
+  Report report = example::duffing(20);
+  report.discovery = DiscoveryReport();
+  report.discovery->answer = "the form is decided (probability 0.99); holds on bench.test";
+  CHECK(report_html(report, {}).find("<p>The form is decided (probability 0.99); holds on bench.test.</p>") != std::string::npos);
+}
+
 TEST_CASE("what stands in the target of a discovery is always kept, and the source of the share of particles is named") {
   DiscoveryReport discovery;
   discovery.measure = "inclusion probability";

@@ -118,6 +118,7 @@ class Discover {
     if (validation) {
       temper_by_simulation(validation->report, report.findings);
       report.findings.insert(report.findings.end(), validation->findings.begin(), validation->findings.end());
+      discovery.answer = verdict_clauses(validation->report);
       discovery.validation = std::move(validation->report);
       discovery.free_runs = std::move(validation->free_runs);
     }
@@ -180,8 +181,7 @@ class Discover {
     std::string terms = fmt::format("{}", fmt::join(equations, "; "));
     for (DiscoveredEquation const& each : discovery.equations)
       if (each.equation.empty()) terms += fmt::format("{}{}: no equation found", terms.empty() ? "" : "; ", each.target);
-    std::string const clauses = discovery.validation ? verdict_clauses(*discovery.validation) : "";
-    return fmt::format("{}; {}{}{}", terms, clauses, clauses.empty() ? "" : "; ", verdict_of(findings).headline);
+    return fmt::format("{}; {}{}{}", terms, discovery.answer, discovery.answer.empty() ? "" : "; ", verdict_of(findings).headline);
   }
 
   // A channel at rest is a channel that is constant.

@@ -272,7 +272,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Noise, channel, unit, sd, gi
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Excluded, term, reason)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DifferenceForecast, target, unit, sd, one_step, free_run, expected)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measure, windows, half_width, noise, equations, excluded,
-                                   validation, forecast_rows, forecasts, source)
+                                   validation, forecast_rows, forecasts, answer, source)
 
 // --- calibrations
 

@@ -19,8 +19,9 @@ namespace {
 
 std::string verdict_html(Report const& report) {
   if (!has_verdict(report)) return "";
-  std::string out = fmt::format("<p class=\"headline\">{}</p>\n{}", marked(capitalised(verdict_words(report))),
-                                paragraph(verdict_meaning(report)));
+  std::string out = fmt::format("<p class=\"headline\">{}</p>\n", marked(capitalised(verdict_words(report))));
+  if (report.discovery && !report.discovery->answer.empty()) out += paragraph(capitalised(report.discovery->answer) + ".");
+  out += paragraph(verdict_meaning(report));
   if (report.findings.empty()) return out;
   Findings const weighed = by_weight(report.findings);
   std::size_t const shown = std::min(findings_shown(report), weighed.size());
