@@ -43,7 +43,8 @@ auto const measured_state_def =
 auto const dictionary_states_def = located[word("state") > measured_state[append(&ast::DictionaryStates::states)] >
                                            *(',' > measured_state[append(&ast::DictionaryStates::states)])];
 auto const dictionary_parameter_def = located[word("parameter") > quantity[to(&ast::DictionaryParameter::name)] >
-                                              -(equals > expression[to(&ast::DictionaryParameter::value)])];
+                                              -((tilde > distribution[to(&ast::DictionaryParameter::prior)]) |
+                                                (equals > expression[to(&ast::DictionaryParameter::value)]))];
 auto const dictionary_definition_def =
     located[(word("constant")[set(&ast::Definition::kind, ast::DefinitionKind::constant)] |
              word("let")[set(&ast::Definition::kind, ast::DefinitionKind::local)]) > quantity[to(&ast::Definition::name)] > equals >

@@ -275,6 +275,7 @@ void UseResolver::statement(ast::DictionaryStates const& each, Place const& plac
 }
 void UseResolver::statement(ast::DictionaryParameter const& each, Place const& place) {
   declared(each.name, place);
+  if (each.prior) word_call(*each.prior, WordKind::distribution, place);
   if (each.value) expression(*each.value, place);
 }
 void UseResolver::statement(ast::DictionaryList const& each, Place const& place) {

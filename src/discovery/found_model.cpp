@@ -201,11 +201,15 @@ class ModelText {
   std::string definitions() const {
     std::string out;
     for (ast::DictionaryStatement const& statement : dictionary().tree.statements) {
-      if (auto const* parameter = std::get_if<ast::DictionaryParameter>(&statement);
-          parameter != nullptr && parameter->value && used_.contains(parameter->name.name.text))
+      auto const* parameter = std::get_if<ast::DictionaryParameter>(&statement);
+      if (parameter != nullptr && parameter->value && used_.contains(parameter->name.name.text))
         out += fmt::format("parameter {}{} = {}\n", parameter->name.name.text,
                            parameter->name.unit ? fmt::format(" [{}]", unparse(*parameter->name.unit)) : "",
                            unparse(*parameter->value));
+      if (parameter != nullptr && parameter->prior && used_.contains(parameter->name.name.text))
+        out += fmt::format("parameter {}{} ~ {}  # inside terms\n", parameter->name.name.text,
+                           parameter->name.unit ? fmt::format(" [{}]", unparse(*parameter->name.unit)) : "",
+                           unparse(ast::Expression{{}, *parameter->prior}));
       if (auto const* definition = std::get_if<ast::Definition>(&statement);
           definition != nullptr && used_.contains(definition->name.name.text))
         out += fmt::format("{} {}{} = {}\n", definition->kind == ast::DefinitionKind::constant ? "constant" : "let",

@@ -20,6 +20,7 @@ struct FoundSource {
   CheckedDictionary const& dictionary;
   std::vector<ExperimentData> const& data;
   regression::Discovery const& discovery;
+  std::vector<double> inner;  // values of the dictionary's parameters inside terms, SI
   std::uint64_t seed = 0;
 
   /// A complete file whose paths start at the task's folder of results. structures: at least one; the first is the model that is

@@ -88,6 +88,9 @@ ValidatedModel validated_model(FoundSource const& source, FoundStructure const& 
   for (std::size_t p = 0; p < model.parameters.size(); ++p)
     if (model.parameters[p].value) out.others[p] = model.graph.evaluate(*model.parameters[p].value, [](NodeId) { return 0.0; });
   CheckedDictionary const& dictionary = source.dictionary;
+  for (std::size_t k = 0; k < dictionary.inner.size(); ++k)
+    for (std::size_t p = 0; p < model.parameters.size(); ++p)
+      if (model.parameters[p].name == dictionary.inner[k].quantity.name) out.others[p] = source.inner[k];
   for (std::size_t e = 0; e < structure.equations.size(); ++e) {
     regression::Support const& support = *structure.equations[e];
     std::vector<std::string> const names = coefficient_names(dictionary, static_cast<int>(e));

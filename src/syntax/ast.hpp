@@ -356,9 +356,11 @@ struct DictionaryStates : Located {
   std::vector<DictionaryState> states;
   friend bool operator==(DictionaryStates const&, DictionaryStates const&) = default;
 };
-/// `parameter m [kg]`: a coefficient that is looked for; `parameter m [kg] = 1`: known.
+/// `parameter m [kg]`: a coefficient that is looked for; `parameter m [kg] = 1`: known; `parameter K [mol] ~ uniform(0, 1)`: looked
+/// for inside terms.
 struct DictionaryParameter : Located {
   Declared name;
+  std::optional<Call> prior;
   std::optional<Expression> value;
   friend bool operator==(DictionaryParameter const&, DictionaryParameter const&) = default;
 };

@@ -118,7 +118,7 @@ struct DictionaryStatementText : ModelStatementText {
   using ModelStatementText::operator();
   std::string operator()(ast::DictionaryStates const& s) const { return "state " + comma_list(s.states); }
   std::string operator()(ast::DictionaryParameter const& s) const {
-    return "parameter " + text_of(s.name) + (s.value ? " = " + unparse(*s.value) : "");
+    return "parameter " + text_of(s.name) + (s.prior ? " ~ " + text_of(*s.prior) : s.value ? " = " + unparse(*s.value) : "");
   }
   std::string operator()(ast::DictionaryList const& s) const {
     std::string_view const word = s.kind == ast::DictionaryListKind::target  ? "target"

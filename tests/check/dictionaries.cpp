@@ -140,6 +140,23 @@ TEST_CASE("a term that contradicts itself is refused where it stands") {
   CHECK(said.find("test.sysid:5:16: error[E2103]") != std::string::npos);
 }
 
+TEST_CASE("a parameter inside terms is open in them, and stands at the median of its prior where numbers are read") {
+  CheckedDictionary const inside =
+      dictionary("parameter v [mm/s] ~ uniform(1000, 3000)\ntarget = x\nterms = y, tanh(y'/v), v*y/(v + y')");
+  REQUIRE(inside.inner.size() == 1);
+  CHECK(inside.inner[0].quantity.name == "v");
+  CHECK(terms(inside) == Texts{"y", "tanh(y'/v)", "v*y/(v + y')"});
+  std::vector<double> const draws = sorted_draws(inside.inner[0], 101);
+  CHECK(draws.front() >= 1);
+  CHECK(draws.back() <= 3);
+  CHECK(value(inside, 1) == std::tanh(-3 / draws[50]));
+  CheckedDictionary changed = inside;
+  changed.numbers = with_inner(changed.numbers, changed.open, changed.inner, std::vector<double>{2.5});
+  CHECK(value(changed, 1) == std::tanh(-3 / 2.5));
+  CHECK(value(changed, 2) == 2.5 * 2 / (2.5 - 3));
+  CHECK(value(changed, 0) == 2);
+}
+
 TEST_CASE("a discovery has a selector and a form of derivatives, stated or by default") {
   DiscoverTask const plain = task("d");
   CHECK(plain.selector == "spike_slab");

@@ -184,7 +184,8 @@ ast::DictionaryStatement RandomTree::dictionary_statement() {
                 {}, name(), static_cast<int>(random_.below(3)), perhaps([&] { return unit(1); }), perhaps([&] { return name(); })};
           })};
     case 3:
-      return ast::DictionaryParameter{{}, quantity(), perhaps([&] { return expression(2); })};
+      if (random_.chance(3)) return ast::DictionaryParameter{{}, quantity(), call(2), {}};
+      return ast::DictionaryParameter{{}, quantity(), {}, perhaps([&] { return expression(2); })};
     case 4:
       return ast::Definition{
           {}, random_.chance(2) ? ast::DefinitionKind::constant : ast::DefinitionKind::local, quantity(), expression(3)};

@@ -24,6 +24,7 @@
 #include "discovery/found_equation.hpp"
 #include "discovery/found_source.hpp"
 #include "discovery/held_out_rows.hpp"
+#include "discovery/inner_search.hpp"
 #include "discovery/simulation_validation.hpp"
 #include "discovery/validation_findings.hpp"
 #include "experiment/experiments.hpp"
@@ -56,6 +57,7 @@ class Discover {
     method.selector_settings = what_.selector_settings;
     method.seed = seed_;
     method.interrupted = [this] { return session_.interrupted(); };
+    InnerValues const inner = search_inner_parameters(method);
     regression::Discovery const found = regression::discover(numbers(), experiments_of(data_), method);
     if (found.interrupted) throw Interrupted();
     FoundSource const source{.file = session_.file,
@@ -67,6 +69,7 @@ class Discover {
                              .dictionary = dictionary_,
                              .data = data_,
                              .discovery = found,
+                             .inner = inner.values,
                              .seed = seed_};
     std::vector<FoundStructure> structures = best_structures(found, what_.top);
     std::optional<Validation> validation;
@@ -79,6 +82,17 @@ class Discover {
   }
 
  private:
+  // From here on the dictionary has their values.
+  InnerValues search_inner_parameters(regression::Method const& method) {
+    if (dictionary_.inner.empty()) return {};
+    CheckedDictionary noisy = dictionary_;
+    noisy.numbers = numbers();
+    InnerValues found = search_inner(noisy, experiments_of(data_), method);
+    if (found.interrupted) throw Interrupted();
+    dictionary_.numbers = with_inner(std::move(dictionary_.numbers), dictionary_.open, dictionary_.inner, found.values);
+    return found;
+  }
+
   // With the noise that the task gives.
   regression::Dictionary numbers() const {
     regression::Dictionary numbers = dictionary_.numbers;
@@ -320,7 +334,7 @@ class Discover {
   Session& session_;
   Task const& task_;
   DiscoverTask const& what_;
-  CheckedDictionary const& dictionary_;
+  CheckedDictionary dictionary_;  // with the values that were found for parameters inside terms
   std::uint64_t seed_;
   std::chrono::steady_clock::time_point began_;
   std::vector<ExperimentData> data_;

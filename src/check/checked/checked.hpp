@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "check/checked/inner_parameter.hpp"
 #include "core/setting/average_weights.hpp"
 #include "core/setting/evidence_method.hpp"
 #include "core/setting/settings.hpp"
@@ -220,8 +221,10 @@ struct CheckedDictionary {
   Span span;
   ast::Dictionary tree;
   std::vector<ast::FunctionDefinition> functions;  // of the file, that its expressions may call
-  regression::Dictionary numbers;
+  regression::Dictionary numbers;                  // with parameters inside terms at the medians of their priors
   std::vector<DictionaryEquation> equations;
+  std::vector<InnerParameter> inner;
+  OpenTerms open;  // empty where there are none
   std::vector<ExcludedTerm> excluded;
   std::vector<Quantity> states;
   std::vector<Span> channel_spans;  // where each channel is bound

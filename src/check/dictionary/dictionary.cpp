@@ -37,6 +37,7 @@ std::optional<CheckedDictionary> DictionaryChecker::run() {
   if (!failed()) coefficient_units_used();
   if (!failed()) parameters_used();
   if (!failed()) inputs_used();
+  if (!failed()) close_terms();
   if (failed()) return std::nullopt;
   out_.measured.name = out_.name;
   out_.measured.graph = out_.numbers.graph;

@@ -38,6 +38,7 @@ class DictionaryChecker {
     std::optional<Unit> unit;
     std::optional<double> value;  // coherent SI
     bool used = false;
+    bool inner = false;  // inside terms, with a prior
   };
   struct Target {
     ast::Expression const* tree;
@@ -85,12 +86,16 @@ class DictionaryChecker {
   void lay_out_lags();
   void definitions();
   void values();
+  std::optional<InnerParameter> inner_parameter(ParameterInfo const& parameter, int index);
 
   // --- dictionary_terms.cpp
   void targets();
   void terms();
   void exclude();
   std::optional<Candidate> candidate(WrittenTerm written);
+  // Whether each parameter inside does more than scale the term.
+  bool bends(Candidate const& made);
+  bool depends_on(NodeId root, NodeId leaf) const;
   // Numbers for the parameters that have one.
   NodeId with_values(NodeId root);
 
@@ -102,6 +107,9 @@ class DictionaryChecker {
   void add(int index, Candidate const& term, regression::SplitTarget const& split, DictionaryEquation& equation,
            regression::Equation& numbers, std::vector<Candidate const*>& kept);
   void leave_out(int index, Candidate const& term, Unit const& unit);
+
+  // Numbers for the parameters inside terms, the medians of their priors.
+  void close_terms();
 
   // --- dictionary_discrete.cpp
   // In discrete time: each equation gives one state at the present sample, from what is known by then.

@@ -3,6 +3,7 @@
 
 #include "check/dictionary/dictionary_checker.hpp"
 #include "check/expression/discrete_step.hpp"
+#include "check/expression/distributions.hpp"
 #include "check/expression/names_used.hpp"
 #include "check/message/errors.hpp"
 #include "check/units/units.hpp"
@@ -178,7 +179,13 @@ void DictionaryChecker::definitions() {
 }
 
 void DictionaryChecker::values() {
-  for (ParameterInfo& parameter : parameters_) {
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    ParameterInfo& parameter = parameters_[p];
+    if (parameter.tree->prior) {
+      parameter.inner = true;
+      if (auto made = inner_parameter(parameter, static_cast<int>(p))) out_.inner.push_back(std::move(*made));
+      continue;
+    }
     if (!parameter.tree->value) {
       free_.insert(parameter.tree->name.name.text);
       continue;
@@ -190,6 +197,36 @@ void DictionaryChecker::values() {
     parameter.value = out_.numbers.graph.constant_value(adapt(out_.numbers.graph, *value, parameter.unit));
     if (!parameter.value) diagnostics_.add(errors::constant_needed(parameter.tree->value->span, {"the value of a parameter"}));
   }
+}
+
+std::optional<InnerParameter> DictionaryChecker::inner_parameter(ParameterInfo const& parameter, int index) {
+  Graph& graph = out_.numbers.graph;
+  ast::Name const& name = parameter.tree->name.name;
+  ast::Call const& prior = *parameter.tree->prior;
+  InnerParameter out{{name.text, parameter.unit, name.span}, graph.leaf(LeafKind::parameter, index), {}, {}};
+  auto const use = check_distribution(scope_, prior, out.quantity);
+  if (!use) return std::nullopt;
+  if (use->row->discrete) {
+    diagnostics_.add(errors::count_as_prior(prior));
+    return std::nullopt;
+  }
+  if (!use->row->proper || use->row->draw == nullptr) {
+    diagnostics_.add(errors::inner_prior(prior.span, name.text, "is improper"));
+    return std::nullopt;
+  }
+  out.prior = use->row;
+  bool all = true;
+  auto const number = [&](NodeId node) {
+    auto const value = graph.constant_value(node);
+    all = all && value;
+    return value.value_or(0);
+  };
+  for (NodeId const argument : use->arguments) out.arguments.push_back(number(argument));
+  if (use->lower) out.lower = number(*use->lower);
+  if (use->upper) out.upper = number(*use->upper);
+  if (all) return out;
+  diagnostics_.add(errors::inner_prior(prior.span, name.text, "reads other parameters"));
+  return std::nullopt;
 }
 
 }  // namespace sysid

@@ -40,6 +40,10 @@ void DictionaryChecker::equation(int index) {
     NodeId const leaf = graph.leaf(LeafKind::parameter, static_cast<int>(p));
     if (!graph.depends(root, [&](Node const& node) { return is_parameter(node) && node.index == static_cast<int>(p); })) continue;
     std::string const& name = parameters_[p].tree->name.name.text;
+    if (parameters_[p].inner) {
+      diagnostics_.add(errors::inner_in_target(target.tree->span, equation.text, name));
+      return;
+    }
     coefficients.emplace_back(name, leaf);
     if (std::exchange(parameters_[p].used, true)) {
       diagnostics_.add(errors::coefficient_of_two_targets(target.tree->span, name));
@@ -112,10 +116,26 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
     equation.terms[j].unit = coefficient;
     return;
   }
+  for (InnerParameter const& each : out_.inner)
+    if (depends_on(term.node, each.leaf)) parameter_of(each.quantity.name).used = true;
   kept.push_back(&term);
   equation.terms.push_back(
       {term.written.text, term.written.tree, term.written.coefficient, false, coefficient, term.written.tree.span});
   numbers.terms.push_back({term.written.text, term.node, false});
+}
+
+void DictionaryChecker::close_terms() {
+  if (out_.inner.empty()) return;
+  std::vector<double> medians;
+  for (InnerParameter const& each : out_.inner) {
+    constexpr int draws = 101;
+    medians.push_back(sorted_draws(each, draws)[draws / 2]);
+  }
+  for (regression::Equation const& equation : out_.numbers.equations) {
+    out_.open.emplace_back();
+    for (regression::Term const& term : equation.terms) out_.open.back().push_back(term.expression);
+  }
+  out_.numbers = with_inner(std::move(out_.numbers), out_.open, out_.inner, medians);
 }
 
 void DictionaryChecker::leave_out(int index, Candidate const& term, Unit const& unit) {

@@ -82,7 +82,9 @@ std::optional<DictionaryChecker::Candidate> DictionaryChecker::candidate(Written
   *value = with_own_unit(*value);
   Candidate made;
   made.node = with_values(value->node);
-  if (out_.numbers.graph.depends(made.node, [](Node const& node) { return is_parameter(node); })) {
+  if (out_.numbers.graph.depends(made.node, [&](Node const& node) {
+        return is_parameter(node) && !parameters_[static_cast<std::size_t>(node.index)].inner;
+      })) {
     diagnostics_.add(errors::coefficient_inside(written.tree.span, unparse(written.tree)));
     return std::nullopt;
   }
@@ -90,7 +92,26 @@ std::optional<DictionaryChecker::Candidate> DictionaryChecker::candidate(Written
   if (value->kind == Typed::Kind::literal) made.unit = Unit{};
   made.factors = factors_of(out_.numbers.graph, made.node);
   made.written = std::move(written);
+  if (!bends(made)) return std::nullopt;
   return made;
+}
+
+bool DictionaryChecker::bends(Candidate const& made) {
+  for (InnerParameter const& each : out_.inner) {
+    if (!made.factors.powers.contains(each.leaf)) continue;
+    bool const elsewhere = std::any_of(made.factors.powers.begin(), made.factors.powers.end(), [&](auto const& power) {
+      return power.first != each.leaf && depends_on(power.first, each.leaf);
+    });
+    if (elsewhere) continue;
+    diagnostics_.add(errors::inner_scales(made.written.tree.span, made.written.text, each.quantity.name));
+    return false;
+  }
+  return true;
+}
+
+bool DictionaryChecker::depends_on(NodeId root, NodeId leaf) const {
+  std::vector<NodeId> const below = out_.numbers.graph.reachable({&root, 1});
+  return std::find(below.begin(), below.end(), leaf) != below.end();
 }
 
 NodeId DictionaryChecker::with_values(NodeId root) {

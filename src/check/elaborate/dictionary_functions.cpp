@@ -24,8 +24,11 @@ void each_top(ast::Dictionary const& dictionary, Visit const& visit) {
   for (ast::DictionaryStatement const& statement : dictionary.statements) {
     if (auto const* definition = std::get_if<ast::Definition>(&statement)) visit(definition->value);
     if (auto const* function = std::get_if<ast::FunctionDefinition>(&statement)) visit(function->value);
-    if (auto const* parameter = std::get_if<ast::DictionaryParameter>(&statement); parameter != nullptr && parameter->value)
-      visit(*parameter->value);
+    if (auto const* parameter = std::get_if<ast::DictionaryParameter>(&statement)) {
+      if (parameter->value) visit(*parameter->value);
+      if (parameter->prior)
+        for (ast::Argument const& argument : parameter->prior->arguments) visit(argument.value);
+    }
     if (auto const* list = std::get_if<ast::DictionaryList>(&statement))
       for (ast::Expression const& item : list->items) visit(item);
   }

@@ -1,0 +1,136 @@
+// A grid over probabilities of the priors, then from each local maximum a pattern search (Hooke and Jeeves 1961).
+#include "discovery/inner_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sysid {
+namespace {
+
+constexpr int prior_draws = 1023;
+constexpr double finest = 1.0 / 512;  // of a prior's probability: a fit by simulation goes on from there
+constexpr double far_behind = 20;
+
+/// Points along each parameter.
+int points_of(std::size_t parameters) { return parameters == 1 ? 41 : parameters == 2 ? 13 : parameters == 3 ? 6 : 4; }
+
+using Place = std::vector<double>;  // probabilities of the priors
+
+class Searcher {
+ public:
+  Searcher(CheckedDictionary const& dictionary, std::span<Experiment const> experiments, regression::Method const& method)
+      : dictionary_(dictionary), experiments_(experiments), method_(method), points_(points_of(dictionary.inner.size())) {
+    for (InnerParameter const& each : dictionary.inner) draws_.push_back(sorted_draws(each, prior_draws));
+  }
+
+  InnerSearch run(int most) {
+    std::vector<double> const grid = evaluate_grid();
+    std::vector<std::size_t> tops;
+    for (std::size_t i = 0; i < grid.size(); ++i)
+      if (is_top(grid, i)) tops.push_back(i);
+    std::stable_sort(tops.begin(), tops.end(), [&](std::size_t a, std::size_t b) { return grid[a] > grid[b]; });
+    if (tops.size() > static_cast<std::size_t>(most)) tops.resize(static_cast<std::size_t>(most));
+    for (std::size_t const top : tops) climb(place(top), grid[top]);
+    std::stable_sort(out_.modes.begin(), out_.modes.end(),
+                     [](auto const& a, auto const& b) { return a.log_evidence > b.log_evidence; });
+    std::erase_if(out_.modes,
+                  [&](auto const& each) { return !(each.log_evidence >= out_.modes.front().log_evidence - far_behind); });
+    return std::move(out_);
+  }
+
+ private:
+  std::size_t size() const { return draws_.size(); }
+
+  Place place(std::size_t index) const {
+    Place at;
+    for (std::size_t p = 0; p < size(); ++p, index /= static_cast<std::size_t>(points_))
+      at.push_back((static_cast<double>(index % static_cast<std::size_t>(points_)) + 0.5) / points_);
+    return at;
+  }
+
+  std::vector<double> evaluate_grid() {
+    auto const count = static_cast<std::size_t>(std::pow(points_, size()));
+    std::vector<double> grid;
+    for (std::size_t i = 0; i < count && !out_.interrupted; ++i) grid.push_back(evidence(place(i)));
+    return grid;
+  }
+
+  /// Not below any neighbour along a parameter, and finite.
+  bool is_top(std::vector<double> const& grid, std::size_t index) const {
+    if (!std::isfinite(grid[index])) return false;
+    std::size_t stride = 1;
+    for (std::size_t p = 0; p < size(); ++p, stride *= static_cast<std::size_t>(points_)) {
+      std::size_t const along = index / stride % static_cast<std::size_t>(points_);
+      if (along > 0 && grid[index - stride] >= grid[index]) return false;
+      if (along + 1 < static_cast<std::size_t>(points_) && index + stride < grid.size() && grid[index + stride] > grid[index])
+        return false;
+    }
+    return true;
+  }
+
+  void climb(Place at, double best) {
+    for (double step = 0.5 / points_; step >= finest && !out_.interrupted;)
+      if (!improve(at, best, step)) step /= 2;
+    std::vector<double> const found = values(at);
+    if (std::none_of(out_.modes.begin(), out_.modes.end(), [&](auto const& each) { return each.values == found; }))
+      out_.modes.push_back({found, best});
+  }
+
+  /// One step along some parameter to where it is better.
+  bool improve(Place& at, double& best, double step) {
+    for (std::size_t p = 0; p < size(); ++p)
+      for (double const side : {-step, step}) {
+        Place next = at;
+        next[p] = std::clamp(at[p] + side, 0.0, 1.0);
+        if (next[p] == at[p] || out_.interrupted) continue;
+        double const found = evidence(next);
+        if (!(found > best)) continue;
+        at = next;
+        best = found;
+        return true;
+      }
+    return false;
+  }
+
+  std::vector<double> values(Place const& at) const {
+    std::vector<double> out;
+    for (std::size_t p = 0; p < at.size(); ++p) {
+      double const rank = at[p] * (prior_draws - 1);
+      auto const below = std::min(static_cast<std::size_t>(rank), static_cast<std::size_t>(prior_draws - 2));
+      double const share = rank - static_cast<double>(below);
+      out.push_back((1 - share) * draws_[p][below] + share * draws_[p][below + 1]);
+    }
+    return out;
+  }
+
+  double evidence(Place const& at) {
+    ++out_.evaluations;
+    regression::Discovery const found =
+        regression::discover(with_inner(dictionary_.numbers, dictionary_.open, dictionary_.inner, values(at)), experiments_, method_);
+    out_.interrupted = out_.interrupted || found.interrupted;
+    double sum = 0;
+    for (regression::FoundEquation const& equation : found.equations) {
+      double best = -std::numeric_limits<double>::infinity();
+      for (regression::Support const& support : equation.supports) best = std::max(best, support.log_evidence);
+      sum += equation.found ? best : -std::numeric_limits<double>::infinity();
+    }
+    return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum;
+  }
+
+  CheckedDictionary const& dictionary_;
+  std::span<Experiment const> experiments_;
+  regression::Method const& method_;
+  int points_;
+  std::vector<std::vector<double>> draws_;  // [inner], sorted
+  InnerSearch out_;
+};
+
+}  // namespace
+
+InnerSearch search_inner(CheckedDictionary const& dictionary, std::span<Experiment const> experiments,
+                         regression::Method const& method, int most) {
+  return Searcher(dictionary, experiments, method).run(most);
+}
+
+}  // namespace sysid
