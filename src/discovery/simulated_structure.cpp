@@ -42,7 +42,7 @@ std::vector<int> ValidatedModel::fitted() const {
   return all;
 }
 
-Eigen::VectorXd ValidatedModel::of_regression() const {
+Eigen::VectorXd ValidatedModel::begin() const {
   Eigen::VectorXd values(static_cast<Eigen::Index>(coefficients.size()));
   for (std::size_t j = 0; j < coefficients.size(); ++j) values(static_cast<Eigen::Index>(j)) = coefficients[j].value;
   return values;
@@ -94,8 +94,9 @@ ValidatedModel validated_model(FoundSource const& source, FoundStructure const& 
     for (std::size_t i = 0; i < support.terms.size(); ++i) {
       auto const term = static_cast<std::size_t>(support.terms[i]);
       auto const row = static_cast<Eigen::Index>(i);
+      double const start = structure.refined.empty() ? support.coefficient(row) : structure.refined[e](row);
       out.coefficients.push_back({e, term, static_cast<int>(index_of(model.parameters, names[term])), support.coefficient(row),
-                                  std::sqrt(support.covariance(row, row))});
+                                  std::sqrt(support.covariance(row, row)), start});
     }
   }
   for (Quantity const& input : model.inputs) out.inputs.push_back(index_of(dictionary.measured.inputs, input.name));

@@ -20,7 +20,8 @@ struct ValidatedModel {
   struct Coefficient {
     std::size_t equation, term;  // of the dictionary
     int parameter;               // of the model
-    double value, sd;            // of the regression, SI
+    double value, sd;            // of the regression, SI; not numbers where it does not list the support
+    double start;                // where a fit begins
   };
   std::vector<Coefficient> coefficients;
   std::vector<double> others;                 // all parameters of the model, as SegmentSimulation::Settings has them
@@ -28,7 +29,7 @@ struct ValidatedModel {
   std::vector<std::pair<int, int>> states;    // per state of the model: the dictionary's, and the order of its derivative
 
   std::vector<int> fitted() const;
-  Eigen::VectorXd of_regression() const;
+  Eigen::VectorXd begin() const;
   /// An experiment with the columns of the dictionary as one with those of the model.
   Experiment view(Experiment const& of_dictionary) const;
   /// Starts of segments [states x segments], SI.

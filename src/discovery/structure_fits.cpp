@@ -39,6 +39,7 @@ StructureFits::StructureFits(std::vector<ValidatedModel> const& models, StartGue
   for (Experiment const& each : settings_.records)
     most_halvings_ = std::max(most_halvings_, halvings(static_cast<int>(each.time.size()), settings_.least));
   halved_ = most_halvings_;
+  substeps_ = settings_.substeps;
   spent_.assign(models_.size(), 0);
   int sharing = 0;
   for (std::size_t m = 0; m < models_.size(); ++m) sharing += one_by_one(m) ? 1 : 0;
@@ -73,9 +74,15 @@ SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> 
   std::vector<Experiment> own;
   for (Experiment const& each : settings_.records) own.push_back(model.view(each));
   SegmentSimulation::Settings settings{{}, model.others, 0, solver(m), settings_.execution, settings_.pool, model.centres};
+  for (std::size_t const c : model.channels)
+    if (!settings_.noise.floor.empty()) settings.noise.floor.push_back(settings_.noise.floor[c]);
+  for (auto const& experiment : settings_.noise.relative) {
+    auto& own_channels = settings.noise.relative.emplace_back();
+    for (std::size_t const c : model.channels) own_channels.push_back(experiment[c]);
+  }
   if (starts_alone)
     for (ValidatedModel::Coefficient const& each : model.coefficients)
-      settings.others[static_cast<std::size_t>(each.parameter)] = each.value;
+      settings.others[static_cast<std::size_t>(each.parameter)] = each.start;
   else
     settings.fitted = model.fitted();
   return SegmentSimulation(model.compiled, own, segments, std::move(settings));
@@ -133,7 +140,7 @@ void StructureFits::begin(std::size_t m) {
   std::vector<double> noise;
   for (std::size_t const c : models_[m].channels) noise.push_back(settings_.noise_sd[c]);
   fit_starts(simulation(m, parts, true), point, noise, stop(m));
-  point.coefficients = models_[m].of_regression();
+  point.coefficients = models_[m].begin();
   fits_[m] = {most_halvings_, fit_by_shooting(simulation(m, parts), std::move(point), options(m, most_halvings_ == 0)), {}};
   if (!fits_[m].fit.finite) fits_[m].failure = "does not stay finite";
 }

@@ -15,6 +15,8 @@ struct StructureFitSettings {
   std::vector<double> noise_sd;     // per channel of the dictionary, as the regression took it
   std::vector<double> log_prior;    // per structure
   int least = 2;                    // rows of the shortest segments
+  NoiseShape noise = {};            // with the dictionary's channels
+  int substeps = 1;                 // of fixed steps, to begin with
   ExecutionOptions execution;
   std::shared_ptr<ThreadPool> pool;
   std::function<bool()> interrupted;
@@ -74,7 +76,7 @@ class StructureFits {
   StructureFitSettings settings_;
   std::vector<Fitted> fits_;
   int most_halvings_ = 0, halved_ = 0;
-  int substeps_ = 1;
+  int substeps_ = 1;           // at least
   double allowance_ = 0;       // rows that each of those that are taken one by one may simulate
   std::vector<double> spent_;  // of it, per structure
 };

@@ -23,6 +23,7 @@
 #include "discovery/found_equation.hpp"
 #include "discovery/found_source.hpp"
 #include "discovery/held_out_rows.hpp"
+#include "discovery/search/structure_search.hpp"
 #include "discovery/simulation_validation.hpp"
 #include "discovery/validation_findings.hpp"
 #include "experiment/experiments.hpp"
@@ -69,8 +70,11 @@ class Discover {
                              .seed = seed_};
     std::vector<FoundStructure> structures = best_structures(found, what_.top);
     std::optional<Validation> validation;
+    StructureSearch search;  // holds supports of structures
     if (what_.refit && !structures.empty() && !dictionary_.numbers.discrete) {
-      validation = validate_structures(source, structures, held_out(), method.interrupted);
+      search = search_structures(source, structures, what_.top, method.interrupted);
+      if (search.searched) structures = search.structures;
+      validation = validate_structures(source, structures, held_out(), search.record, method.interrupted);
       if (validation->interrupted) throw Interrupted();
       structures = validation->order;
     }
