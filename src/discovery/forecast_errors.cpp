@@ -65,8 +65,9 @@ class Forecasts {
   static SegmentSimulation::Settings simulated(ValidatedModel const& model, Eigen::VectorXd const& coefficients,
                                                ForecastSettings const& settings) {
     SegmentSimulation::Settings out{{}, model.others, 0, settings.solver, settings.execution, settings.pool, model.centres};
-    for (std::size_t j = 0; j < model.coefficients.size(); ++j)
-      out.others[static_cast<std::size_t>(model.coefficients[j].parameter)] = coefficients(static_cast<Eigen::Index>(j));
+    std::vector<int> const fitted = model.fitted();
+    for (std::size_t j = 0; j < fitted.size(); ++j)
+      out.others[static_cast<std::size_t>(fitted[j])] = coefficients(static_cast<Eigen::Index>(j));
     return out;
   }
 

@@ -30,7 +30,17 @@ std::vector<FoundStructure> best_structures(regression::Discovery const& discove
     if (more.size() > static_cast<std::size_t>(most)) more.resize(static_cast<std::size_t>(most));
     all = std::move(more);
   }
+  for (std::size_t m = 0; m < all.size(); ++m) all[m].of_regression = static_cast<int>(m) + 1;
   return all;
+}
+
+bool is_offered(regression::FoundEquation const& equation, std::size_t term) {
+  constexpr std::size_t few = 3;
+  if (!equation.terms[term].excluded) return true;
+  return std::any_of(equation.concerns.begin(), equation.concerns.end(), [&](regression::Concern const& each) {
+    return each.kind == regression::Concern::Kind::collinear && each.terms.front() == static_cast<int>(term) &&
+           each.terms.size() > 1 + few;
+  });
 }
 
 std::string structure_text(CheckedDictionary const& dictionary, FoundStructure const& structure) {

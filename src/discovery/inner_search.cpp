@@ -17,9 +17,9 @@ int points_of(std::size_t parameters) { return parameters == 1 ? 41 : parameters
 
 using Place = std::vector<double>;  // probabilities of the priors
 
-class Searcher {
+class InnerSearcher {
  public:
-  Searcher(CheckedDictionary const& dictionary, std::span<Experiment const> experiments, regression::Method const& method)
+  InnerSearcher(CheckedDictionary const& dictionary, std::span<Experiment const> experiments, regression::Method const& method)
       : dictionary_(dictionary), experiments_(experiments), method_(method), points_(points_of(dictionary.inner.size())) {
     for (InnerParameter const& each : dictionary.inner) draws_.push_back(sorted_draws(each, prior_draws));
   }
@@ -106,8 +106,8 @@ class Searcher {
 
   double evidence(Place const& at) {
     ++out_.evaluations;
-    regression::Discovery const found =
-        regression::discover(with_inner(dictionary_.numbers, dictionary_.open, dictionary_.inner, values(at)), experiments_, method_);
+    regression::Discovery const found = regression::discover(
+        with_inner(dictionary_.numbers, dictionary_.open, dictionary_.inner, values(at)), experiments_, method_);
     out_.interrupted = out_.interrupted || found.interrupted;
     double sum = 0;
     for (regression::FoundEquation const& equation : found.equations) {
@@ -130,7 +130,7 @@ class Searcher {
 
 InnerSearch search_inner(CheckedDictionary const& dictionary, std::span<Experiment const> experiments,
                          regression::Method const& method, int most) {
-  return Searcher(dictionary, experiments, method).run(most);
+  return InnerSearcher(dictionary, experiments, method).run(most);
 }
 
 }  // namespace sysid

@@ -39,12 +39,15 @@ std::pair<int, int> state_of(CheckedDictionary const& dictionary, std::string co
 std::vector<int> ValidatedModel::fitted() const {
   std::vector<int> all;
   for (Coefficient const& each : coefficients) all.push_back(each.parameter);
+  for (Inner const& each : inner) all.push_back(each.parameter);
   return all;
 }
 
-Eigen::VectorXd ValidatedModel::of_regression() const {
-  Eigen::VectorXd values(static_cast<Eigen::Index>(coefficients.size()));
-  for (std::size_t j = 0; j < coefficients.size(); ++j) values(static_cast<Eigen::Index>(j)) = coefficients[j].value;
+Eigen::VectorXd ValidatedModel::begin() const {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(coefficients.size() + inner.size()));
+  Eigen::Index row = 0;
+  for (Coefficient const& each : coefficients) values(row++) = each.start;
+  for (Inner const& each : inner) values(row++) = each.start;
   return values;
 }
 
@@ -89,16 +92,20 @@ ValidatedModel validated_model(FoundSource const& source, FoundStructure const& 
     if (model.parameters[p].value) out.others[p] = model.graph.evaluate(*model.parameters[p].value, [](NodeId) { return 0.0; });
   CheckedDictionary const& dictionary = source.dictionary;
   for (std::size_t k = 0; k < dictionary.inner.size(); ++k)
-    for (std::size_t p = 0; p < model.parameters.size(); ++p)
-      if (model.parameters[p].name == dictionary.inner[k].quantity.name) out.others[p] = source.inner[k];
+    for (std::size_t p = 0; p < model.parameters.size(); ++p) {
+      if (model.parameters[p].name != dictionary.inner[k].quantity.name) continue;
+      out.others[p] = structure.inner.empty() ? source.inner[k] : structure.inner[k];
+      out.inner.push_back({k, static_cast<int>(p), out.others[p]});
+    }
   for (std::size_t e = 0; e < structure.equations.size(); ++e) {
     regression::Support const& support = *structure.equations[e];
     std::vector<std::string> const names = coefficient_names(dictionary, static_cast<int>(e));
     for (std::size_t i = 0; i < support.terms.size(); ++i) {
       auto const term = static_cast<std::size_t>(support.terms[i]);
       auto const row = static_cast<Eigen::Index>(i);
+      double const start = structure.refined.empty() ? support.coefficient(row) : structure.refined[e](row);
       out.coefficients.push_back({e, term, static_cast<int>(index_of(model.parameters, names[term])), support.coefficient(row),
-                                  std::sqrt(support.covariance(row, row))});
+                                  std::sqrt(support.covariance(row, row)), start});
     }
   }
   for (Quantity const& input : model.inputs) out.inputs.push_back(index_of(dictionary.measured.inputs, input.name));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/random.hpp"
@@ -34,9 +35,10 @@ Eigen::MatrixXd root_of(Eigen::MatrixXd const& covariance) {
 class Validator {
  public:
   Validator(FoundSource const& source, std::vector<FoundStructure> structures, std::vector<ExperimentData> const& unused,
-            std::function<bool()> const& interrupted)
+            SearchedRecord const& searched, std::function<bool()> const& interrupted)
       : source_(source),
         structures_(std::move(structures)),
+        searched_(searched),
         interrupted_(interrupted),
         dictionary_(source.dictionary),
         execution_(source.execution),
@@ -59,7 +61,16 @@ class Validator {
       std::vector<double> priors;
       for (std::size_t m = 0; m < models_.size(); ++m) priors.push_back(log_prior(m));
       fits_.emplace(models_, guess,
-                    StructureFitSettings{rows_.records, noise, std::move(priors), rows_.least, execution_, pool_, interrupted_});
+                    StructureFitSettings{.records = rows_.records,
+                                         .noise_sd = noise,
+                                         .log_prior = std::move(priors),
+                                         .inner = dictionary_.inner,
+                                         .least = rows_.least,
+                                         .noise = searched_.noise,
+                                         .substeps = searched_.substeps,
+                                         .execution = execution_,
+                                         .pool = pool_,
+                                         .interrupted = interrupted_});
       fits_->run();
       if (interrupted_()) return interrupted();
       rank();
@@ -99,10 +110,9 @@ class Validator {
     double sum = 0;
     for (std::size_t e = 0; e < structures_[m].equations.size(); ++e) {
       std::vector<DictionaryTerm> const& terms = dictionary_.equations[e].terms;
-      std::vector<regression::FoundTerm> const& found = source_.discovery.equations[e].terms;
       int offered = 0, taken = 0;
       for (std::size_t j = 0; j < terms.size(); ++j)
-        if (!terms[j].in_target && !found[j].excluded) ++offered;
+        if (!terms[j].in_target && is_offered(source_.discovery.equations[e], j)) ++offered;
       for (int const j : structures_[m].equations[e]->terms)
         if (!terms[static_cast<std::size_t>(j)].in_target) ++taken;
       for (int i = 1; i <= taken; ++i) sum -= elementary::log(static_cast<double>(offered - taken + i) / i);
@@ -113,7 +123,13 @@ class Validator {
   void rank() {
     auto const weight = [&](std::size_t m) { return fits_->log_posterior(m); };
     std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
-    double sum = 0;
+    // The same terms from several starts of parameters inside terms are one structure: the best of their optima.
+    std::set<std::string> seen;
+    std::erase_if(order_, [&](std::size_t m) {
+      bool const elsewhere = !structures_[m].inner.empty() && structures_[m].inner != source_.inner;
+      return (elsewhere && !is_validated(m)) || !seen.insert(structure_text(dictionary_, structures_[m])).second;
+    });
+    double sum = searched_.others;
     for (std::size_t const m : order_)
       if (is_validated(m)) sum += scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()));
     for (std::size_t const m : order_) scored_[m].probability /= sum > 0 ? sum : 1;
@@ -158,8 +174,12 @@ class Validator {
       Eigen::VectorXd const move = root * normal;
       Eigen::VectorXd const start = fit.point.starts.col(static_cast<Eigen::Index>(segment)) + fit.follows[segment] * move;
       for (int p = 0; p < parameters; ++p) out(p, w) = model.others[static_cast<std::size_t>(p)];
-      for (Eigen::Index j = 0; j < k; ++j)
-        out(model.coefficients[static_cast<std::size_t>(j)].parameter, w) = fit.point.coefficients(j) + move(j);
+      std::vector<int> const fitted = model.fitted();
+      for (Eigen::Index j = 0; j < k; ++j) out(fitted[static_cast<std::size_t>(j)], w) = fit.point.coefficients(j) + move(j);
+      auto const first = static_cast<Eigen::Index>(model.coefficients.size());
+      for (std::size_t i = 0; i < model.inner.size(); ++i)  // the normal law may reach where its prior is zero
+        if (!std::isfinite(log_density(dictionary_.inner[model.inner[i].index], out(model.inner[i].parameter, w))))
+          out(model.inner[i].parameter, w) = fit.point.coefficients(first + static_cast<Eigen::Index>(i));
       for (Eigen::Index x = 0; x < start.size(); ++x) out(parameters + static_cast<int>(x), w) = start(x);
     }
     return out;
@@ -190,17 +210,24 @@ class Validator {
     return unit ? unit->scale : 1;
   }
 
+  /// Whether the regression fitted the support.
+  bool is_listed(std::size_t equation, regression::Support const& support) const {
+    regression::FoundEquation const& found = source_.discovery.equations[equation];
+    return &support == &found.chosen || std::any_of(found.supports.begin(), found.supports.end(),
+                                                    [&](regression::Support const& each) { return &each == &support; });
+  }
+
   ValidatedStructure described(std::size_t m) const {
     ValidatedStructure out;
     out.terms = structure_text(dictionary_, structures_[m]);
-    out.of_regression = static_cast<int>(m) + 1;
+    out.of_regression = structures_[m].of_regression;
     out.failure = fits_ ? fits_->failure(m) : models_[m].failure;
     out.given_up = fits_ && fits_->given_up(m);
     if (!out.failure.empty()) return out;
     ShootingFit const& fit = fits_->fit(m);
     Scored const& scored = scored_[m];
     out.log_evidence = fit.log_evidence;
-    out.log_prior = log_prior(m);
+    out.log_prior = log_prior(m) + fits_->log_prior_of_inner(m);
     out.probability = scored.probability;
     out.draws = draws_of(m);
     out.bounded = scored.bounded;
@@ -212,17 +239,37 @@ class Validator {
       DictionaryEquation const& equation = dictionary_.equations[of.equation];
       DictionaryTerm const& term = equation.terms[of.term];
       double const unit = scale(of.equation, of.term);
+      bool const listed = is_listed(of.equation, *structures_[m].equations[of.equation]);
+      double const none = std::numeric_limits<double>::quiet_NaN();
       double const value = fit.point.coefficients(row) / unit, sd = std::sqrt(fit.covariance(row, row)) / unit;
       out.coefficients.push_back({equation.text, term.text, coefficient_names(dictionary_, static_cast<int>(of.equation))[of.term],
-                                  term.unit ? term.unit->text : "", of.value / unit, of.sd / unit, value, sd, term.in_target});
+                                  term.unit ? term.unit->text : "", listed ? of.value / unit : none, listed ? of.sd / unit : none,
+                                  value, sd, term.in_target});
       printed[of.equation].push_back({of.term, value, sd});
+    }
+    auto const first = static_cast<Eigen::Index>(models_[m].coefficients.size());
+    for (std::size_t i = 0; i < models_[m].inner.size(); ++i) {
+      auto const row = first + static_cast<Eigen::Index>(i);
+      Quantity const& inner = dictionary_.inner[models_[m].inner[i].index].quantity;
+      out.coefficients.push_back({.target = "",
+                                  .term = inner.name,
+                                  .name = inner.name,
+                                  .unit = inner.unit_text(),
+                                  .regression = inner.from_si(models_[m].inner[i].start),
+                                  .regression_sd = std::numeric_limits<double>::quiet_NaN(),
+                                  .value = inner.from_si(fit.point.coefficients(row)),
+                                  .sd = inner.from_si(std::sqrt(fit.covariance(row, row))),
+                                  .inside = true});
     }
     for (std::size_t e = 0; e < printed.size(); ++e) out.equations.push_back(equation_text(dictionary_.equations[e], printed[e]));
     for (std::size_t c = 0; c < models_[m].channels.size(); ++c) {
       Channel const& channel = dictionary_.measured.channels[models_[m].channels[c]];
       double const noise = source_.discovery.noise_sd[models_[m].channels[c]];
       ValidatedChannel of{
-          channel.name, channel.unit_text(), 0, channel.from_si(fit.noise_sd[c]), channel.from_si(noise), {}, {}, {}};
+          channel.name, channel.unit_text(), 0, channel.from_si(fit.noise_sd[c]), channel.from_si(noise), 0, {}, {}, {}};
+      std::size_t const own = models_[m].channels[c];
+      if (!searched_.growth.empty() && searched_.growth[own] > 0)
+        of.growth = channel.from_si(searched_.growth[own]) - channel.from_si(0);
       if (noise > 0) out.residual_over_noise = std::max(out.residual_over_noise, fit.noise_sd[c] / noise);
       if (c < scored.errors.sd.size()) {
         auto const declared = [&](std::optional<double> value) { return value ? std::optional(channel.from_si(*value)) : value; };
@@ -265,6 +312,7 @@ class Validator {
 
   FoundSource const& source_;
   std::vector<FoundStructure> structures_;
+  SearchedRecord const& searched_;
   std::function<bool()> const& interrupted_;
   CheckedDictionary const& dictionary_;
   ExecutionOptions execution_;
@@ -279,8 +327,9 @@ class Validator {
 }  // namespace
 
 Validation validate_structures(FoundSource const& source, std::vector<FoundStructure> structures,
-                               std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted) {
-  return Validator(source, std::move(structures), unused, interrupted).run();
+                               std::vector<ExperimentData> const& unused, SearchedRecord const& searched,
+                               std::function<bool()> const& interrupted) {
+  return Validator(source, std::move(structures), unused, searched, interrupted).run();
 }
 
 }  // namespace sysid

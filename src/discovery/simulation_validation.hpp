@@ -6,11 +6,20 @@
 #include <vector>
 
 #include "discovery/found_source.hpp"
+#include "likelihood/segments/segments.hpp"
 #include "result/finding.hpp"
 #include "result/prediction.hpp"
 #include "result/simulation_validation.hpp"
 
 namespace sysid {
+
+/// What a search of structures knows of the record.
+struct SearchedRecord {
+  NoiseShape noise = {};            // with the dictionary's channels
+  std::vector<double> growth = {};  // per channel, SI: ValidatedChannel::growth; empty: 0
+  int substeps = 1;
+  double others = 0;  // weight of all structures that are not validated, that of the best taken as 1
+};
 
 struct Validation {
   ValidationReport report;
@@ -25,6 +34,7 @@ struct Validation {
 /// Every structure is fitted over the same segments: as long as the best one follows the record. The same bytes for any number of
 /// threads and lanes.
 Validation validate_structures(FoundSource const& source, std::vector<FoundStructure> structures,
-                               std::vector<ExperimentData> const& unused, std::function<bool()> const& interrupted);
+                               std::vector<ExperimentData> const& unused, SearchedRecord const& searched,
+                               std::function<bool()> const& interrupted);
 
 }  // namespace sysid

@@ -39,6 +39,7 @@ StructureFits::StructureFits(std::vector<ValidatedModel> const& models, StartGue
   for (Experiment const& each : settings_.records)
     most_halvings_ = std::max(most_halvings_, halvings(static_cast<int>(each.time.size()), settings_.least));
   halved_ = most_halvings_;
+  substeps_ = settings_.substeps;
   spent_.assign(models_.size(), 0);
   int sharing = 0;
   for (std::size_t m = 0; m < models_.size(); ++m) sharing += one_by_one(m) ? 1 : 0;
@@ -57,7 +58,16 @@ std::string const& StructureFits::failure(std::size_t m) const {
 }
 
 double StructureFits::log_posterior(std::size_t m) const {
-  return validated(m) ? fits_[m].fit.log_evidence + settings_.log_prior[m] : -std::numeric_limits<double>::infinity();
+  if (!validated(m)) return -std::numeric_limits<double>::infinity();
+  return fits_[m].fit.log_evidence + settings_.log_prior[m] + log_prior_of_inner(m);
+}
+
+double StructureFits::log_prior_of_inner(std::size_t m) const {
+  double sum = 0;
+  auto row = static_cast<Eigen::Index>(models_[m].coefficients.size());
+  for (ValidatedModel::Inner const& each : models_[m].inner)
+    sum += log_density(settings_.inner[each.index], fits_[m].fit.point.coefficients(row++));
+  return sum;
 }
 
 SolverSettings StructureFits::solver(std::size_t m) const {
@@ -73,11 +83,17 @@ SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> 
   std::vector<Experiment> own;
   for (Experiment const& each : settings_.records) own.push_back(model.view(each));
   SegmentSimulation::Settings settings{{}, model.others, 0, solver(m), settings_.execution, settings_.pool, model.centres};
+  for (std::size_t const c : model.channels)
+    if (!settings_.noise.floor.empty()) settings.noise.floor.push_back(settings_.noise.floor[c]);
+  for (auto const& experiment : settings_.noise.relative) {
+    auto& own_channels = settings.noise.relative.emplace_back();
+    for (std::size_t const c : model.channels) own_channels.push_back(experiment[c]);
+  }
   if (starts_alone)
     for (ValidatedModel::Coefficient const& each : model.coefficients)
-      settings.others[static_cast<std::size_t>(each.parameter)] = each.value;
+      settings.others[static_cast<std::size_t>(each.parameter)] = each.start;
   else
-    settings.fitted = model.fitted();
+    settings.fitted = model.fitted(), settings.inner = static_cast<int>(model.inner.size());
   return SegmentSimulation(model.compiled, own, segments, std::move(settings));
 }
 
@@ -90,7 +106,7 @@ bool StructureFits::one_by_one(std::size_t m) const {
 double StructureFits::rows_of_round(std::size_t m) const {
   double rows = 0;
   for (Experiment const& each : settings_.records) rows += static_cast<double>(each.time.size());
-  return rows * static_cast<double>(1 + models_[m].coefficients.size() + models_[m].states.size());
+  return rows * static_cast<double>(1 + models_[m].fitted().size() + models_[m].states.size());
 }
 
 // Asked once a round.
@@ -133,7 +149,7 @@ void StructureFits::begin(std::size_t m) {
   std::vector<double> noise;
   for (std::size_t const c : models_[m].channels) noise.push_back(settings_.noise_sd[c]);
   fit_starts(simulation(m, parts, true), point, noise, stop(m));
-  point.coefficients = models_[m].of_regression();
+  point.coefficients = models_[m].begin();
   fits_[m] = {most_halvings_, fit_by_shooting(simulation(m, parts), std::move(point), options(m, most_halvings_ == 0)), {}};
   if (!fits_[m].fit.finite) fits_[m].failure = "does not stay finite";
 }
@@ -233,6 +249,8 @@ void StructureFits::refine() {
       fits_[m].failure = "the motion does not determine its coefficients";
     else if (!fits_[m].fit.converged)
       fits_[m].failure = "its fit does not converge";
+    else if (!std::isfinite(log_prior_of_inner(m)))
+      fits_[m].failure = "a parameter inside its terms leaves the support of its prior";
   }
 }
 

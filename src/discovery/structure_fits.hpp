@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "discovery/simulated_structure.hpp"
@@ -11,10 +12,13 @@
 namespace sysid {
 
 struct StructureFitSettings {
-  std::vector<Experiment> records;  // with the dictionary's columns
-  std::vector<double> noise_sd;     // per channel of the dictionary, as the regression took it
-  std::vector<double> log_prior;    // per structure
-  int least = 2;                    // rows of the shortest segments
+  std::vector<Experiment> records;             // with the dictionary's columns
+  std::vector<double> noise_sd;                // per channel of the dictionary, as the regression took it
+  std::vector<double> log_prior;               // per structure
+  std::span<InnerParameter const> inner = {};  // of the dictionary
+  int least = 2;                               // rows of the shortest segments
+  NoiseShape noise = {};                       // with the dictionary's channels
+  int substeps = 1;                            // of fixed steps, to begin with
   ExecutionOptions execution;
   std::shared_ptr<ThreadPool> pool;
   std::function<bool()> interrupted;
@@ -36,6 +40,8 @@ class StructureFits {
   ShootingFit const& fit(std::size_t m) const { return fits_[m].fit; }
   /// Log evidence and prior; -infinity where it is not validated.
   double log_posterior(std::size_t m) const;
+  /// At its fit; -infinity where one leaves the support of its prior.
+  double log_prior_of_inner(std::size_t m) const;
   std::vector<Segment> segments() const { return segments(halved_); }
   /// No record could be cut less.
   bool whole() const { return halved_ == 0; }
@@ -74,7 +80,7 @@ class StructureFits {
   StructureFitSettings settings_;
   std::vector<Fitted> fits_;
   int most_halvings_ = 0, halved_ = 0;
-  int substeps_ = 1;
+  int substeps_ = 1;           // at least
   double allowance_ = 0;       // rows that each of those that are taken one by one may simulate
   std::vector<double> spent_;  // of it, per structure
 };

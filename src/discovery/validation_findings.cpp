@@ -45,7 +45,7 @@ std::optional<Finding> given_up(ValidationReport const& validation) {
 std::optional<Finding> idle_terms(ValidatedStructure const& best) {
   std::vector<std::string> idle, names;
   for (ValidatedCoefficient const& each : best.coefficients)
-    if (!each.of_target && std::abs(each.value) < idle_sds * each.sd) {
+    if (!each.of_target && !each.inside && std::abs(each.value) < idle_sds * each.sd) {
       names.push_back(each.term);
       idle.push_back(fmt::format("`{}`{}", each.term, best.equations.size() > 1 ? " of " + each.target : ""));
     }

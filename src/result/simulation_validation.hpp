@@ -12,22 +12,24 @@ struct ValidatedChannel {
   double sd = 0;        // of what is measured on the held-out rows
   double residual = 0;  // sd of the refit's residuals
   double noise = 0;     // as the regression took it; 0: not known
+  double growth = 0;    // its sd is found to be in proportion to sqrt(signal^2 + growth^2); 0: alike in all samples
   // Root mean square errors on held-out rows; nothing where there are too few rows, or where a run is not finite.
   std::optional<double> one_step, horizon, free_run;
 };
 
 struct ValidatedCoefficient {
   std::string target, term, name, unit;
-  double regression = 0, regression_sd = 0;  // in `unit`
+  double regression = 0, regression_sd = 0;  // in `unit`; not numbers where the regression does not list these terms
   double value = 0, sd = 0;
   bool of_target = false;  // it stands in the target: known to be there
+  bool inside = false;     // no coefficient, but a parameter inside terms; it has no target
 };
 
 /// A structure: one support for each equation.
 struct ValidatedStructure {
   std::string terms;                   // "y'', y', y, y^3"; of several equations "x': x, y; y': ..."
   std::vector<std::string> equations;  // with the refit's coefficients
-  int of_regression = 0;               // its place there, from 1
+  int of_regression = 0;               // its place there, from 1; 0: it was found by simulation alone
   std::string failure;                 // why it was not validated; empty: it was
   bool given_up = false;               // it was not, because that costs too much
   double log_evidence = 0, log_prior = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <numeric>
 
 #include "app/session/preconditions.hpp"
@@ -25,6 +26,7 @@
 #include "discovery/found_source.hpp"
 #include "discovery/held_out_rows.hpp"
 #include "discovery/inner_search.hpp"
+#include "discovery/search/structure_search.hpp"
 #include "discovery/simulation_validation.hpp"
 #include "discovery/validation_findings.hpp"
 #include "experiment/experiments.hpp"
@@ -35,6 +37,9 @@
 
 namespace sysid {
 namespace {
+
+/// Of parameters inside terms: so many values of all are compared by simulation.
+constexpr int most_inner_modes = 4;
 
 class Discover {
  public:
@@ -57,24 +62,25 @@ class Discover {
     method.selector_settings = what_.selector_settings;
     method.seed = seed_;
     method.interrupted = [this] { return session_.interrupted(); };
-    InnerValues const inner = search_inner_parameters(method);
-    regression::Discovery const found = regression::discover(numbers(), experiments_of(data_), method);
-    if (found.interrupted) throw Interrupted();
-    FoundSource const source{.file = session_.file,
-                             .folder = session_.folder(),
-                             .results = session_.result_folder(task_),
-                             .execution = session_.abandonable(),
-                             .task = task_,
-                             .what = what_,
-                             .dictionary = dictionary_,
-                             .data = data_,
-                             .discovery = found,
-                             .inner = inner.values,
-                             .seed = seed_};
+    std::vector<Attempt> const attempts = attempts_with(method);
+    for (Attempt const& each : attempts)
+      if (each.found.interrupted) throw Interrupted();
+    dictionary_.numbers = attempts.front().dictionary.numbers;
+    regression::Discovery const& found = attempts.front().found;
+    FoundSource const source = source_of(attempts.front());
     std::vector<FoundStructure> structures = best_structures(found, what_.top);
     std::optional<Validation> validation;
+    std::deque<StructureSearch> searches;  // hold supports of structures
     if (what_.refit && !structures.empty() && !dictionary_.numbers.discrete) {
-      validation = validate_structures(source, structures, held_out(), method.interrupted);
+      for (Attempt const& each : attempts) {
+        std::vector<FoundStructure> listed = best_structures(each.found, what_.top);
+        if (!listed.empty()) searches.push_back(search_structures(source_of(each), listed, what_.top, method.interrupted));
+        if (!listed.empty() && searches.back().searched) listed = searches.back().structures;
+        for (FoundStructure& one : listed) one.inner = each.inner;
+        if (&each == &attempts.front()) structures.clear();
+        structures.insert(structures.end(), listed.begin(), listed.end());
+      }
+      validation = validate_structures(source, structures, held_out(), searches.front().record, method.interrupted);
       if (validation->interrupted) throw Interrupted();
       structures = validation->order;
     }
@@ -82,15 +88,45 @@ class Discover {
   }
 
  private:
-  // From here on the dictionary has their values.
-  InnerValues search_inner_parameters(regression::Method const& method) {
-    if (dictionary_.inner.empty()) return {};
+  /// What the regression finds with some values of the parameters inside terms.
+  struct Attempt {
+    CheckedDictionary dictionary;
+    std::vector<double> inner;
+    regression::Discovery found;
+  };
+
+  std::vector<Attempt> attempts_with(regression::Method const& method) {
+    std::vector<Attempt> attempts;
     CheckedDictionary noisy = dictionary_;
     noisy.numbers = numbers();
-    InnerValues found = search_inner(noisy, experiments_of(data_), method);
-    if (found.interrupted) throw Interrupted();
-    dictionary_.numbers = with_inner(std::move(dictionary_.numbers), dictionary_.open, dictionary_.inner, found.values);
-    return found;
+    auto const add = [&](std::vector<double> const& inner) {
+      attempts.push_back({noisy, inner, {}});
+      CheckedDictionary& own = attempts.back().dictionary;
+      own.numbers = with_inner(std::move(own.numbers), own.open, own.inner, inner);
+      attempts.back().found = regression::discover(own.numbers, experiments_of(data_), method);
+    };
+    if (dictionary_.inner.empty()) {
+      add({});
+      return attempts;
+    }
+    InnerSearch const search = search_inner(noisy, experiments_of(data_), method, most_inner_modes);
+    if (search.interrupted) throw Interrupted();
+    for (InnerSearch::Mode const& mode : search.modes) add(mode.values);
+    return attempts;
+  }
+
+  FoundSource source_of(Attempt const& attempt) const {
+    return {.file = session_.file,
+            .folder = session_.folder(),
+            .results = session_.result_folder(task_),
+            .execution = session_.abandonable(),
+            .task = task_,
+            .what = what_,
+            .dictionary = attempt.dictionary,
+            .data = data_,
+            .discovery = attempt.found,
+            .inner = attempt.inner,
+            .seed = seed_};
   }
 
   // With the noise that the task gives.

@@ -2,10 +2,24 @@
 #include "check/checked/inner_parameter.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/numeric/random.hpp"
 
 namespace sysid {
+
+double log_density(InnerParameter const& parameter, double value) {
+  Graph graph;
+  Distribution use{parameter.prior, {}, {}, {}};
+  for (double const each : parameter.arguments) use.arguments.push_back(graph.constant(each));
+  if (std::isfinite(parameter.lower)) use.lower = graph.constant(parameter.lower);
+  if (std::isfinite(parameter.upper)) use.upper = graph.constant(parameter.upper);
+  Support const inside = support(graph, use);
+  auto const number = [&](NodeId node) { return graph.constant_value(node).value(); };
+  if ((inside.lower && !(value > number(*inside.lower))) || (inside.upper && !(value < number(*inside.upper))))
+    return -std::numeric_limits<double>::infinity();
+  return number(log_density(graph, use, graph.constant(value)));
+}
 
 std::vector<double> sorted_draws(InnerParameter const& parameter, int count) {
   std::vector<double> draws;

@@ -19,6 +19,9 @@ struct InnerParameter {
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
 };
 
+/// Of the prior; -infinity outside its support.
+double log_density(InnerParameter const& parameter, double value);
+
 /// Draws from the prior, in ascending order; the same each time. Throws UserError where the prior admits none.
 std::vector<double> sorted_draws(InnerParameter const& parameter, int count);
 

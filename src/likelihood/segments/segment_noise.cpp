@@ -7,14 +7,9 @@
 #include <utility>
 
 #include "core/numeric/elementary.hpp"
+#include "likelihood/segments/coefficient_prior.hpp"
 
 namespace sysid {
-namespace {
-
-constexpr double least_noise = 1e-9;  // of the channel's sd
-
-}  // namespace
-
 std::vector<double> squares_of(SegmentSimulation const& simulation, std::vector<SegmentSlopes> const& slopes) {
   std::vector<double> squares(static_cast<std::size_t>(simulation.channels()), 0);
   for (std::size_t s = 0; s < slopes.size(); ++s) {
@@ -32,7 +27,7 @@ std::vector<double> noise_of(SegmentSimulation const& simulation, std::span<doub
   std::vector<double> sds;
   for (int c = 0; c < simulation.channels(); ++c) {
     double const n = std::max(1, simulation.samples_of_channel(c)) * left;
-    sds.push_back(std::max(std::sqrt(squares[static_cast<std::size_t>(c)] / n), least_noise * simulation.size(c)));
+    sds.push_back(std::max(std::sqrt(squares[static_cast<std::size_t>(c)] / n), simulation.least_noise(c)));
   }
   return sds;
 }
@@ -43,9 +38,20 @@ double log_likelihood_of(SegmentSimulation const& simulation, std::span<double c
   for (int c = 0; c < simulation.channels(); ++c) {
     double const sd = sds[static_cast<std::size_t>(c)], n = simulation.samples_of_channel(c);
     if (n == 0) continue;
-    sum -= n / 2 * elementary::log(2 * std::numbers::pi * sd * sd) + squares[static_cast<std::size_t>(c)] / (2 * sd * sd);
+    sum -= n / 2 * elementary::log(2 * std::numbers::pi * sd * sd) + squares[static_cast<std::size_t>(c)] / (2 * sd * sd) +
+           simulation.log_relative(c);
   }
   return sum;
+}
+
+double signal_of(SegmentSimulation const& simulation, std::span<double const> noise_sd) {
+  double total = 0, ratio = 0;
+  for (int c = 0; c < simulation.channels(); ++c) {
+    double const n = simulation.samples_of_channel(c);
+    total += n;
+    ratio += n * 2 * elementary::log(simulation.size(c) / noise_sd[static_cast<std::size_t>(c)]);
+  }
+  return signal_of(total, total > 0 ? elementary::exp(ratio / total) : 1);
 }
 
 SegmentSlopes weighted(SegmentSimulation const& simulation, SegmentSlopes slopes, int segment, std::span<double const> noise_sd) {

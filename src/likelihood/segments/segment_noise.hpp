@@ -11,12 +11,16 @@ namespace sysid {
 std::vector<double> squares_of(SegmentSimulation const& simulation, std::vector<SegmentSlopes> const& slopes);
 
 /// sqrt(S_c / (n_c (1 - used / N))), SI: n_c samples of the channel, N of all, of which `used` unknowns take their share. At least
-/// 1e-9 of the channel's sd.
+/// the least noise of the channel. Where noise is not alike in all samples: of those whose relative noise is 1.
 std::vector<double> noise_of(SegmentSimulation const& simulation, std::span<double const> squares, double used);
 
-/// - sum_c n_c/2 log(2 pi s_c^2) + S_c / (2 s_c^2), s_c the noise with nothing used up: the normal log likelihood at the optimum of
-/// its noise.
+/// - sum_c n_c/2 log(2 pi s_c^2) + S_c / (2 s_c^2) + sum of log relative noise, s_c the noise with nothing used up: the normal log
+/// likelihood at the optimum of its noise.
 double log_likelihood_of(SegmentSimulation const& simulation, std::span<double const> squares);
+
+/// `signal_of` (coefficient_prior.hpp) of the record with this noise: r is the variance of the motion over that of the noise,
+/// its logarithm averaged over samples.
+double signal_of(SegmentSimulation const& simulation, std::span<double const> noise_sd);
 
 /// The rows of a segment, residuals and slopes, divided by the noise sd of their channels.
 SegmentSlopes weighted(SegmentSimulation const& simulation, SegmentSlopes slopes, int segment, std::span<double const> noise_sd);

@@ -1,6 +1,7 @@
 // Damped least squares per segment, all segments simulated side by side.
 #include "likelihood/segments/segment_starts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -15,12 +16,46 @@ namespace {
 
 constexpr double enough = 1e-4;  // gain of log likelihood
 constexpr int most_start_rounds = 40;
+/// Of what starts differ by: how far one is moved that leads to nothing finite.
+constexpr double nudges[] = {0.02, -0.02, 0.05, -0.05, 0.1, -0.1, 0.2, -0.2};
+
+/// Where a segment diverges from its start, one that lies a little to the side: near zero, noise takes a population or a
+/// concentration below it, where equations of positive quantities run away.
+void nudge_diverging(SegmentSimulation const& simulation, ShootingPoint& point) {
+  std::vector<SegmentSlopes> const first = simulation.residuals(point);
+  Eigen::Index const states = point.starts.rows(), count = point.starts.cols();
+  std::vector<bool> lost;
+  for (SegmentSlopes const& each : first) lost.push_back(!each.finite());
+  ShootingPoint const guess = point;
+  std::vector<double> best(static_cast<std::size_t>(count), std::numeric_limits<double>::infinity());
+  for (double const nudge : nudges) {
+    bool const positive = nudge > 0;
+    for (Eigen::Index x = 0; x < states; ++x) {
+      if (std::none_of(lost.begin(), lost.end(), [](bool each) { return each; })) return;
+      double const mean = guess.starts.row(x).mean(), spread = (guess.starts.row(x).array() - mean).matrix().norm();
+      double const size = spread > 0 ? spread / std::sqrt(static_cast<double>(count)) : std::max(std::abs(mean), 1e-300);
+      ShootingPoint trial = guess;
+      trial.starts.row(x).array() += nudge * size;
+      std::vector<SegmentSlopes> const there = simulation.residuals(trial);
+      for (Eigen::Index s = 0; s < count; ++s) {
+        auto const i = static_cast<std::size_t>(s);
+        double const squares = there[i].finite() ? there[i].residual.squaredNorm() : best[i];
+        if (!lost[i] || !(squares < best[i])) continue;
+        best[i] = squares;
+        point.starts.col(s) = trial.starts.col(s);
+      }
+    }
+    if (positive) continue;  // both sides of one size are compared
+    for (std::size_t s = 0; s < lost.size(); ++s) lost[s] = lost[s] && !std::isfinite(best[s]);
+  }
+}
 
 }  // namespace
 
 void fit_starts(SegmentSimulation const& simulation, ShootingPoint& point, std::span<double const> noise_sd,
                 std::function<bool()> const& interrupted) {
   if (simulation.states() == 0) return;
+  nudge_diverging(simulation, point);
   SegmentDifferences differences(simulation, point);
   std::vector<SegmentSlopes> slopes = differences.at(point, most_probes);
   std::size_t const count = slopes.size();

@@ -7,8 +7,9 @@
 
 namespace sysid {
 
-/// Start states alone, coefficients as they are, each segment for itself: its own damping, its own end. A segment from whose start
-/// nothing finite comes keeps it. noise_sd: per channel, SI. interrupted: asked each round; the point is then as far as it got.
+/// Start states alone, coefficients as they are, each segment for itself: its own damping, its own end. A segment that is
+/// not finite from its start, nor from starts a little to the side, keeps it. noise_sd: per channel, SI. interrupted: asked each
+/// round; the point is then as far as it got.
 void fit_starts(SegmentSimulation const& simulation, ShootingPoint& point, std::span<double const> noise_sd,
                 std::function<bool()> const& interrupted = {});
 

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numeric/elementary.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
 namespace {
+
+constexpr double least_relative_noise = 1e-9;  // of the channel's sd
 
 /// Signals of a channel over all experiments: their sd about the mean.
 double size_of(std::span<Experiment const> experiments, std::size_t channel) {
@@ -59,12 +62,13 @@ SegmentSimulation::SegmentSimulation(std::shared_ptr<CompiledModel const> compil
   if (!settings_.centres) settings_.centres = compile_centres(*compiled_);
   for (int c = 0; c < channels(); ++c) size_.push_back(size_of(experiments, static_cast<std::size_t>(c)));
   per_channel_.assign(static_cast<std::size_t>(channels()), 0);
+  log_relative_.assign(static_cast<std::size_t>(channels()), 0);
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     Segment const& segment = segments_[s];
     Experiment const part = rows_of(experiments[static_cast<std::size_t>(segment.experiment)], segment.first, segment.count);
     simulators_.emplace_back(settings_.centres, Schedule(*settings_.centres, part, settings_.solver), settings_.execution,
                              settings_.pool);
-    std::vector<double> samples;
+    std::vector<double> samples, weights;
     int counted = 0;
     for (std::size_t c = 0; c < part.measured.size() && c < per_channel_.size(); ++c)
       for (int i = 0; i < counted_rows(static_cast<int>(s)); ++i) {
@@ -72,10 +76,22 @@ SegmentSimulation::SegmentSimulation(std::shared_ptr<CompiledModel const> compil
         bool const counts = !part.measured[c].empty() && part.scored[row] != 0 && std::isfinite(part.measured[c][row]);
         samples.push_back(counts ? part.measured[c][row] : std::numeric_limits<double>::quiet_NaN());
         if (counts) ++counted, ++per_channel_[c];
+        if (settings_.noise.relative.empty()) continue;
+        double const relative =
+            settings_.noise
+                .relative[static_cast<std::size_t>(segment.experiment)][c][static_cast<std::size_t>(segment.first) + row];
+        weights.push_back(1 / relative);
+        if (counts) log_relative_[c] += elementary::log(relative);
       }
     samples_.push_back(std::move(samples));
+    if (!settings_.noise.relative.empty()) weights_.push_back(std::move(weights));
     per_segment_.push_back(counted);
   }
+}
+
+double SegmentSimulation::least_noise(int channel) const {
+  auto const c = static_cast<std::size_t>(channel);
+  return std::max(least_relative_noise * size_[c], settings_.noise.floor.empty() ? 0.0 : settings_.noise.floor[c]);
 }
 
 bool SegmentSimulation::measured(int segment, int row) const {
@@ -136,6 +152,12 @@ std::vector<SegmentSlopes> SegmentSimulation::run(ShootingPoint const& at, Eigen
         for (int j = 0; j < k; ++j) slopes.by_coefficient(row, j) = out[s](place, 1 + j) - here;
         for (int x = 0; x < d; ++x) slopes.by_start(row, x) = out[s](place, 1 + k + x) - here;
       }
+    if (!weights_.empty()) {
+      auto const weights = Eigen::Map<Eigen::ArrayXd const>(weights_[s].data(), size);
+      slopes.residual.array() *= weights;
+      slopes.by_coefficient.array().colwise() *= weights;
+      slopes.by_start.array().colwise() *= weights;
+    }
     // A lane that failed is not a number in every row, measured or not.
     if (!outcome[s].front().ok) slopes.residual.setConstant(std::numeric_limits<double>::quiet_NaN());
     all.push_back(std::move(slopes));

@@ -34,12 +34,21 @@ struct ShootingPoint {
 /// The simulations of a model that record the centre of each channel and nothing else.
 std::shared_ptr<SimulationProgram const> compile_centres(CompiledModel const& compiled);
 
-/// A segment at a point. Rows are channel by channel, in each sample by sample; 0 where nothing is measured.
+/// A segment at a point. Rows are channel by channel, in each sample by sample; 0 where nothing is measured. All are divided by the
+/// relative noise of their sample.
 struct SegmentSlopes {
   Eigen::VectorXd residual;        // simulated - measured
   Eigen::MatrixXd by_coefficient;  // [rows x k]: change by the perturbation of each coefficient
   Eigen::MatrixXd by_start;        // [rows x states]
   bool finite() const { return residual.allFinite(); }
+};
+
+/// What is known of the noise of a record before its size.
+struct NoiseShape {
+  /// [experiments][channels][rows]: noise of a sample in relation to the others of its channel; empty: all alike.
+  std::vector<std::vector<std::vector<double>>> relative;
+  /// Per channel, SI: the sd is at least this (digits of the file, error of the integrator); empty: 0.
+  std::vector<double> floor;
 };
 
 class SegmentSimulation {
@@ -52,6 +61,8 @@ class SegmentSimulation {
     ExecutionOptions execution;
     std::shared_ptr<ThreadPool> pool;
     std::shared_ptr<SimulationProgram const> centres;  // of `compile_centres`; null: compiled here
+    NoiseShape noise = {};                             // with the channels of the model
+    int inner = 0;                                     // the last so many of `fitted` are parameters inside terms
   };
   /// compiled: with a free start. Segments have two rows or more.
   SegmentSimulation(std::shared_ptr<CompiledModel const> compiled, std::span<Experiment const> experiments,
@@ -59,6 +70,8 @@ class SegmentSimulation {
 
   std::vector<Segment> const& segments() const { return segments_; }
   int coefficients() const { return static_cast<int>(settings_.fitted.size()); }
+  /// Of these the last ones that stand inside terms.
+  int others() const { return settings_.inner; }
   int states() const { return static_cast<int>(compiled_->model.states.size()); }
   int channels() const { return static_cast<int>(compiled_->model.channels.size()); }
   /// Measured samples that count: of a channel; of a segment.
@@ -66,6 +79,10 @@ class SegmentSimulation {
   int samples_of_segment(int segment) const { return per_segment_[static_cast<std::size_t>(segment)]; }
   /// sd about its mean of all that a channel measures in the experiments; 1 where it does not move.
   double size(int channel) const { return size_[static_cast<std::size_t>(channel)]; }
+  /// Sum of the logarithms of the relative noise of a channel's samples.
+  double log_relative(int channel) const { return log_relative_[static_cast<std::size_t>(channel)]; }
+  /// The least noise sd of a channel: as stated, and at least 1e-9 of its size.
+  double least_noise(int channel) const;
   /// Whether outputs are smooth functions of the point to the last digits: of fixed steps.
   bool smooth() const { return settings_.solver.fixed_step(); }
   /// Whether a row of a segment's slopes is measured.
@@ -87,6 +104,8 @@ class SegmentSimulation {
   Settings settings_;
   std::vector<Simulator> simulators_;
   std::vector<std::vector<double>> samples_;  // [segments][rows of slopes]; NaN: nothing measured
+  std::vector<std::vector<double>> weights_;  // the same rows: 1 / relative noise; empty: all 1
+  std::vector<double> log_relative_;          // per channel
   std::vector<int> per_channel_, per_segment_;
   std::vector<double> size_;
 };

@@ -8,6 +8,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "likelihood/segments/arrowhead.hpp"
+#include "likelihood/segments/coefficient_prior.hpp"
 #include "likelihood/segments/damping.hpp"
 #include "likelihood/segments/segment_differences.hpp"
 #include "likelihood/segments/segment_noise.hpp"
@@ -30,17 +31,12 @@ ShootingPoint moved(ShootingPoint point, ShootingMove const& move) {
   return point;
 }
 
-double penalty(SegmentSimulation const& simulation, std::span<double const> noise_sd) {
-  double total = 0, ratio = 0, starts = 0;
-  for (int c = 0; c < simulation.channels(); ++c) {
-    double const n = simulation.samples_of_channel(c);
-    total += n;
-    ratio += n * 2 * elementary::log(simulation.size(c) / noise_sd[static_cast<std::size_t>(c)]);
-  }
+/// Of the starts: each has a prior worth one sample.
+double start_penalty(SegmentSimulation const& simulation) {
+  double sum = 0;
   for (int s = 0; s < static_cast<int>(simulation.segments().size()); ++s)
-    starts += elementary::log(1.0 + simulation.samples_of_segment(s));
-  double const signal = total > 0 ? elementary::exp(ratio / total) : 1;
-  return simulation.coefficients() / 2.0 * elementary::log(1 + total * signal) + simulation.states() / 2.0 * starts;
+    sum += elementary::log(1.0 + simulation.samples_of_segment(s));
+  return simulation.states() / 2.0 * sum;
 }
 
 /// What is known at the optimum beside the point.
@@ -51,7 +47,6 @@ void describe(SegmentSimulation const& simulation, std::vector<SegmentSlopes> co
   fit.log_likelihood = log_likelihood_of(simulation, fit.squares);
   fit.noise_sd = noise_of(simulation, fit.squares,
                           static_cast<double>(k) + static_cast<double>(simulation.states()) * static_cast<double>(slopes.size()));
-  fit.log_evidence = fit.log_likelihood - penalty(simulation, fit.noise_sd);
   std::vector<SegmentSlopes> const all = weighted(simulation, slopes, fit.noise_sd);
   Arrowhead const reduced = reduce(all, 0);
   for (EliminatedSegment const& each : reduced.segments)
@@ -63,8 +58,12 @@ void describe(SegmentSimulation const& simulation, std::vector<SegmentSlopes> co
     fit.determined = fit.determined && std::abs(upper(j, j)) > same_columns * std::sqrt(norms(j)) && norms(j) > 0;
   if (k == 0 || !fit.determined) {
     fit.covariance = Eigen::MatrixXd::Constant(k, k, std::numeric_limits<double>::quiet_NaN());
+    fit.log_evidence = fit.determined ? fit.log_likelihood - start_penalty(simulation) : -std::numeric_limits<double>::infinity();
     return;
   }
+  fit.log_evidence =
+      fit.log_likelihood - start_penalty(simulation) +
+      log_coefficient_weight(fit.point.coefficients, upper, signal_of(simulation, fit.noise_sd), simulation.others());
   Eigen::MatrixXd const inverse = solve_upper(upper, Eigen::MatrixXd::Identity(k, k));
   fit.covariance = inverse * inverse.transpose();
 }

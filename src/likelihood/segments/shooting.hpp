@@ -26,9 +26,9 @@ struct ShootingFit {
   std::vector<double> squares;   // S_c, SI
   std::vector<double> noise_sd;  // per channel, what k coefficients and all start states used up taken from n_c
   double log_likelihood = 0;
-  /// log L - k/2 log(1 + N r) - states/2 sum_s log(1 + n_s), N samples in all, n_s of segment s: the evidence under normal priors
-  /// about the optimum, for each start worth one sample (Kass, Wasserman 1995), for each coefficient worth one sample whose noise
-  /// is as large as the motion. r is the variance of the motion over that of the noise, its logarithm averaged over samples.
+  /// log L + log_coefficient_weight (coefficient_prior.hpp) - states/2 sum_s log(1 + n_s), n_s samples in segment s: the evidence
+  /// by Laplace's method under a prior of coefficients with long tails, the prior of each start worth
+  /// one sample (Kass, Wasserman 1995). -infinity where the coefficients are not determined.
   double log_evidence = 0;
   Eigen::MatrixXd covariance;            // of the coefficients, start states integrated out, noise as in noise_sd
   std::vector<Eigen::MatrixXd> follows;  // [segments][states x k]: how the best start moves with the coefficients

@@ -251,8 +251,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SelectionReport, result, distance, likelihood
 
 // --- discoveries
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedChannel, channel, unit, sd, residual, noise, one_step, horizon, free_run)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedCoefficient, target, term, name, unit, regression, regression_sd, value, sd, of_target)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedChannel, channel, unit, sd, residual, noise, growth, one_step, horizon, free_run)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedCoefficient, target, term, name, unit, regression, regression_sd, value, sd, of_target,
+                                   inside)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedStructure, terms, equations, of_regression, failure, given_up, log_evidence, log_prior,
                                    probability, residual_over_noise, draws, bounded, follows, coefficients, channels)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidationReport, structures, segments, shortest, longest, whole, step, horizon, horizon_rows,

@@ -28,6 +28,17 @@ std::string percent_text(std::optional<double> percent) {
 
 std::string seconds(double value) { return significant(value, 3) + " s"; }
 
+/// On channels whose noise is not alike in all samples.
+std::string growth_text(ValidationReport const& validation) {
+  std::string text;
+  if (validation.structures.empty()) return text;
+  for (ValidatedChannel const& each : validation.structures.front().channels)
+    if (each.growth > 0)
+      text += fmt::format(" The noise of `{0}` grows with the signal: its sd is in proportion to sqrt({0}^2 + {1}^2).",
+                          each.channel, significant(each.growth, 2));
+  return text;
+}
+
 ReportTable structure_table(ValidationReport const& validation) {
   std::string const segments =
       validation.segments == 1
@@ -53,6 +64,7 @@ ReportTable structure_table(ValidationReport const& validation) {
     table.header.insert(table.header.end(), {"1 row ahead %", fmt::format("{} rows %", validation.horizon_rows), "free run %"});
   }
   table.header.push_back("draws bounded");
+  table.caption += growth_text(validation);
   auto const weight = [](ValidatedStructure const& each) { return each.log_evidence + each.log_prior; };
   double const best = validation.structures.empty() ? 0 : weight(validation.structures.front());
   for (ValidatedStructure const& each : validation.structures) {
@@ -85,7 +97,9 @@ ReportTable coefficient_table(ValidatedStructure const& best) {
   if (several) table.header.insert(table.header.begin(), "equation");
   for (ValidatedCoefficient const& each : best.coefficients) {
     auto const [value, sd] = coefficient_text(each.value, each.sd);
-    auto const [before, before_sd] = coefficient_text(each.regression, each.regression_sd);
+    bool const listed = std::isfinite(each.regression);
+    auto const [before, before_sd] =
+        listed ? coefficient_text(each.regression, each.regression_sd) : std::pair(std::string("-"), std::string("-"));
     std::vector<std::string> row = {each.term, value, sd, before, before_sd, each.unit};
     if (several) row.insert(row.begin(), each.target);
     table.rows.push_back(std::move(row));
@@ -153,14 +167,15 @@ nlohmann::ordered_json validation_json(ValidationReport const& validation) {
                               {"unit", one.unit},
                               {"value", one.value},
                               {"sd", number_or_null(one.sd)},
-                              {"regression", one.regression},
-                              {"regression_sd", one.regression_sd}});
+                              {"regression", number_or_null(one.regression)},
+                              {"regression_sd", number_or_null(one.regression_sd)}});
     for (ValidatedChannel const& one : each.channels)
       channels.push_back({{"channel", one.channel},
                           {"unit", one.unit},
                           {"sd", one.sd},
                           {"residual", one.residual},
                           {"noise", one.noise},
+                          {"noise_grows_beyond", one.growth > 0 ? Json(one.growth) : Json()},
                           {"one_step", number_or_null(one.one_step)},
                           {"horizon", number_or_null(one.horizon)},
                           {"free_run", number_or_null(one.free_run)}});

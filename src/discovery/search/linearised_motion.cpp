@@ -1,0 +1,275 @@
+// Moves are compared by closed forms on inner products; what is promising is weighed by QR.
+#include "discovery/search/linearised_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/numeric/elementary.hpp"
+#include "likelihood/segments/coefficient_prior.hpp"
+#include "linear_algebra/decompositions.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double never = -std::numeric_limits<double>::infinity();
+/// Squared length that a column of unit length keeps beside others, for it to be determined: differences give slopes to six digits.
+constexpr double independent = 1e-12;
+/// Pairs of terms are brought in for pairs as long as there are no more than so many combinations.
+constexpr double most_pairs = 3e5;
+constexpr int moves_of_a_kind = 4;
+constexpr int most_expansions = 40, idle_expansions = 8;
+/// What is less probable than the best by this, in log, is not looked at further.
+constexpr double hopeless = 15;
+
+/// The best few of one kind.
+class Best {
+ public:
+  explicit Best(int most) : most_(static_cast<std::size_t>(most)) {}
+  double worst() const { return moves_.size() < most_ ? std::numeric_limits<double>::infinity() : moves_.back().squares; }
+  void offer(double squares, std::vector<int> out, std::vector<int> in) {
+    auto const place = std::upper_bound(moves_.begin(), moves_.end(), squares,
+                                        [](double value, LinearisedMotion::Move const& each) { return value < each.squares; });
+    moves_.insert(place, {squares, std::move(out), std::move(in)});
+    if (moves_.size() > most_) moves_.pop_back();
+  }
+  std::vector<LinearisedMotion::Move> const& moves() const { return moves_; }
+
+ private:
+  std::size_t most_;
+  std::vector<LinearisedMotion::Move> moves_;
+};
+
+/// Least squares on some columns, and all others beside it.
+struct Beside {
+  Eigen::MatrixXd gram;      // [K x K] of the columns without their parts along the terms
+  Eigen::VectorXd dots;      // [K] with the residual
+  Eigen::MatrixXd along;     // [p x K] of each column along what a term alone explains
+  Eigen::VectorXd estimate;  // [p] the residual along it when the term goes
+  Eigen::MatrixXd inverse;   // [p x p]
+  double squares = 0;
+};
+
+/// Directions that come free when terms go, orthonormal: their products with the columns and with the residual.
+struct Freed {
+  std::vector<Eigen::RowVectorXd> along;
+  std::vector<double> residual;
+  double rise = 0;
+
+  void add(Beside const& beside, int first, int second = -1) {
+    auto const unit = [&](int i) {
+      double const norm = std::sqrt(beside.inverse(i, i));
+      return std::pair(Eigen::RowVectorXd(beside.along.row(i) / norm), beside.estimate(i) / norm);
+    };
+    auto [row, part] = unit(first);
+    along.push_back(row);
+    residual.push_back(part);
+    rise += part * part;
+    if (second < 0) return;
+    auto [other, other_part] = unit(second);
+    double const angle = beside.inverse(first, second) / std::sqrt(beside.inverse(first, first) * beside.inverse(second, second));
+    double const rest = std::sqrt(std::max(1 - angle * angle, 1e-30));
+    along.push_back((other - angle * row) / rest);
+    residual.push_back((other_part - angle * part) / rest);
+    rise += residual.back() * residual.back();
+  }
+};
+
+}  // namespace
+
+LinearisedMotion::LinearisedMotion(std::vector<SegmentSlopes> const& slopes, Eigen::VectorXd const& at, Settings settings)
+    : settings_(std::move(settings)), at_(at) {
+  Eigen::Index const k = at.size();
+  usable_.assign(static_cast<std::size_t>(k), 1);
+  std::vector<Eigen::MatrixXd> parts;
+  Eigen::Index rows = 0;
+  for (SegmentSlopes each : slopes) {
+    for (Eigen::Index j = 0; j < k; ++j)
+      if (!each.by_coefficient.col(j).allFinite()) {
+        usable_[static_cast<std::size_t>(j)] = 0;
+        each.by_coefficient.col(j).setZero();
+      }
+    segments_.push_back(eliminate(each, 0));
+    parts.push_back(std::move(segments_.back().left));
+    rows += parts.back().rows();
+  }
+  Eigen::MatrixXd all(rows, k + 1);
+  rows = 0;
+  for (Eigen::MatrixXd const& part : parts) {
+    all.middleRows(rows, part.rows()) = part;
+    rows += part.rows();
+  }
+  if (rows > 2 * (k + 1)) all = OrthogonalTriangular(all).triangle();
+  known_ = all.leftCols(k) * at - all.col(k);
+  columns_ = all.leftCols(k);
+  length_ = columns_.colwise().norm().transpose();
+  for (Eigen::Index j = 0; j < k; ++j) {
+    if (!(length_(j) > 0)) usable_[static_cast<std::size_t>(j)] = 0;
+    if (usable_[static_cast<std::size_t>(j)] == 0) {
+      length_(j) = 1;
+      columns_.col(j).setZero();
+    }
+    columns_.col(j) /= length_(j);
+  }
+  products_ = columns_.transpose() * columns_;
+}
+
+double LinearisedMotion::log_prior(Terms const& terms) const {
+  std::map<int, std::pair<int, int>> counts;  // per equation: offered, taken
+  for (int j = 0; j < columns(); ++j)
+    if (!always(j) && usable(j)) ++counts[settings_.equations[static_cast<std::size_t>(j)]].first;
+  for (int const j : terms)
+    if (!always(j)) ++counts[settings_.equations[static_cast<std::size_t>(j)]].second;
+  double sum = 0;
+  for (auto const& [equation, count] : counts)
+    for (int i = 1; i <= count.second; ++i) sum -= elementary::log(static_cast<double>(count.first - count.second + i) / i);
+  return sum;
+}
+
+Eigen::MatrixXd LinearisedMotion::start_moves(WeighedTerms const& terms) const {
+  Eigen::VectorXd move = -at_;
+  for (std::size_t i = 0; i < terms.terms.size(); ++i) move(terms.terms[i]) += terms.coefficients(static_cast<Eigen::Index>(i));
+  Eigen::MatrixXd starts(segments_.front().upper.rows(), static_cast<Eigen::Index>(segments_.size()));
+  for (std::size_t s = 0; starts.rows() > 0 && s < segments_.size(); ++s)
+    starts.col(static_cast<Eigen::Index>(s)) = segments_[s].start(move);
+  return starts;
+}
+
+WeighedTerms LinearisedMotion::weigh(Terms terms) const {
+  WeighedTerms out{std::move(terms), never, {}};
+  auto const p = static_cast<Eigen::Index>(out.terms.size());
+  Eigen::MatrixXd chosen(columns_.rows(), p + 1);
+  if (chosen.rows() <= p) return out;
+  for (Eigen::Index i = 0; i < p; ++i) chosen.col(i) = columns_.col(out.terms[static_cast<std::size_t>(i)]);
+  chosen.col(p) = known_;
+  Eigen::MatrixXd const triangle = OrthogonalTriangular(chosen).triangle();
+  for (Eigen::Index i = 0; i < p; ++i)
+    if (!(triangle(i, i) * triangle(i, i) > independent)) return out;
+  double const squares = triangle(p, p) * triangle(p, p), n = settings_.samples;
+  double const variance = std::max(squares / n, settings_.floor);
+  Eigen::VectorXd const scaled = solve_upper(triangle.topLeftCorner(p, p), triangle.topRightCorner(p, 1));
+  out.coefficients.resize(p);
+  for (Eigen::Index i = 0; i < p; ++i) out.coefficients(i) = scaled(i) / length_(out.terms[static_cast<std::size_t>(i)]);
+  out.score = -n / 2 * elementary::log(variance) - squares / (2 * variance) +
+              log_coefficient_weight(scaled, triangle.topLeftCorner(p, p) / std::sqrt(variance), settings_.signal) +
+              log_prior(out.terms);
+  return out;
+}
+
+std::vector<LinearisedMotion::Move> LinearisedMotion::moves(Terms const& terms, int most) const {
+  auto const p = static_cast<Eigen::Index>(terms.size()), k = columns_.cols();
+  Beside beside;
+  if (p > 0) {
+    Eigen::MatrixXd chosen(columns_.rows(), p);
+    for (Eigen::Index i = 0; i < p; ++i) chosen.col(i) = columns_.col(terms[static_cast<std::size_t>(i)]);
+    OrthogonalTriangular const factored(chosen);
+    Eigen::MatrixXd const basis = factored.basis(), triangle = factored.triangle();
+    Eigen::MatrixXd const onto = basis.transpose() * columns_;
+    Eigen::VectorXd const part = basis.transpose() * known_;
+    Eigen::VectorXd residual = known_ - basis * part;
+    residual -= basis * (basis.transpose() * residual).eval();
+    beside.gram = products_ - onto.transpose() * onto;
+    beside.dots = columns_.transpose() * residual;
+    Eigen::MatrixXd const inverse = solve_upper(triangle, Eigen::MatrixXd::Identity(p, p));
+    beside.inverse = inverse * inverse.transpose();
+    beside.along = inverse * onto;
+    beside.estimate = inverse * part;
+    beside.squares = residual.squaredNorm();
+  } else {
+    beside = {products_, columns_.transpose() * known_, {}, {}, {}, known_.squaredNorm()};
+  }
+  std::vector<int> others, droppable;
+  for (int j = 0; j < k; ++j)
+    if (usable(j) && !std::binary_search(terms.begin(), terms.end(), j) && beside.gram(j, j) > independent) others.push_back(j);
+  for (int i = 0; i < p; ++i)
+    if (!always(terms[static_cast<std::size_t>(i)])) droppable.push_back(i);
+
+  std::array<std::array<Best, 3>, 3> best{
+      {{Best(most), Best(most), Best(most)}, {Best(most), Best(most), Best(most)}, {Best(most), Best(most), Best(most)}}};
+  double const pairs = static_cast<double>(others.size()) * static_cast<double>(others.size()) / 2;
+  auto const consider = [&](Freed const& freed, std::vector<int> const& out, bool with_pairs) {
+    double const base = beside.squares + freed.rise;
+    std::array<Best, 3>& kinds = best[out.size()];
+    if (!out.empty() && base < kinds[0].worst()) kinds[0].offer(base, out, {});
+    std::vector<double> norms, dots;
+    for (int const j : others) {
+      double norm = beside.gram(j, j), dot = beside.dots(j);
+      for (std::size_t f = 0; f < freed.along.size(); ++f) {
+        norm += freed.along[f](j) * freed.along[f](j);
+        dot += freed.along[f](j) * freed.residual[f];
+      }
+      norms.push_back(norm);
+      dots.push_back(dot);
+      double const squares = base - dot * dot / norm;
+      if (squares < kinds[1].worst()) kinds[1].offer(squares, out, {j});
+    }
+    for (std::size_t a = 0; with_pairs && a < others.size(); ++a)
+      for (std::size_t b = a + 1; b < others.size(); ++b) {
+        double cross = beside.gram(others[a], others[b]);
+        for (Eigen::RowVectorXd const& row : freed.along) cross += row(others[a]) * row(others[b]);
+        double const determinant = norms[a] * norms[b] - cross * cross;
+        if (!(determinant > independent * norms[a])) continue;
+        double const gain =
+            (dots[a] * dots[a] * norms[b] - 2 * dots[a] * dots[b] * cross + dots[b] * dots[b] * norms[a]) / determinant;
+        if (base - gain < kinds[2].worst()) kinds[2].offer(base - gain, out, {others[a], others[b]});
+      }
+  };
+  auto const count = static_cast<double>(droppable.size());
+  consider({}, {}, true);
+  for (std::size_t a = 0; a < droppable.size(); ++a) {
+    Freed one;
+    one.add(beside, droppable[a]);
+    consider(one, {terms[static_cast<std::size_t>(droppable[a])]}, count * pairs <= most_pairs);
+    for (std::size_t b = a + 1; b < droppable.size(); ++b) {
+      Freed two;
+      two.add(beside, droppable[a], droppable[b]);
+      consider(two, {terms[static_cast<std::size_t>(droppable[a])], terms[static_cast<std::size_t>(droppable[b])]},
+               count * count / 2 * pairs <= most_pairs);
+    }
+  }
+  std::vector<Move> all;
+  for (auto const& kinds : best)
+    for (Best const& each : kinds) all.insert(all.end(), each.moves().begin(), each.moves().end());
+  return all;
+}
+
+std::vector<WeighedTerms> best_terms(LinearisedMotion const& motion, std::vector<Terms> const& from) {
+  std::map<Terms, WeighedTerms> known;
+  std::set<Terms> expanded;
+  auto const weigh = [&](Terms terms) {
+    if (!known.contains(terms)) {
+      WeighedTerms weighed = motion.weigh(terms);
+      known.emplace(std::move(terms), std::move(weighed));
+    }
+  };
+  for (Terms const& each : from) weigh(each);
+  double best = never;
+  for (int count = 0, idle = 0; count < most_expansions && idle < idle_expansions; ++count) {
+    WeighedTerms const* next = nullptr;
+    for (auto const& [terms, weighed] : known)
+      if (!expanded.contains(terms) && (next == nullptr || weighed.score > next->score)) next = &weighed;
+    if (next == nullptr || !(next->score > best - hopeless)) break;
+    idle = next->score > best ? 0 : idle + 1;
+    best = std::max(best, next->score);
+    Terms const terms = next->terms;
+    expanded.insert(terms);
+    for (LinearisedMotion::Move const& move : motion.moves(terms, moves_of_a_kind)) {
+      Terms moved;
+      for (int const j : terms)
+        if (std::find(move.out.begin(), move.out.end(), j) == move.out.end()) moved.push_back(j);
+      moved.insert(moved.end(), move.in.begin(), move.in.end());
+      std::sort(moved.begin(), moved.end());
+      weigh(std::move(moved));
+    }
+  }
+  std::vector<WeighedTerms> all;
+  for (auto& [terms, weighed] : known)
+    if (weighed.score > never) all.push_back(std::move(weighed));
+  std::stable_sort(all.begin(), all.end(), [](WeighedTerms const& a, WeighedTerms const& b) { return a.score > b.score; });
+  return all;
+}
+
+}  // namespace sysid

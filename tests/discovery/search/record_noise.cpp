@@ -1,0 +1,58 @@
+#include "discovery/search/record_noise.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/numeric/random.hpp"
+
+using namespace sysid;
+
+namespace {
+
+std::vector<double> motion() {
+  std::vector<double> all;
+  for (int i = 0; i < 300; ++i) all.push_back(4 * std::sin(0.1 * i) * std::exp(-0.005 * i));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("the rounding of a record is read off its digits, significant ones or decimals") {
+  for (char const* form : {"{:.7g}", "{:.3g}", "{:.4f}", "{:.2e}"}) {
+    CAPTURE(form);
+    std::vector<double> written;
+    double squares = 0;
+    for (double const y : motion()) {
+      written.push_back(std::stod(fmt::format(fmt::runtime(form), y)));
+      squares += std::pow(written.back() - y, 2);
+    }
+    // The mean of 300 squares of uniform errors lies within 16 % of its expectation, three sds.
+    CHECK(rounding_sd(written) == doctest::Approx(std::sqrt(squares / 300)).epsilon(0.16));
+  }
+  CHECK(rounding_sd(motion()) == 0);
+  CHECK(rounding_sd(std::vector<double>{0, std::nan(""), 0}) == 0);
+}
+
+TEST_CASE("noise in proportion to the signal is told from noise that is alike in all samples") {
+  std::vector<double> const signal = motion();
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    Stream stream({seed, Purpose::noise, 0, 0});
+    std::vector<double> proportional, alike;
+    for (double const y : signal) {
+      double const error = stream.normal();
+      proportional.push_back(0.05 * y * error);
+      alike.push_back(0.1 * error);
+    }
+    auto const grows = growing_noise(signal, proportional);
+    REQUIRE(grows);
+    CHECK(grows->gain > 20);
+    double squares = 0;
+    for (double const each : grows->relative) squares += each * each;
+    CHECK(squares / 300 == doctest::Approx(1));
+    CHECK(grows->relative[15] > 3 * grows->relative[0]);
+    CHECK_FALSE(growing_noise(signal, alike));
+  }
+}
