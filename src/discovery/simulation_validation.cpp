@@ -286,6 +286,11 @@ class Validator {
   void report(Validation& out) const {
     for (std::size_t const m : order_) {
       out.order.push_back(structures_[m]);
+      if (!structures_[m].inner.empty() && is_validated(m)) {
+        auto row = static_cast<Eigen::Index>(models_[m].coefficients.size());
+        for (ValidatedModel::Inner const& each : models_[m].inner)
+          out.order.back().inner[each.index] = fits_->fit(m).point.coefficients(row++);
+      }
       out.report.structures.push_back(described(m));
     }
     if (!fits_) return;

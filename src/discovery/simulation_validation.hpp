@@ -23,7 +23,7 @@ struct SearchedRecord {
 
 struct Validation {
   ValidationReport report;
-  std::vector<FoundStructure> order;  // best first, parallel to report.structures
+  std::vector<FoundStructure> order;  // best first, parallel to report.structures; parameters inside terms as fitted
   Findings findings;
   std::vector<Prediction> free_runs;  // of the first, along the rows that are scored; empty where none are, or it is not validated
   bool interrupted = false;           // nothing else is set

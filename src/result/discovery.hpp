@@ -84,6 +84,11 @@ struct DiscoveryReport {
     bool given = false;  // else estimated from the record
   };
   std::vector<Noise> noise;
+  struct Inner {
+    std::string name, unit, prior;  // "log_uniform(0.05, 20)"
+    double value = 0;               // of the regression, in `unit`
+  };
+  std::vector<Inner> inner;  // parameters inside terms
   std::vector<DiscoveredEquation> equations;
   struct Excluded {
     std::string term, reason;

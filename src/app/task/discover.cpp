@@ -62,57 +62,83 @@ class Discover {
     method.selector_settings = what_.selector_settings;
     method.seed = seed_;
     method.interrupted = [this] { return session_.interrupted(); };
-    std::vector<Attempt> const attempts = attempts_with(method);
-    for (Attempt const& each : attempts)
-      if (each.found.interrupted) throw Interrupted();
-    dictionary_.numbers = attempts.front().dictionary.numbers;
-    regression::Discovery const& found = attempts.front().found;
-    FoundSource const source = source_of(attempts.front());
-    std::vector<FoundStructure> structures = best_structures(found, what_.top);
+    std::deque<Attempt> attempts = attempts_with(method);
+    std::vector<FoundStructure> structures = best_structures(attempts.front().found, what_.top);
     std::optional<Validation> validation;
-    std::deque<StructureSearch> searches;  // hold supports of structures
     if (what_.refit && !structures.empty() && !dictionary_.numbers.discrete) {
-      for (Attempt const& each : attempts) {
-        std::vector<FoundStructure> listed = best_structures(each.found, what_.top);
-        if (!listed.empty()) searches.push_back(search_structures(source_of(each), listed, what_.top, method.interrupted));
-        if (!listed.empty() && searches.back().searched) listed = searches.back().structures;
-        for (FoundStructure& one : listed) one.inner = each.inner;
-        if (&each == &attempts.front()) structures.clear();
-        structures.insert(structures.end(), listed.begin(), listed.end());
-      }
-      validation = validate_structures(source, structures, held_out(), searches.front().record, method.interrupted);
-      if (validation->interrupted) throw Interrupted();
+      validation = validated(attempts, method);
       structures = validation->order;
     }
-    return finish(found, *method.selector, source, structures, validation);
+    Attempt const& best = validation ? attempts.back() : attempts.front();
+    dictionary_.numbers = best.dictionary.numbers;
+    inner_ = best.inner;
+    return finish(best.found, *method.selector, source_of(best), structures, validation);
   }
 
  private:
-  /// What the regression finds with some values of the parameters inside terms.
+  /// What is found with some values of the parameters inside terms.
   struct Attempt {
     CheckedDictionary dictionary;
     std::vector<double> inner;
     regression::Discovery found;
+    StructureSearch search = {};  // holds supports of structures
   };
 
-  std::vector<Attempt> attempts_with(regression::Method const& method) {
-    std::vector<Attempt> attempts;
-    CheckedDictionary noisy = dictionary_;
-    noisy.numbers = numbers();
-    auto const add = [&](std::vector<double> const& inner) {
-      attempts.push_back({noisy, inner, {}});
-      CheckedDictionary& own = attempts.back().dictionary;
-      own.numbers = with_inner(std::move(own.numbers), own.open, own.inner, inner);
-      attempts.back().found = regression::discover(own.numbers, experiments_of(data_), method);
-    };
+  Attempt attempt(std::vector<double> const& inner, regression::Method const& method) const {
+    Attempt out{dictionary_, inner, {}};
+    out.dictionary.numbers = with_inner(numbers(), dictionary_.open, dictionary_.inner, inner);
+    out.found = regression::discover(out.dictionary.numbers, experiments_of(data_), method);
+    if (out.found.interrupted) throw Interrupted();
+    return out;
+  }
+
+  /// One, or one for each mode of the parameters inside terms, the best one first.
+  std::deque<Attempt> attempts_with(regression::Method const& method) const {
+    std::deque<Attempt> attempts;
     if (dictionary_.inner.empty()) {
-      add({});
+      attempts.push_back(attempt({}, method));
       return attempts;
     }
+    CheckedDictionary noisy = dictionary_;
+    noisy.numbers = numbers();
     InnerSearch const search = search_inner(noisy, experiments_of(data_), method, most_inner_modes);
     if (search.interrupted) throw Interrupted();
-    for (InnerSearch::Mode const& mode : search.modes) add(mode.values);
+    for (InnerSearch::Mode const& mode : search.modes) attempts.push_back(attempt(mode.values, method));
     return attempts;
+  }
+
+  /// The structures that a search by simulation finds, and where it cannot search those of the regression.
+  std::vector<FoundStructure> structures_of(Attempt& attempt, regression::Method const& method) const {
+    std::vector<FoundStructure> listed = best_structures(attempt.found, what_.top);
+    if (listed.empty()) return listed;
+    attempt.search = search_structures(source_of(attempt), listed, what_.top, method.interrupted);
+    if (attempt.search.searched) listed = attempt.search.structures;
+    for (FoundStructure& each : listed) each.inner = attempt.inner;
+    return listed;
+  }
+
+  /// Of all attempts together. Fits by simulation improve parameters inside terms: with their values all is done once more, as the
+  /// last attempt.
+  Validation validated(std::deque<Attempt>& attempts, regression::Method const& method) {
+    std::vector<FoundStructure> structures;
+    for (Attempt& each : attempts) {
+      std::vector<FoundStructure> const own = structures_of(each, method);
+      structures.insert(structures.end(), own.begin(), own.end());
+    }
+    auto const validate = [&](Attempt const& by) {
+      Validation out = validate_structures(source_of(by), structures, held_out(), by.search.record, method.interrupted);
+      if (out.interrupted) throw Interrupted();
+      return out;
+    };
+    Validation first = validate(attempts.front());
+    bool const any = first.report.structures.front().failure.empty();
+    if (dictionary_.inner.empty()) return first;
+    attempts.push_back(any ? attempt(first.order.front().inner, method) : attempts.front());
+    if (!any) return first;
+    structures = structures_of(attempts.back(), method);
+    for (std::size_t k = 0; k < first.order.size(); ++k)
+      if (first.report.structures[k].failure.empty()) structures.push_back(first.order[k]);
+    return validate(attempts.back());
   }
 
   FoundSource source_of(Attempt const& attempt) const {
@@ -260,6 +286,10 @@ class Discover {
       Channel const& channel = dictionary_.measured.channels[c];
       out.noise.push_back({channel.name, channel.unit_text(), channel.from_si(found.noise_sd[c]), given(c)});
     }
+    for (std::size_t k = 0; k < inner_.size(); ++k) {
+      Quantity const& each = dictionary_.inner[k].quantity;
+      out.inner.push_back({each.name, each.unit_text(), prior_text(each.name), each.from_si(inner_[k])});
+    }
     for (ExcludedText& each : excluded_texts(dictionary_)) out.excluded.push_back({std::move(each.term), std::move(each.reason)});
     for (std::size_t e = 0; e < found.equations.size(); ++e)
       out.equations.push_back(described(found.equations[e], static_cast<int>(e)));
@@ -318,6 +348,14 @@ class Discover {
     return out;
   }
 
+  std::string prior_text(std::string const& parameter) const {
+    for (ast::DictionaryStatement const& statement : dictionary_.tree.statements)
+      if (auto const* each = std::get_if<ast::DictionaryParameter>(&statement);
+          each != nullptr && each->prior && each->name.name.text == parameter)
+        return unparse(ast::Expression{{}, *each->prior});
+    return "";
+  }
+
   void add_findings(regression::Discovery const& found, ValidationReport const* validation, Findings& findings) const {
     for (std::size_t e = 0; e < found.equations.size(); ++e) {
       regression::FoundEquation const& equation = found.equations[e];
@@ -370,6 +408,7 @@ class Discover {
   Session& session_;
   Task const& task_;
   DiscoverTask const& what_;
+  std::vector<double> inner_;     // values of the parameters inside terms, SI
   CheckedDictionary dictionary_;  // with the values that were found for parameters inside terms
   std::uint64_t seed_;
   std::chrono::steady_clock::time_point began_;

@@ -81,6 +81,17 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
           {each.channel, each.unit, each.sd > 0 ? significant(each.sd, 3) : "none", each.given ? "given" : "estimated"});
     tables.push_back(std::move(noise));
   }
+  if (!discovery.inner.empty()) {
+    ReportTable inner{
+        "parameters inside terms",
+        "Where the regression explains the record best. Its coefficients and their sds are given these values; in the "
+        "fit by simulation all are free.",
+        {"parameter", "value", "unit", "prior"},
+        {}};
+    for (DiscoveryReport::Inner const& each : discovery.inner)
+      inner.rows.push_back({each.name, significant(each.value, 4), each.unit, each.prior});
+    tables.push_back(std::move(inner));
+  }
   for (DiscoveredEquation const& equation : discovery.equations) {
     if (equation.equation.empty()) continue;
     tables.push_back(term_table(discovery, equation));
@@ -117,6 +128,8 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
               {"left_out", Json::array()}};
   for (DiscoveryReport::Noise const& noise : discovery.noise)
     out["noise"][noise.channel] = {{"unit", noise.unit}, {"sd", noise.sd}, {"given", noise.given}};
+  for (DiscoveryReport::Inner const& each : discovery.inner)
+    out["inside_terms"].push_back({{"name", each.name}, {"unit", each.unit}, {"prior", each.prior}, {"regression", each.value}});
   for (DiscoveryReport::Excluded const& each : discovery.excluded)
     out["left_out"].push_back({{"term", each.term}, {"reason", each.reason}});
   for (DiscoveredEquation const& equation : discovery.equations) {

@@ -270,10 +270,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredSupport, terms, probability, probab
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveredEquation, target, equation, terms, supports, explained, noise_ratio, own_noise, unit,
                                    moving_average, rows, exact, converged)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Noise, channel, unit, sd, given)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Inner, name, unit, prior, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport::Excluded, term, reason)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DifferenceForecast, target, unit, sd, one_step, free_run, expected)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measure, windows, half_width, noise, equations, excluded,
-                                   validation, forecast_rows, forecasts, answer, source)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiscoveryReport, selector, derivatives, measure, windows, half_width, noise, inner, equations,
+                                   excluded, validation, forecast_rows, forecasts, answer, source)
 
 // --- calibrations
 

@@ -168,7 +168,8 @@ nlohmann::ordered_json validation_json(ValidationReport const& validation) {
                               {"value", one.value},
                               {"sd", number_or_null(one.sd)},
                               {"regression", number_or_null(one.regression)},
-                              {"regression_sd", number_or_null(one.regression_sd)}});
+                              {"regression_sd", number_or_null(one.regression_sd)},
+                              {"inside_terms", one.inside}});
     for (ValidatedChannel const& one : each.channels)
       channels.push_back({{"channel", one.channel},
                           {"unit", one.unit},
