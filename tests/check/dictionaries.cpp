@@ -92,6 +92,20 @@ TEST_CASE("a coefficient has the unit of the target over that of its term") {
   CHECK(units(dictionary("state u = control\ntarget = x\nterms = u, y")) == Texts{"", "N/m"});
 }
 
+TEST_CASE("a coefficient of a term without a unit is a number of the unit that is written, whatever the states are in") {
+  auto const target = [](std::string const& statement, std::string const& unit) {
+    CheckedDictionary const of = checked("dictionary terms {\ninput x [N]\nstate y " + unit +
+                                         " = displacement\nparameter m [kg]\n" + statement + "\nterms = y, sign(y')\n}\n")
+                                     .dictionaries.at(0);
+    DictionaryTerm const& sign = of.equations.at(0).terms.back();
+    return sign.unit->text + " " + std::to_string(sign.unit->scale) + " " + of.equations[0].unit->text + " " +
+           std::to_string(of.equations[0].unit->scale);
+  };
+  CHECK(target("target = m*y'' - x", "[mm]") == "N 1.000000 N 1.000000");
+  CHECK(target("target = m*y'' - x", "[m]") == "N 1.000000 N 1.000000");
+  CHECK(target("target = x - m*y''", "[mm]") == "N 1.000000 N 1.000000");
+}
+
 TEST_CASE("units prune what coefficients may be") {
   auto const found = dictionary("target = x\nterms = polynomial(y, y', degree = 3)\ncoefficients = [N/mm], [N/m^3]");
   CHECK(terms(found) == Texts{"y", "y^3"});

@@ -32,7 +32,10 @@ void DictionaryChecker::equation(int index) {
   equation.tree = *target.tree;
   if (target.value.kind == Typed::Kind::known) {
     equation.unit = target.value.unit;
-    equation.unit->text = scope_.units().words(*equation.unit);
+    if (equation.unit->text.empty()) {
+      equation.unit->scale = 1;  // as its words say: of `m*y''`, y in mm, it would be a thousandth
+      equation.unit->text = scope_.units().words(*equation.unit);
+    }
   }
   NodeId const root = with_values(target.value.node);
   std::vector<std::pair<std::string, NodeId>> coefficients;
