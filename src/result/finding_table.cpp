@@ -109,6 +109,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::unused_parameter, "unused_parameter", warning},
     {FindingCode::not_measured, "not_measured", error},
     {FindingCode::unequal_steps, "unequal_steps", error},
+    {FindingCode::steps_interpolated, "steps_interpolated", warning_or_note},
     {FindingCode::too_few_rows, "too_few_rows", error},
     {FindingCode::record_at_rest, "record_at_rest", error},
     {FindingCode::nothing_to_explain, "nothing_to_explain", error},

@@ -108,6 +108,7 @@ enum class FindingCode {
   unused_parameter,
   not_measured,
   unequal_steps,
+  steps_interpolated,
   too_few_rows,
   record_at_rest,
   nothing_to_explain,

@@ -21,6 +21,7 @@
 #include "discovery/difference_forecast.hpp"
 #include "discovery/discovery_findings.hpp"
 #include "discovery/discovery_verdict.hpp"
+#include "discovery/equal_steps.hpp"
 #include "discovery/excluded_terms.hpp"
 #include "discovery/found_equation.hpp"
 #include "discovery/found_source.hpp"
@@ -62,6 +63,7 @@ class Discover {
     method.selector_settings = what_.selector_settings;
     method.seed = seed_;
     method.interrupted = [this] { return session_.interrupted(); };
+    read_records();
     std::deque<Attempt> attempts = attempts_with(method);
     std::vector<FoundStructure> structures = best_structures(attempts.front().found, what_.top);
     std::optional<Validation> validation;
@@ -87,7 +89,7 @@ class Discover {
   Attempt attempt(std::vector<double> const& inner, regression::Method const& method) const {
     Attempt out{dictionary_, inner, {}};
     out.dictionary.numbers = with_inner(numbers(), dictionary_.open, dictionary_.inner, inner);
-    out.found = regression::discover(out.dictionary.numbers, experiments_of(data_), method);
+    out.found = regression::discover(out.dictionary.numbers, records_, method);
     if (out.found.interrupted) throw Interrupted();
     return out;
   }
@@ -101,7 +103,7 @@ class Discover {
     }
     CheckedDictionary noisy = dictionary_;
     noisy.numbers = numbers();
-    InnerSearch const search = search_inner(noisy, experiments_of(data_), method, most_inner_modes);
+    InnerSearch const search = search_inner(noisy, records_, method, most_inner_modes);
     if (search.interrupted) throw Interrupted();
     for (InnerSearch::Mode const& mode : search.modes) attempts.push_back(attempt(mode.values, method));
     return attempts;
@@ -155,10 +157,41 @@ class Discover {
             .seed = seed_};
   }
 
+  /// The regression needs equal steps; simulations take the samples as they are.
+  void read_records() {
+    records_ = experiments_of(data_);
+    if (dictionary_.numbers.discrete) return;
+    std::vector<double> squares(dictionary_.measured.channels.size()), counts(squares.size());
+    for (Experiment& each : records_) {
+      if (unequal_step(each.time) == 0) continue;
+      interpolated_.push_back(each.name);
+      for (std::size_t c = 0; c < squares.size(); ++c)
+        if (auto const noise = noise_at_unequal_steps(each.time, each.measured[c])) squares[c] += *noise * *noise, ++counts[c];
+      each = at_equal_steps(each);
+    }
+    for (std::size_t c = 0; c < squares.size(); ++c)
+      if (counts[c] > 0) dictionary_.numbers.channels[c].noise_sd = std::sqrt(squares[c] / counts[c]);
+  }
+
+  Findings interpolation_findings(std::optional<Validation> const& validation) const {
+    bool const simulated = validation && validation->report.structures.front().failure.empty();
+    Findings findings;
+    for (std::string const& name : interpolated_)
+      findings.push_back({FindingCode::steps_interpolated,
+                          simulated ? Severity::note : Severity::warning,
+                          {name},
+                          fmt::format("the time steps of `{}` are unequal: the regression reads it interpolated to equal steps{}",
+                                      name, simulated ? ", the simulation reads the samples as they are" : ""),
+                          fmt::format("{}if it was sampled regularly, write `step` or `rate` in place of `time` in the data block",
+                                      simulated ? "" : "take the coefficients and sds as approximate; ")});
+    return findings;
+  }
+
   // With the noise that the task gives.
   regression::Dictionary numbers() const {
     regression::Dictionary numbers = dictionary_.numbers;
-    for (std::size_t c = 0; c < what_.noise.size(); ++c) numbers.channels[c].noise_sd = what_.noise[c];
+    for (std::size_t c = 0; c < what_.noise.size(); ++c)
+      if (what_.noise[c]) numbers.channels[c].noise_sd = what_.noise[c];
     return numbers;
   }
 
@@ -190,6 +223,7 @@ class Discover {
     DiscoveryReport discovery = described(found, selector);
     add_findings(found, validation ? &validation->report : nullptr, report.findings);
     say_once(report.findings);
+    for (Finding& each : interpolation_findings(validation)) report.findings.push_back(std::move(each));
     if (dictionary_.numbers.discrete && !structures.empty()) add_forecasts(found, discovery, report.findings);
     if (validation) {
       temper_by_simulation(validation->report, report.findings);
@@ -408,8 +442,10 @@ class Discover {
   Session& session_;
   Task const& task_;
   DiscoverTask const& what_;
-  std::vector<double> inner_;     // values of the parameters inside terms, SI
-  CheckedDictionary dictionary_;  // with the values that were found for parameters inside terms
+  std::vector<Experiment> records_;        // as the regression reads them
+  std::vector<std::string> interpolated_;  // names of those that were
+  std::vector<double> inner_;              // values of the parameters inside terms, SI
+  CheckedDictionary dictionary_;           // with the values that were found for parameters inside terms
   std::uint64_t seed_;
   std::chrono::steady_clock::time_point began_;
   std::vector<ExperimentData> data_;

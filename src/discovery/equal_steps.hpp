@@ -1,0 +1,19 @@
+// Records of unequal steps as the regression reads them: interpolated to equal ones.
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "data/experiment.hpp"
+
+namespace sysid {
+
+/// As many rows at equal steps between the first and the last time: channels by cubic splines through what was measured, NaN where
+/// no sample lies within two mean steps; inputs by their own rule. Names and the first row stay.
+Experiment at_equal_steps(Experiment const& experiment);
+
+/// The noise of samples at any distinct times: the root mean square of sixth divided differences, each divided by what it is if
+/// every sample has an error of sd 1. Nothing where fewer than seven samples are measured.
+std::optional<double> noise_at_unequal_steps(std::span<double const> time, std::span<double const> samples);
+
+}  // namespace sysid
