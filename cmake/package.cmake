@@ -4,7 +4,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME sysid)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_VENDOR sysid)
-set(CPACK_PACKAGE_CONTACT "The developers of sysid <sysid@localhost.localdomain>" CACHE STRING "maintainer named in packages")
+set(CPACK_PACKAGE_CONTACT "The sysid authors <sysid@users.noreply.github.com>" CACHE STRING "maintainer named in packages")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
@@ -26,10 +26,10 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME sysid)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox, libopenblas0-pthread")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Bayesian identification of nonlinear systems
- A language for equations with unknown parameters, and the program that
- estimates them from measured data: posteriors, predictions with their
- uncertainty, comparison of models, discovery of equations, and checks
- of every result.")
+A language for equations with unknown parameters, and the program that
+estimates them from measured data: posteriors, predictions with their
+uncertainty, comparison of models, discovery of equations, and checks
+of every result.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-sysid)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
@@ -37,9 +37,9 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "sysid (= ${PROJECT_VERSION}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-xarray, python3-pandas")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Bayesian identification of nonlinear systems, from Python
- Models of the language of sysid as functions of NumPy arrays: density,
- gradient, residuals and simulations, for samplers and optimisers; and
- the tasks of the program, with results as xarray data sets.")
+Models of the language of sysid as functions of NumPy arrays: density,
+gradient, residuals and simulations, for samplers and optimisers; and
+the tasks of the program, with results as xarray data sets.")
 
 # What every Debian package must hold.
 find_program(GZIP_PROGRAM gzip REQUIRED)

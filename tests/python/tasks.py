@@ -182,9 +182,48 @@ class Results(Desk):
         self.assertEqual(said.getvalue(), "")
 
 
+class OtherTasks(Desk):
+    def test_select(self):
+        text = """model straight { input u\n parameter a ~ normal(0, sd = 5)\n observe d ~ normal(a*u, sd = 0.1) }
+model bent { input u\n parameter a ~ normal(0, sd = 5)\n parameter b ~ normal(0, sd = 5)
+  observe d ~ normal(a*u + b*u^2, sd = 0.1) }
+data bench { file "line.csv"; input u = u; measure d = d }
+candidates shapes { straight\n bent }
+choice = select shapes to bench with reversible_jump, seed = 1
+"""
+        pathlib.Path("line.sysid").write_text(text)
+        u = np.linspace(0, 1, 30)
+        d = 2 * u + 0.1 * np.cos(37 * u)
+        pathlib.Path("line.csv").write_text("u,d\n" + "".join(f"{a!r},{b!r}\n" for a, b in zip(u.tolist(), d.tolist())))
+        said = self.command_line("select", "line.sysid", "--quiet", "--no-figures")
+        shutil.move("results", "of_command_line")
+        choice = sysid.load("line.sysid").select(output="results")
+        self.assertEqual(choice.text, said)
+        self.assertEqual(files_of("results/choice"), files_of("of_command_line/choice"))
+        self.assertGreater(choice.summary["models"]["straight"]["probability"], 0.5)
+        with self.assertRaisesRegex(sysid.Error, "no fit task"):
+            sysid.load("line.sysid").log_density([1.0])
+
+    def test_discover(self):
+        text = """dictionary decaying {
+  state y [m] = d
+  target = y'
+  terms = y, y^2, 1
+}
+data bench { file "bench.csv"; time t [s]; measure d = d [m] }
+found = discover decaying from bench with spike_slab(derivatives = weak), seed = 1
+"""
+        pathlib.Path("terms.sysid").write_text(text)
+        said = self.command_line("discover", "terms.sysid", "--quiet", "--no-figures")
+        shutil.move("results", "of_command_line")
+        found = sysid.load("terms.sysid").discover(output="results")
+        self.assertEqual(found.text, said)
+        self.assertEqual(files_of("results/found"), files_of("of_command_line/found"))
+
+
 class Interrupt(Desk):
     def test_ctrl_c_keeps_draws_and_resume_goes_on(self):
-        pathlib.Path("long.sysid").write_text(DECAY.replace("samples = 400", "samples = 100000"))
+        pathlib.Path("long.sysid").write_text(DECAY.replace("samples = 400", "samples = 30000"))
         program = textwrap.dedent(
             """
             import os, pathlib, signal, threading, time, sysid
@@ -203,13 +242,13 @@ class Interrupt(Desk):
             import sysid._progress
             sysid._progress.line_for = lambda wanted: Tell()
             fit = model.fit(output="results")
-            print(fit.interrupted, fit.posterior.sizes["draw"] < 99900)
+            print(fit.interrupted, fit.posterior.sizes["draw"] < 29900)
             again = model.fit(output="results", resume=True)
             print(again.interrupted, again.posterior.sizes["draw"])
             """
         )
         said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-        self.assertEqual(said.stdout, "True True\nFalse 99900\n", said.stderr)
+        self.assertEqual(said.stdout, "True True\nFalse 29900\n", said.stderr)
         whole = sysid.load("long.sysid").fit(output="whole")
         self.assertEqual(files_of("results/posterior")["draws_1.csv"], files_of(whole.folder)["draws_1.csv"])
 
