@@ -35,6 +35,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-sysid)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "sysid (= ${PROJECT_VERSION}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/cmake/debian/postinst;${CMAKE_SOURCE_DIR}/cmake/debian/prerm)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-xarray, python3-pandas")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Bayesian identification of nonlinear systems, from Python
 Models of the language of sysid as functions of NumPy arrays: density,
@@ -43,7 +44,7 @@ the tasks of the program, with results as xarray data sets.")
 
 # What every Debian package must hold.
 find_program(GZIP_PROGRAM gzip REQUIRED)
-configure_file(${CMAKE_SOURCE_DIR}/cmake/changelog.in ${CMAKE_BINARY_DIR}/generated/changelog @ONLY)
+configure_file(${CMAKE_SOURCE_DIR}/cmake/debian/changelog.in ${CMAKE_BINARY_DIR}/generated/changelog @ONLY)
 execute_process(COMMAND ${GZIP_PROGRAM} -9nkf ${CMAKE_BINARY_DIR}/generated/changelog COMMAND_ERROR_IS_FATAL ANY)
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
