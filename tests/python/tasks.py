@@ -201,6 +201,7 @@ choice = select shapes to bench with reversible_jump, seed = 1
         self.assertEqual(choice.text, said)
         self.assertEqual(files_of("results/choice"), files_of("of_command_line/choice"))
         self.assertGreater(choice.summary["models"]["straight"]["probability"], 0.5)
+        self.assertIn("line.sysid", repr(sysid.load("line.sysid")))
         with self.assertRaisesRegex(sysid.Error, "no fit task"):
             sysid.load("line.sysid").log_density([1.0])
 
@@ -223,7 +224,7 @@ found = discover decaying from bench with spike_slab(derivatives = weak), seed =
 
 class Interrupt(Desk):
     def test_ctrl_c_keeps_draws_and_resume_goes_on(self):
-        pathlib.Path("long.sysid").write_text(DECAY.replace("samples = 400", "samples = 30000"))
+        pathlib.Path("long.sysid").write_text(DECAY.replace("samples = 400", "samples = 100000"))
         program = textwrap.dedent(
             """
             import os, pathlib, signal, threading, time, sysid
@@ -234,7 +235,7 @@ class Interrupt(Desk):
                 def begin(self, what, total): self.what = what
                 def expect(self, total): pass
                 def advance(self, done, note):
-                    if self.what == "sampling" and done > 1000 and not started.is_set():
+                    if self.what == "sampling" and done > 200 and not started.is_set():
                         started.set()
                         os.kill(os.getpid(), signal.SIGINT)
                 def end(self, finished): pass
@@ -242,13 +243,13 @@ class Interrupt(Desk):
             import sysid._progress
             sysid._progress.line_for = lambda wanted: Tell()
             fit = model.fit(output="results")
-            print(fit.interrupted, fit.posterior.sizes["draw"] < 29900)
+            print(fit.interrupted, fit.posterior.sizes["draw"] < 99900)
             again = model.fit(output="results", resume=True)
             print(again.interrupted, again.posterior.sizes["draw"])
             """
         )
         said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-        self.assertEqual(said.stdout, "True True\nFalse 29900\n", said.stderr)
+        self.assertEqual(said.stdout, "True True\nFalse 99900\n", said.stderr)
         whole = sysid.load("long.sysid").fit(output="whole")
         self.assertEqual(files_of("results/posterior")["draws_1.csv"], files_of(whole.folder)["draws_1.csv"])
 

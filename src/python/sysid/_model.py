@@ -342,14 +342,17 @@ class Model:
 
     # ---- how it looks
 
+    def _shown(self) -> list[Parameter]:
+        return self.parameters if any(verb == "fit" for _, verb in self.tasks) else []
+
     def __repr__(self) -> str:
-        rows = [f"  {each.name} {f'[{each.unit}] ' if each.unit else ''}~ {each.prior}" for each in self.parameters]
+        rows = [f"  {each.name} {f'[{each.unit}] ' if each.unit else ''}~ {each.prior}" for each in self._shown()]
         return "\n".join([f"sysid.Model of {self.path}", *rows])
 
     def _repr_html_(self) -> str:
         cells = "".join(
             "<tr>" + "".join(f"<td style='text-align:left'>{html.escape(cell)}</td>" for cell in (each.name, each.unit, each.prior)) + "</tr>"
-            for each in self.parameters
+            for each in self._shown()
         )
         head = "".join(f"<th style='text-align:left'>{title}</th>" for title in ("parameter", "unit", "prior"))
         return f"<table><caption>{html.escape(self.path)}</caption><thead><tr>{head}</tr></thead><tbody>{cells}</tbody></table>"
