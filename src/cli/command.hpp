@@ -34,6 +34,8 @@ Work declare_explain(CLI::App& verb);
 Work declare_document(CLI::App& verb);
 Work declare_lsp(CLI::App& verb);
 Work declare_version(CLI::App& verb);
+Work declare_manual(CLI::App& verb);
+Work declare_completion(CLI::App& verb);
 
 /// "sysid 1.2 (AVX-512)" and a line end.
 std::string version_text();

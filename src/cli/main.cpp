@@ -46,6 +46,10 @@ constexpr Command commands[] = {
     {"explain", looking_up, "explain the code of a message or a finding, with an example", &declare_explain,
      "sysid explain E2103\nsysid explain chains_disagree"},
     {"document", looking_up, "print a module of the standard library as a page", &declare_document, "sysid document hysteresis"},
+    {"manual", looking_up, "print the manual page of a command, or write those of all", &declare_manual,
+     "sysid manual fit | man -l -\nsysid manual -o ~/.local/share/man/man1"},
+    {"completion", looking_up, "print the completion of commands and options for a shell", &declare_completion,
+     "source <(sysid completion bash)\nsysid completion fish > ~/.config/fish/completions/sysid.fish"},
     {"version", looking_up, "print the version and the instruction set in use", &declare_version, ""},
 };
 

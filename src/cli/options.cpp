@@ -75,7 +75,7 @@ void add_figures(CLI::App& verb, RunOptions& run, char const* without) {
           "formats of figures: svg, png, pdf, text, or several separated by commas")
       ->delimiter(',')
       ->type_name("FORMATS")
-      ->check(refuse_figure_format)
+      ->check(refuse_figure_format, "{svg,png,pdf,text}")
       ->default_str(run.figure_formats.empty() ? "" : "svg");
 }
 

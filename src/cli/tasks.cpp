@@ -52,7 +52,7 @@ void add_run_options(CLI::App& verb, TaskOptions& options) {
   verb.add_option("--instruction-set", options.instruction_set,
                   "avx2 or avx512 (default: the best available); results do not depend on it")
       ->type_name("NAME")
-      ->check(refuse_instruction_set);
+      ->check(refuse_instruction_set, "{avx2,avx512}");
   verb.add_option("--checkpoint-interval", options.run.checkpoint_interval, "time between checkpoints")
       ->type_name("SECONDS")
       ->check(refuse_no_duration)

@@ -74,16 +74,6 @@ bool renamed(StoredResult const& stored, InferenceData& data) {
   return true;
 }
 
-Export fit_export(StoredResult const& stored, Session* session, int draws) {
-  Export file{fit_path(stored), stored_inference_data(stored)};
-  if (session == nullptr) return file;
-  int const task = task_of_kind<FitTask>(*session, stored, "fit");
-  add_simulated(*session, task, stored, draws, file.data);
-  std::vector<StoredPrediction> const predictions = predictions_of(*session, task, file.data.omitted);
-  if (!predictions.empty() && !renamed(stored, file.data)) add_predictions(*session, predictions, file.data);
-  return file;
-}
-
 std::vector<Export> selection_exports(StoredResult const& stored, Session* session) {
   std::vector<CandidateData> candidates = stored_candidates(stored);
   if (session != nullptr) {
@@ -108,6 +98,16 @@ std::string groups_text(InferenceData const& data) {
 }
 
 }  // namespace
+
+InferenceData fit_data(StoredResult const& stored, Session* session, int draws) {
+  InferenceData data = stored_inference_data(stored);
+  if (session == nullptr) return data;
+  int const task = task_of_kind<FitTask>(*session, stored, "fit");
+  add_simulated(*session, task, stored, draws, data);
+  std::vector<StoredPrediction> const predictions = predictions_of(*session, task, data.omitted);
+  if (!predictions.empty() && !renamed(stored, data)) add_predictions(*session, predictions, data);
+  return data;
+}
 
 void require_exportable(ResultsFolder const& results, bool force) {
   bool any = false;
@@ -135,7 +135,7 @@ void require_exportable(ResultsFolder const& results, bool force) {
 void export_netcdf(ResultsFolder const& results, Session* session, int draws, std::ostream& out) {
   for (StoredResult const& stored : results.results) {
     std::vector<Export> files;
-    if (stored.is("fit")) files.push_back(fit_export(stored, session, draws));
+    if (stored.is("fit")) files.push_back({fit_path(stored), fit_data(stored, session, draws)});
     if (stored.is("select")) files = selection_exports(stored, session);
     for (Export const& file : files) {
       write_file(file.path, file.data.bytes());

@@ -2,6 +2,7 @@
 #pragma once
 #include <ostream>
 
+#include "exchange/inference_data.hpp"
 #include "exchange/results_folder.hpp"
 
 namespace sysid {
@@ -14,5 +15,8 @@ void require_exportable(ResultsFolder const& results, bool force);
 /// what the results hold themselves. draws: how many of them are simulated once more. Says on `out` what was written, with which
 /// groups, and what was left out.
 void export_netcdf(ResultsFolder const& results, Session* session, int draws, std::ostream& out);
+
+/// What the file of a fit would hold.
+InferenceData fit_data(StoredResult const& stored, Session* session, int draws);
 
 }  // namespace sysid

@@ -11,9 +11,9 @@ using namespace sysid::testing;
 
 namespace {
 
-std::vector<std::string> const verbs = {"run",       "simulate",   "fit",  "select",  "discover", "predict", "check",
-                                        "calibrate", "crosscheck", "fmt",  "repl",    "lsp",      "compare", "report",
-                                        "export",    "track",      "list", "explain", "document", "version"};
+std::vector<std::string> const verbs = {
+    "run", "simulate", "fit",    "select", "discover", "predict", "check",   "calibrate", "crosscheck", "fmt",        "repl",
+    "lsp", "compare",  "report", "export", "track",    "list",    "explain", "document",  "manual",     "completion", "version"};
 
 }  // namespace
 

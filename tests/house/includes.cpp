@@ -197,6 +197,8 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"exchange",
      {"core", "result", "expression", "simulate", "likelihood", "diagnostics", "experiment", "report/file", "app/session",
       "app/process", "app/selection"}},
+    {"app/density",
+     {"core", "model", "solver", "likelihood", "search", "diagnostics", "inference", "experiment", "app/session", "app/fit"}},
     {"assist",
      {"core",
       "data",
@@ -231,6 +233,9 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
              "experiment",    "typeset",        "report/figure",   "report/page",  "app/session",
              "app/preflight", "app/comparison", "app/calibration", "app/tracking", "app/catalogue",
              "app/run",       "app/disturbed",  "exchange",        "repl",         "lsp"}},
+    {"python",
+     {"core", "syntax", "likelihood", "check/checked", "load", "experiment", "diagnostics/tolerance", "report/page", "app/session",
+      "app/preflight", "app/comparison", "app/run", "app/density", "exchange"}},
 };
 
 /// The one room that may include headers that begin like this.
@@ -246,6 +251,7 @@ std::pair<std::string, std::string> const owned[] = {
     {"<sunlinsol", "simulate"},
     {"<sundials", "simulate"},
     {"<llvm", "native/llvm"},
+    {"<pybind11", "python"},
     // Decompositions, the slowest of Eigen's templates to compile.
     {"<Eigen/Dense", "linear_algebra"},
     {"<Eigen/Cholesky", "linear_algebra"},

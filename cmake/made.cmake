@@ -1,0 +1,10 @@
+# cmake -DPROGRAM=... -DFOLDER=... -P made.cmake: has the program write its manual pages and completions into the folder.
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER}/completions)
+execute_process(COMMAND ${PROGRAM} manual -o ${FOLDER}/man1 COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND gzip -9nr ${FOLDER}/man1 COMMAND_ERROR_IS_FATAL ANY)
+foreach(made IN ITEMS bash/sysid zsh/_sysid fish/sysid.fish)
+  get_filename_component(shell ${made} DIRECTORY)
+  get_filename_component(name ${made} NAME)
+  execute_process(COMMAND ${PROGRAM} completion ${shell} OUTPUT_FILE ${FOLDER}/completions/${name} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()

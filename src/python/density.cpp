@@ -1,0 +1,257 @@
+// The density of a fit on arrays. The interpreter lock is released while the engine computes.
+#include "python/density.hpp"
+
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/numeric/random.hpp"
+#include "core/system/interrupt.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
+#include "python/arrays.hpp"
+#include "python/interrupts.hpp"
+#include "python/open_file.hpp"
+
+namespace sysid::python {
+namespace {
+
+constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
+
+/// Without the interpreter lock, with errors raised and Ctrl-C heard.
+template <class Work>
+auto computed(OpenDensity const& of, Work&& work) {
+  py::gil_scoped_release const released;
+  Interrupts const interrupts;
+  auto result = guarded(of.file()->source(), std::forward<Work>(work));
+  if (Interrupts::take()) throw Interrupted();
+  return result;
+}
+
+enum class Part { prior, likelihood, both };
+
+Part part_of(std::string const& name) {
+  if (name == "prior") return Part::prior;
+  if (name == "likelihood") return Part::likelihood;
+  return Part::both;
+}
+
+/// The lanes whose coordinates are all finite. Values outside a prior's support have none.
+std::vector<int> usable_lanes(ConstLanes theta) {
+  std::vector<int> lanes;
+  for (int w = 0; w < theta.width(); ++w) {
+    bool finite = true;
+    for (int p = 0; p < theta.rows(); ++p) finite = finite && std::isfinite(theta(p, w));
+    if (finite) lanes.push_back(w);
+  }
+  return lanes;
+}
+
+LaneArray columns(ConstLanes all, std::vector<int> const& lanes) {
+  LaneArray some(all.rows(), static_cast<int>(lanes.size()));
+  for (int p = 0; p < all.rows(); ++p)
+    for (std::size_t w = 0; w < lanes.size(); ++w) some(p, static_cast<int>(w)) = all(p, lanes[w]);
+  return some;
+}
+
+std::vector<double> log_density(OpenDensity& of, ConstLanes theta, Part part, bool jacobian) {
+  Target const& target = of.target();
+  std::vector<double> prior(static_cast<std::size_t>(theta.width())), likelihood(prior);
+  if (part != Part::likelihood) target.log_prior(theta, prior, jacobian);
+  if (part != Part::prior) {
+    Ledger ledger;
+    target.log_likelihood(theta, likelihood, ledger);
+    of.add(ledger);
+  }
+  for (std::size_t w = 0; w < prior.size(); ++w) {
+    prior[w] += likelihood[w];
+    if (std::isnan(prior[w])) prior[w] = minus_infinity;
+  }
+  return prior;
+}
+
+Array log_density_of(OpenDensity& of, Array const& values, bool declared, std::string const& part) {
+  LaneArray const given = lanes_of(values, of.target().dimension());
+  return array_of(computed(of, [&] {
+    LaneArray theta = given;
+    if (declared) of.target().unconstrain(given, theta);
+    std::vector<int> const usable = usable_lanes(theta);
+    if (static_cast<int>(usable.size()) == theta.width()) return log_density(of, theta, part_of(part), !declared);
+    std::vector<double> all(static_cast<std::size_t>(theta.width()), minus_infinity);
+    std::vector<double> const some = log_density(of, columns(theta, usable), part_of(part), !declared);
+    for (std::size_t i = 0; i < usable.size(); ++i) all[static_cast<std::size_t>(usable[i])] = some[i];
+    return all;
+  }));
+}
+
+struct ValueAndGradient {
+  std::vector<double> value;
+  LaneArray gradient;
+};
+
+py::tuple value_and_gradient(OpenDensity& of, Array const& theta_array) {
+  LaneArray const theta = lanes_of(theta_array, of.target().dimension());
+  ValueAndGradient const found = computed(of, [&] {
+    Target const& target = of.target();
+    std::vector<double> value(static_cast<std::size_t>(theta.width())), prior(value);
+    LaneArray gradient(theta.rows(), theta.width()), of_prior(theta.rows(), theta.width());
+    Ledger ledger;
+    target.log_likelihood_gradient(theta, value, gradient, ledger);
+    target.log_prior_gradient(theta, prior, of_prior);
+    of.add(ledger);
+    for (int w = 0; w < theta.width(); ++w) {
+      auto const lane = static_cast<std::size_t>(w);
+      value[lane] += prior[lane];
+      if (!std::isfinite(value[lane])) value[lane] = minus_infinity;
+      for (int p = 0; p < theta.rows(); ++p) gradient(p, w) = std::isfinite(value[lane]) ? gradient(p, w) + of_prior(p, w) : 0;
+    }
+    return ValueAndGradient{std::move(value), std::move(gradient)};
+  });
+  return py::make_tuple(array_of(found.value), array_of(found.gradient));
+}
+
+Array residuals(OpenDensity& of, Array const& theta_array) {
+  LaneArray const theta = lanes_of(theta_array, of.target().dimension());
+  return array_of(computed(of, [&] {
+    LaneArray out(of.target().residual_count(), theta.width());
+    Ledger ledger;
+    of.target().residuals(theta, out, ledger);
+    of.add(ledger);
+    return out;
+  }));
+}
+
+py::tuple residuals_with_jacobian(OpenDensity& of, Array const& theta_array) {
+  LaneArray const theta = lanes_of(theta_array, of.target().dimension());
+  int const rows = of.target().residual_count();
+  auto const found = computed(of, [&] {
+    LaneArray out(rows, theta.width()), jacobian(rows * theta.rows(), theta.width());
+    Ledger ledger;
+    of.target().residuals_with_jacobian(theta, out, jacobian, ledger);
+    of.add(ledger);
+    return std::pair(std::move(out), std::move(jacobian));
+  });
+  return py::make_tuple(array_of(found.first), array_of(found.second).reshape({theta.width(), rows, theta.rows()}));
+}
+
+Array constrain(OpenDensity& of, Array const& theta_array) {
+  LaneArray lanes = lanes_of(theta_array, of.target().dimension());
+  LaneArray declared(lanes.rows(), lanes.width());
+  of.target().constrain(lanes, declared);
+  return array_of(declared);
+}
+
+Array unconstrain(OpenDensity& of, Array const& declared_array) {
+  LaneArray lanes = lanes_of(declared_array, of.target().dimension());
+  LaneArray theta(lanes.rows(), lanes.width());
+  of.target().unconstrain(lanes, theta);
+  return array_of(theta);
+}
+
+Array sample_prior(OpenDensity& of, int count, std::uint64_t seed) {
+  if (count < 1) throw py::value_error("expected a number of draws of at least 1");
+  return array_of(computed(of, [&] {
+    LaneArray theta(of.target().dimension(), count);
+    of.target().sample_prior({seed, Purpose::prior, 0, 0}, theta);
+    return theta;
+  }));
+}
+
+py::dict simulate(OpenDensity& of, Array const& declared_array, int experiment, std::uint64_t seed) {
+  LaneArray const declared = lanes_of(declared_array, of.target().dimension());
+  FitDensity::Simulated const made = computed(of, [&] { return of.density().simulate(experiment, declared, seed); });
+  std::size_t const samples = made.time.size();
+  py::dict values, noisy, units;
+  for (std::size_t q = 0; q < made.quantities.size(); ++q) {
+    TrajectoryQuantity const& quantity = made.quantities[q];
+    py::str const name(quantity.name);
+    values[name] = array_of(made.result.drawn(q), samples);
+    units[name] = quantity.unit;
+    if (quantity.channel >= 0) noisy[name] = array_of(made.result.noisy[static_cast<std::size_t>(quantity.channel)], samples);
+  }
+  py::dict all;
+  all["experiment"] = made.experiment;
+  all["time"] = array_of(made.time);
+  all["values"] = values;
+  all["noisy"] = noisy;
+  all["units"] = units;
+  return all;
+}
+
+py::list parameters(OpenDensity const& of) {
+  std::vector<PriorInfo> const priors = of.density().priors();
+  py::list all;
+  for (ParameterInfo const& each : of.target().parameters()) {
+    std::string text;
+    for (PriorInfo const& prior : priors)
+      if (prior.name == each.name) text = prior.text;
+    all.append(py::make_tuple(each.name, each.unit, text, each.lower, each.upper));
+  }
+  return all;
+}
+
+py::list modes(OpenDensity const& of) {
+  py::list all;
+  for (Mode const& mode : of.density().modes()) {
+    py::dict one;
+    one["theta"] = array_of(mode.theta);
+    one["values"] = array_of(mode.declared);
+    one["sd"] = array_of(mode.sd);
+    auto const size = static_cast<py::ssize_t>(mode.theta.size());
+    one["covariance"] = array_of(mode.covariance).reshape({size, size});
+    one["log_density"] = mode.log_density;
+    one["share"] = mode.share;
+    all.append(one);
+  }
+  return all;
+}
+
+py::list failures(OpenDensity const& of) {
+  Ledger const ledger = of.ledger();
+  py::list all;
+  for (Failure const& each : ledger.failures()) {
+    py::dict one;
+    one["kind"] = name(each.kind);
+    one["where"] = each.where;
+    one["count"] = each.count;
+    one["time"] = each.time;
+    one["example"] = each.example;
+    all.append(one);
+  }
+  return all;
+}
+
+bool prepare(OpenDensity& of, std::uint64_t seed) {
+  return computed(of, [&] { return of.density().prepare(seed); });
+}
+
+}  // namespace
+
+void bind_density(py::module_& module) {
+  py::class_<OpenDensity>(module, "Density")
+      .def(py::init([](std::shared_ptr<OpenFile> file, std::string const& task, int threads) {
+             return std::make_unique<OpenDensity>(std::move(file), task, threads);
+           }),
+           py::arg("file"), py::arg("task"), py::arg("threads"), py::call_guard<py::gil_scoped_release>())
+      .def_property_readonly("dimension", [](OpenDensity const& of) { return of.target().dimension(); })
+      .def_property_readonly("residual_count", [](OpenDensity const& of) { return of.target().residual_count(); })
+      .def_property_readonly("experiments", [](OpenDensity const& of) { return of.density().experiments(); })
+      .def_property_readonly(
+          "solver",
+          [](OpenDensity const& of) { return of.density().integrated() ? accuracy(of.density().solver()) : std::string(); })
+      .def_property_readonly("parameters", &parameters)
+      .def_property_readonly("modes", &modes)
+      .def_property_readonly("failures", &failures)
+      .def_property_readonly("solves", [](OpenDensity const& of) { return of.ledger().solves(); })
+      .def("log_density", &log_density_of, py::arg("values"), py::arg("declared"), py::arg("part"))
+      .def("value_and_gradient", &value_and_gradient, py::arg("theta"))
+      .def("residuals", &residuals, py::arg("theta"))
+      .def("residuals_with_jacobian", &residuals_with_jacobian, py::arg("theta"))
+      .def("constrain", &constrain, py::arg("theta"))
+      .def("unconstrain", &unconstrain, py::arg("values"))
+      .def("sample_prior", &sample_prior, py::arg("count"), py::arg("seed"))
+      .def("simulate", &simulate, py::arg("values"), py::arg("experiment"), py::arg("seed"))
+      .def("prepare", &prepare, py::arg("seed"));
+}
+
+}  // namespace sysid::python

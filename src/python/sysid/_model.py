@@ -1,0 +1,373 @@
+"""A model with its data as a function of arrays."""
+
+from __future__ import annotations
+
+import ctypes
+import html
+import os
+import warnings
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _engine, _progress, _records
+from ._error import Error, ModelWarning
+from ._results import Check, Folder, Result
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter that has a prior, as the file declares it."""
+
+    name: str
+    unit: str  #: as written; "" where it has none
+    prior: str  #: "log_uniform(0.1, 10)"
+    lower: float  #: end of the prior's support, declared unit; -inf: none, or it depends on other parameters
+    upper: float
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A maximum of the posterior with its Gaussian approximation, as the search of a fit finds it."""
+
+    theta: Array  #: [P] unconstrained coordinates
+    values: Array  #: [P] declared units
+    sd: Array  #: [P] declared units
+    covariance: Array  #: [P x P] of theta
+    log_density: float  #: at theta, as `Model.log_density` has it
+    share: float  #: of the posterior's mass, by the approximations of all modes
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """What W parameter vectors predict along the N rows of an experiment."""
+
+    experiment: str  #: "bench.train"
+    time: Array  #: [N] in seconds
+    values: dict[str, Array]  #: by quantity (channels, states, derived quantities) [W x N], without noise; NaN where the solve failed
+    noisy: dict[str, Array]  #: by channel [W x N], with one draw of the noise
+    units: dict[str, str]  #: by quantity
+
+
+def _one_or_many(given: ArrayLike, dimension: int) -> tuple[Array, bool]:
+    """An array [W x P], and whether one vector [P] was given."""
+    array = np.asarray(given, dtype=np.float64)
+    if array.ndim == 1:
+        if array.shape[0] != dimension:
+            raise ValueError(f"expected a vector of {dimension} parameters, or an array [W x {dimension}], not {array.shape}")
+        return array[np.newaxis, :], True
+    return array, False
+
+
+class Model:
+    """A file of the language with its data: made by `load` or `loads`.
+
+    W parameter vectors are the rows of an array [W x P], the P parameters stand in the order of `parameters`; one vector [P] is
+    taken as well, and gives a result without the axis W. A batch of many vectors costs far less than as many calls.
+
+    ``theta`` are unconstrained coordinates, any numbers: what samplers move. ``values`` are the parameters themselves in the
+    units that the file declares. `constrain` and `unconstrain` lead from one to the other.
+
+    Methods release the interpreter lock and may be called from several threads. A model can be pickled.
+    """
+
+    def __init__(
+        self,
+        path: str,
+        text: Optional[str] = None,
+        data: Any = None,
+        task: Optional[str] = None,
+        threads: int = 0,
+    ) -> None:
+        self._state = {"path": os.fspath(path), "text": text, "data": data, "task": task, "threads": threads}
+        self._folder: Optional[Folder] = None
+        self._prepared: Optional[int] = None
+        self._made: Optional[_engine.Density] = None
+        self._results: Optional[Folder] = None
+        self._open()
+        if self._file.warnings:
+            warnings.warn(self._file.warnings, ModelWarning, stacklevel=3)
+
+    def _open(self) -> None:
+        state = self._state
+        records: dict[str, str] = {}
+        if state["data"] is not None:
+            blocks = _engine.File(state["path"], state["text"], {}).data
+            self._folder = Folder()
+            records = _records.write(state["data"], blocks, str(self._folder.path))
+        self._records = records
+        self._file = _engine.File(state["path"], state["text"], records)
+        self._process = os.getpid()
+
+    @property
+    def _density(self) -> _engine.Density:
+        # Threads of the engine do not come along into a forked process, where nothing may wait for them: what has them is never freed.
+        if self._made is not None and self._process != os.getpid():
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(self._made))
+            self._made = None
+        if self._made is None:
+            self._process = os.getpid()
+            self._made = _engine.Density(self._file, self._state["task"] or "", self._state["threads"])
+            if self._prepared is not None:
+                self._made.prepare(self._prepared)
+        return self._made
+
+    def __getstate__(self) -> dict:
+        return {"state": self._state, "prepared": self._prepared}
+
+    def __setstate__(self, stored: dict) -> None:
+        self._state, self._prepared = stored["state"], stored["prepared"]
+        self._folder, self._made, self._results = None, None, None
+        self._open()
+
+    # ---- what it is
+
+    @property
+    def path(self) -> str:
+        """The path of the file."""
+        return self._state["path"]
+
+    @property
+    def text(self) -> str:
+        """The text of the file."""
+        return self._file.text
+
+    @property
+    def tasks(self) -> list[tuple[str, str]]:
+        """Names and verbs of the tasks of the file, in order: ``[("posterior", "fit")]``."""
+        return self._file.tasks
+
+    @property
+    def parameters(self) -> list[Parameter]:
+        """The parameters that the fit samples, in the order of the columns of arrays."""
+        return [Parameter(*each) for each in self._density.parameters]
+
+    @property
+    def names(self) -> list[str]:
+        """Their names."""
+        return [each.name for each in self.parameters]
+
+    @property
+    def units(self) -> list[str]:
+        """Their units, as the file writes them."""
+        return [each.unit for each in self.parameters]
+
+    @property
+    def dimension(self) -> int:
+        """P, their number."""
+        return self._density.dimension
+
+    @property
+    def residual_count(self) -> int:
+        """R, the number of residuals: one for each sample that the likelihood reads, and one for each channel."""
+        return self._density.residual_count
+
+    @property
+    def solver(self) -> str:
+        """How finely the equations are integrated: ``"rk4(substeps = 1)"``; "" for a model without differential equations."""
+        return self._density.solver
+
+    @property
+    def modes(self) -> list[Mode]:
+        """What `prepare` has found, the highest first."""
+        return [Mode(**each) for each in self._density.modes]
+
+    @property
+    def failures(self) -> list[dict]:
+        """Simulations that failed in all calls so far: ``kind``, ``where`` in the user's words, ``count``, and the ``time`` [s] and
+        the parameter values (``example``) of the first one. Their density is -inf, their simulations are NaN."""
+        return self._density.failures
+
+    # ---- the density
+
+    def prepare(self, seed: int = 0) -> "Model":
+        """Does what a fit does before it samples: finds the modes and chooses how finely the equations are integrated.
+
+        From here on the density is the one that ``sysid fit`` samples with this seed. Before, it is that of the solver which the
+        file states. Modes are good starting points of chains and optimisers. KeyboardInterrupt where Ctrl-C is pressed.
+        Returns the model.
+        """
+        self._density.prepare(seed)
+        self._prepared = seed
+        return self
+
+    def log_density(self, theta: ArrayLike, declared: bool = False, part: str = "both") -> Union[Array, float]:
+        """Log of prior times likelihood, all constants kept, [W] for an array [W x P].
+
+        theta: unconstrained coordinates; the density is that on R^P, the Jacobian of `constrain` included. With ``declared`` they
+        are values in declared units, and the density is that of the values: -inf outside the prior's support.
+        part: "both", "prior" or "likelihood". -inf where a simulation fails; never NaN, never an exception.
+        """
+        if part not in ("both", "prior", "likelihood"):
+            raise ValueError(f"part is 'both', 'prior' or 'likelihood', not {part!r}")
+        density = self._density
+        batch, one = _one_or_many(theta, density.dimension)
+        out = density.log_density(batch, declared, part)
+        return float(out[0]) if one else out
+
+    def gradient(self, theta: ArrayLike) -> Array:
+        """Of `log_density` by the unconstrained coordinates: [W x P]; 0 where the density is -inf."""
+        return self.log_density_and_gradient(theta)[1]
+
+    def log_density_and_gradient(self, theta: ArrayLike) -> tuple[Union[Array, float], Array]:
+        """`log_density` [W] and its gradient [W x P] at unconstrained coordinates, at the cost of the gradient."""
+        density = self._density
+        batch, one = _one_or_many(theta, density.dimension)
+        value, gradient = density.value_and_gradient(batch)
+        return (float(value[0]), gradient[0]) if one else (value, gradient)
+
+    def residuals(self, theta: ArrayLike) -> Array:
+        """Deviance residuals r [W x R] at unconstrained coordinates: log likelihood = constant - sum(r^2)/2.
+
+        For normal noise (y - mean)/sd of each sample, and a last one for each channel that carries the scale. inf where a
+        simulation fails.
+        """
+        density = self._density
+        batch, one = _one_or_many(theta, density.dimension)
+        out = density.residuals(batch)
+        return out[0] if one else out
+
+    def residuals_and_jacobian(self, theta: ArrayLike) -> tuple[Array, Array]:
+        """`residuals` [W x R] and their derivatives by the unconstrained coordinates [W x R x P], by differences."""
+        density = self._density
+        batch, one = _one_or_many(theta, density.dimension)
+        out, jacobian = density.residuals_with_jacobian(batch)
+        return (out[0], jacobian[0]) if one else (out, jacobian)
+
+    def constrain(self, theta: ArrayLike) -> Array:
+        """Values [W x P] in declared units at unconstrained coordinates [W x P]."""
+        density = self._density
+        batch, one = _one_or_many(theta, density.dimension)
+        out = density.constrain(batch)
+        return out[0] if one else out
+
+    def unconstrain(self, values: ArrayLike) -> Array:
+        """Unconstrained coordinates [W x P] of values [W x P] in declared units; not finite outside the prior's support."""
+        density = self._density
+        batch, one = _one_or_many(values, density.dimension)
+        out = density.unconstrain(batch)
+        return out[0] if one else out
+
+    def sample_prior(self, count: int, seed: int = 0) -> Array:
+        """Draws of the prior, unconstrained coordinates [count x P]."""
+        return self._density.sample_prior(count, seed)
+
+    def simulate(self, values: ArrayLike, experiment: int = 0, seed: int = 0) -> Simulation:
+        """What parameter vectors predict along the rows of an experiment of the fit.
+
+        values: [W x P], declared units. experiment: its index in the fit. seed: of the noise in ``noisy``.
+        """
+        density = self._density
+        if not 0 <= experiment < density.experiments:
+            raise IndexError(f"the fit has experiments 0 to {density.experiments - 1}, not {experiment}")
+        batch, one = _one_or_many(values, density.dimension)
+        made = density.simulate(batch, experiment, seed)
+        if one:
+            for each in (made["values"], made["noisy"]):
+                for name in each:
+                    each[name] = each[name][0]
+        return Simulation(**made)
+
+    # ---- tasks
+
+    def check(self, seed: Optional[int] = None) -> Check:
+        """Reports what the data can determine, before any sampling, as ``sysid check`` does. seed: of the draws of the prior."""
+        return Check(*_engine.check(self._file, _engine.Asked(output="results", seed=seed, threads=self._state["threads"])))
+
+    def fit(self, task: Optional[str] = None, **options: Any) -> Result:
+        """Runs a fit of the file: by default the one whose density this is.
+
+        Draws, tables and findings are those of ``sysid fit``, byte for byte for a seed. Options, of all tasks:
+
+        seed: of all random numbers, in place of the one in the file.
+        output: the folder of results; by default a temporary one, which the tasks of a model share.
+        force: replaces results that are in `output`; resume: goes on from a checkpoint there.
+        figures: also draws figures. progress: a line on standard error; by default at a terminal and in a notebook.
+
+        Ctrl-C keeps the draws so far: the result then has ``interrupted``, and ``fit(resume=True)`` goes on to the bytes of an
+        uninterrupted fit. Raises KeyboardInterrupt where there are no draws yet.
+        """
+        return self._run("fit", task or self._state["task"], **options)
+
+    def predict(self, task: Optional[str] = None, **options: Any) -> Result:
+        """Runs a prediction of the file, the first by default, from the draws of a fit before it. Options as in `fit`."""
+        return self._run("predict", task, **options)
+
+    def select(self, task: Optional[str] = None, **options: Any) -> Result:
+        """Runs a selection among the candidate models of the file, the first by default. Options as in `fit`."""
+        return self._run("select", task, **options)
+
+    def discover(self, task: Optional[str] = None, **options: Any) -> Result:
+        """Runs a discovery of the file, the first by default. Options as in `fit`."""
+        return self._run("discover", task, **options)
+
+    def _run(
+        self,
+        verb: str,
+        task: Optional[str],
+        *,
+        seed: Optional[int] = None,
+        output: Optional[Union[str, os.PathLike]] = None,
+        force: bool = False,
+        resume: bool = False,
+        figures: bool = False,
+        progress: Optional[bool] = None,
+        checkpoint_interval: float = 30,
+    ) -> Result:
+        names = [name for name, of in self.tasks if of == verb]
+        name = task or (names[0] if names else "")
+        if name not in names:
+            known = ", ".join(f"`{each}`" for each in names) or "none"
+            raise Error(f"sysid: error: this file has no {verb} task{f' `{task}`' if task else ''}\nhelp: its {verb} tasks: {known}")
+        if output is None and self._results is None:
+            self._results = Folder()
+        run = self._results if output is None else Folder(output)
+        asked = _engine.Asked(
+            output=str(run.path),
+            seed=seed,
+            threads=self._state["threads"],
+            force=force or (output is None and not resume),
+            resume=resume,
+            figures=figures,
+            checkpoint_interval=checkpoint_interval,
+        )
+        exit, text, notices = _engine.run(self._file, [name], asked, _progress.line_for(progress))
+        if exit == 75 and not (run.path / name / "summary.json").exists():
+            raise KeyboardInterrupt
+        return Result(self._file, self._records, self._folder, run, name, exit, text, notices)
+
+    # ---- how it looks
+
+    def _shown(self) -> list[Parameter]:
+        return self.parameters if any(verb == "fit" for _, verb in self.tasks) else []
+
+    def __repr__(self) -> str:
+        rows = [f"  {each.name} {f'[{each.unit}] ' if each.unit else ''}~ {each.prior}" for each in self._shown()]
+        return "\n".join([f"sysid.Model of {self.path}", *rows])
+
+    def _repr_html_(self) -> str:
+        cells = "".join(
+            "<tr>" + "".join(f"<td style='text-align:left'>{html.escape(cell)}</td>" for cell in (each.name, each.unit, each.prior)) + "</tr>"
+            for each in self._shown()
+        )
+        head = "".join(f"<th style='text-align:left'>{title}</th>" for title in ("parameter", "unit", "prior"))
+        return f"<table><caption>{html.escape(self.path)}</caption><thead><tr>{head}</tr></thead><tbody>{cells}</tbody></table>"
+
+
+def load(path: Union[str, os.PathLike], data: Any = None, task: Optional[str] = None, threads: int = 0) -> Model:
+    """Reads and checks a file of the language.
+
+    path: of the .sysid file. data: in place of the tables that the data blocks name, a mapping or frame of columns; see
+    docs/python.md. task: the fit whose density is wanted; by default the first. threads: 0 is one for each processor; results do
+    not depend on it. Raises `Error` with the located message where something is wrong with the text or the data.
+    """
+    return Model(os.fspath(path), None, data, task, threads)
+
+
+def loads(text: str, folder: Union[str, os.PathLike] = ".", data: Any = None, task: Optional[str] = None, threads: int = 0) -> Model:
+    """As `load`, of a text instead of a file. folder: from which paths of tables and modules are relative."""
+    return Model(os.path.join(os.fspath(folder), "text.sysid"), text, data, task, threads)

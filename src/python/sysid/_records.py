@@ -1,0 +1,84 @@
+"""Arrays in the place of tables: columns of a mapping, a pandas frame or an xarray data set, by the names of the data block."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Sequence
+
+import numpy as np
+
+from ._error import Error
+
+
+def _is_frame(data: Any) -> bool:
+    """Whether it holds columns itself: not a plain mapping from blocks to what holds columns."""
+    return not isinstance(data, dict) or not any(_holds_columns(each) for each in data.values())
+
+
+def _holds_columns(data: Any) -> bool:
+    return isinstance(data, dict) or hasattr(data, "columns") or hasattr(data, "data_vars")
+
+
+def _column(data: Any, name: str) -> np.ndarray:
+    return np.asarray(data[name])
+
+
+def _names(data: Any) -> list[str]:
+    if hasattr(data, "data_vars"):  # xarray: coordinates are columns, too
+        return [str(name) for name in data.variables]
+    return [str(name) for name in (data.keys() if hasattr(data, "keys") else data.columns)]
+
+
+def _text(values: np.ndarray) -> list[str]:
+    # The shortest number that reads back to the same bits; what is missing is an empty cell.
+    return ["" if np.isnan(value) else repr(float(value)) for value in values]
+
+
+def _write_table(data: Any, block: str, columns: Sequence[str], path: str) -> None:
+    known = _names(data)
+    missing = [name for name in columns if name not in known]
+    if missing:
+        raise Error(
+            f"sysid: error: the data for `{block}` have no column `{missing[0]}`\n"
+            f"help: the data block reads {', '.join(f'`{name}`' for name in columns)}; there are {', '.join(f'`{name}`' for name in known)}"
+        )
+    arrays = []
+    for name in columns:
+        array = _column(data, name)
+        if array.ndim != 1:
+            raise ValueError(f"column `{name}` of the data for `{block}` has shape {array.shape}; columns have one axis")
+        if not np.issubdtype(array.dtype, np.number) and array.dtype != bool:
+            raise TypeError(f"column `{name}` of the data for `{block}` holds {array.dtype}, not numbers")
+        arrays.append(array.astype(np.float64))
+    lengths = {len(array) for array in arrays}
+    if len(lengths) > 1:
+        raise ValueError(f"the columns of the data for `{block}` differ in length: {sorted(lengths)}")
+    texts = [_text(array) for array in arrays]
+    with open(path, "w", encoding="utf-8") as table:
+        table.write(",".join(columns) + "\n")
+        for row in zip(*texts):
+            table.write(",".join(row) + "\n")
+
+
+def write(data: Any, blocks: Sequence[tuple[str, str, list[str]]], folder: str) -> dict[str, str]:
+    """Writes what was given as tables into a folder; returns their paths by the names of the data blocks."""
+    if not blocks:
+        raise Error("sysid: error: this file has no data block for these data\nhelp: add one that names the columns and their units")
+    if _is_frame(data):
+        if len(blocks) > 1:
+            names = ", ".join(f"`{name}`" for name, _, _ in blocks)
+            raise Error(
+                f"sysid: error: this file has several data blocks: {names}\nhelp: give a mapping from their names to their columns"
+            )
+        data = {blocks[0][0]: data}
+    columns = {name: list(dict.fromkeys(wanted)) for name, _, wanted in blocks}
+    records = {}
+    for name, table in data.items():
+        if name not in columns:
+            raise Error(
+                f"sysid: error: there is no data block `{name}` in this file\nhelp: it has {', '.join(f'`{each}`' for each in columns)}"
+            )
+        path = os.path.join(folder, f"{name}.csv")
+        _write_table(table, name, columns[name], path)
+        records[name] = path
+    return records

@@ -1,0 +1,250 @@
+"""Results of tasks: numbers as NumPy and xarray have them, files as the command line writes them."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import pathlib
+import shutil
+import tempfile
+import weakref
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _engine
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+
+class Folder:
+    """A folder for results: the user's, or a temporary one that lives as long as something refers to it."""
+
+    def __init__(self, path: Optional[Union[str, os.PathLike]] = None) -> None:
+        self.path = pathlib.Path(path if path is not None else tempfile.mkdtemp(prefix="sysid-"))
+        if path is None:
+            weakref.finalize(self, _remove, str(self.path), os.getpid())
+
+
+def _remove(path: str, process: int) -> None:
+    if process == os.getpid():  # a forked process leaves it to the one that made it
+        shutil.rmtree(path, ignore_errors=True)
+
+
+class Result:
+    """What a task has left. Files lie in `folder`, as the command line writes them.
+
+    The groups of a fit are xarray data sets with the names of ArviZ's InferenceData, made when they are first asked for:
+    ``posterior``, ``sample_stats``, ``log_likelihood``, ``posterior_predictive``, ``observed_data``, ``constant_data``, ``prior``,
+    ``prior_predictive``, and ``predictions`` where a prediction lies beside it; of an interrupted fit the first two. A result can
+    be pickled, with its files.
+    """
+
+    def __init__(
+        self, file: _engine.File, records: dict[str, str], kept: Any, run: Folder, task: str, exit: int, text: str, notices: str
+    ) -> None:
+        """records: tables in the place of those that the file names, which exist as long as `kept` does."""
+        self._file, self._records, self._kept, self._run = file, records, kept, run
+        self.task = task  #: its name
+        self.text = text  #: the summary that the command line prints
+        self.notices = notices  #: one line each: what was chosen, what was written
+        self.interrupted = exit == 75  #: whether Ctrl-C has ended it; what it holds are the draws so far
+        self._groups: dict[int, dict[str, "xarray.Dataset"]] = {}
+
+    @property
+    def folder(self) -> pathlib.Path:
+        """The folder with its files."""
+        return self._run.path / self.task
+
+    @property
+    def summary(self) -> dict:
+        """The content of summary.json: parameters, verdict, findings, settings, data, versions."""
+        return json.loads((self.folder / "summary.json").read_text())
+
+    @property
+    def verdict(self) -> str:
+        """Whether the checks pass, in a sentence; "" where nothing is checked."""
+        return self.summary.get("verdict", {}).get("text", "")
+
+    @property
+    def passes(self) -> bool:
+        """Whether no check fails."""
+        return self.summary.get("verdict", {}).get("pass", True)
+
+    @property
+    def findings(self) -> list[dict]:
+        """What the checks have found: ``severity``, ``code``, ``names``, ``message``, ``help``."""
+        return self.summary.get("findings", [])
+
+    @property
+    def parameters(self) -> dict[str, dict]:
+        """By the name of a parameter or derived quantity its ``unit``, ``mean``, ``median``, ``sd``, ``q5``, ``q95``, ``rhat``,
+        ``ess_bulk``, ``ess_tail``, ``mcse_mean``."""
+        return self.summary.get("parameters", {})
+
+    def table(self, name: str) -> "pandas.DataFrame":
+        """A table of the results as a pandas frame: ``result.table("predict.csv")``. `files` lists them."""
+        import pandas
+
+        return pandas.read_csv(self.folder / name, comment="#")
+
+    @property
+    def files(self) -> list[str]:
+        """Paths of all files, relative to `folder`."""
+        return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*") if path.is_file())
+
+    # ---- groups
+
+    def _inference_data(self, draws: int) -> tuple:
+        asked = _engine.Asked(output=str(self._run.path))
+        return _engine.inference_data(self._file, str(self.folder), asked, 0 if self.interrupted else draws)
+
+    def groups(self, draws: int = 200) -> dict[str, "xarray.Dataset"]:
+        """All groups by their names. draws: how many of the stored draws are simulated once more for likelihoods and predictions."""
+        if draws not in self._groups:
+            found, attributes, _ = self._inference_data(draws)
+            self._groups[draws] = {name: _dataset(own, dimensions, variables, attributes) for name, own, dimensions, variables in found}
+        return self._groups[draws]
+
+    def __getattr__(self, name: str) -> "xarray.Dataset":
+        if name.startswith("_") or name not in GROUPS:
+            raise AttributeError(f"a result has no {name!r}")
+        groups = self.groups()
+        if name not in groups:
+            raise AttributeError(f"this result has no group {name!r}; it has {', '.join(groups)}")
+        return groups[name]
+
+    def __dir__(self) -> Sequence[str]:
+        return [*super().__dir__(), *GROUPS]
+
+    def to_netcdf(self, path: Union[str, os.PathLike], draws: int = 200) -> None:
+        """Writes the groups as one NetCDF-4 file, byte for byte what ``sysid export`` writes; `arviz.from_netcdf` reads it."""
+        pathlib.Path(path).write_bytes(self._inference_data(draws)[2])
+
+    def to_arviz(self, draws: int = 200) -> Any:
+        """As arviz.InferenceData; ArviZ must be installed."""
+        import arviz
+
+        return arviz.InferenceData(**self.groups(draws))
+
+    # ---- how it looks, and how it is kept
+
+    def __repr__(self) -> str:
+        return self.text.rstrip("\n") or f"sysid.Result of {self.task}"
+
+    def _repr_html_(self) -> str:
+        parts = [f"<p><b>{html.escape(self.summary.get('what', self.task))}</b></p>"]
+        rows = self.parameters
+        if rows:
+            keys = ("unit", "mean", "sd", "q5", "q95", "rhat", "ess_bulk")
+            head = "".join(f"<th>{key}</th>" for key in ("", *keys))
+            cells = "".join(
+                "<tr>" + "".join(f"<td>{html.escape(_shown(each))}</td>" for each in (name, *(row.get(key) for key in keys))) + "</tr>"
+                for name, row in rows.items()
+            )
+            parts.append(f"<table><thead><tr>{head}</tr></thead><tbody>{cells}</tbody></table>")
+        parts.append(f"<p>verdict: {html.escape(self.verdict)}</p>")
+        return "".join(parts)
+
+    def __getstate__(self) -> dict:
+        results = {str(path.relative_to(self._run.path)): path.read_bytes() for path in self._run.path.rglob("*") if path.is_file()}
+        return {
+            "path": self._file.path,
+            "text": self._file.text,
+            "records": {name: pathlib.Path(path).read_bytes() for name, path in self._records.items()},
+            "results": results,
+            "shown": {name: getattr(self, name) for name in ("task", "text", "notices", "interrupted")},
+        }
+
+    def __setstate__(self, stored: dict) -> None:
+        self._groups, self._run, self._kept = {}, Folder(), Folder()
+        for name, content in stored["results"].items():
+            (self._run.path / name).parent.mkdir(parents=True, exist_ok=True)
+            (self._run.path / name).write_bytes(content)
+        self._records = {name: str(self._kept.path / f"{name}.csv") for name in stored["records"]}
+        for name, path in self._records.items():
+            pathlib.Path(path).write_bytes(stored["records"][name])
+        self.__dict__.update(stored["shown"])
+        self._file = _engine.File(stored["path"], stored["text"], self._records)
+
+
+#: Names of ArviZ's groups that a fit may have.
+GROUPS = (
+    "posterior",
+    "sample_stats",
+    "log_likelihood",
+    "posterior_predictive",
+    "observed_data",
+    "constant_data",
+    "prior",
+    "prior_predictive",
+    "predictions",
+    "predictions_constant_data",
+)
+
+
+def _dataset(own: dict, dimensions: list, variables: list, attributes: dict) -> "xarray.Dataset":
+    import xarray
+
+    sizes = dict(dimensions)
+    made, coordinates = {}, {}
+    for name, axes, values, notes in variables:
+        array = np.asarray(values).reshape([sizes[axis] for axis in axes])
+        (coordinates if list(axes) == [name] else made)[name] = (axes, array, notes)
+    return xarray.Dataset(made, coordinates, {**attributes, **own})
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return "" if value is None else str(value)
+
+
+class Check:
+    """What is known of a file before any sampling."""
+
+    def __init__(self, text: str, content: str) -> None:
+        self.text = text  #: as the command line prints it
+        self._content = content
+
+    @property
+    def content(self) -> dict:
+        """The same as data: structure of the models, coverage of the data, what the prior predicts, what the data can determine."""
+        return json.loads(self._content)
+
+    def __repr__(self) -> str:
+        return self.text.rstrip("\n")
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self.text)}</pre>"
+
+
+class Comparison:
+    """Fits and predictions side by side."""
+
+    def __init__(self, text: str, content: str) -> None:
+        self.text = text  #: as the command line prints it
+        self._content = content
+
+    @property
+    def content(self) -> Any:
+        """The same as data: evidences, probabilities of models, scores."""
+        return json.loads(self._content)
+
+    def __repr__(self) -> str:
+        return self.text.rstrip("\n")
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self.text)}</pre>"
+
+
+def compare(*results: Union[Result, str, os.PathLike]) -> Comparison:
+    """Sets fits and predictions side by side: their evidence, model probabilities, errors on the same rows.
+
+    results: what tasks have returned, or folders of tasks or of whole runs. Raises `Error` where fits are not of the same samples.
+    """
+    folders = [str(each.folder) if isinstance(each, Result) else os.fspath(each) for each in results]
+    return Comparison(*_engine.compare(folders))

@@ -1,0 +1,269 @@
+"""The model as a function: its values, its shapes, its errors, and what samplers and optimisers of other packages make of it."""
+
+import os
+import pathlib
+import pickle
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+import sysid
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DUFFING = ROOT / "models/duffing/duffing.sysid"
+
+LINE = """model line {
+  input     u [V]
+  parameter slope [m/V] ~ normal(0, sd = 10)
+  parameter sd    [m] ~ log_uniform(0.01, 10)
+  observe d ~ normal(slope*u, sd = sd)
+}
+data bench {
+  file    "nowhere.csv"
+  input   u = u [V]
+  measure d = d [mm]
+}
+posterior = fit line to bench with mh, seed = 1
+"""
+U = np.linspace(-1, 1, 20)
+D = 1e3 * (2 * U + 0.1 * np.cos(37 * U))  # [mm]
+
+
+def log_normal(x, mean, sd):
+    return -0.5 * np.log(2 * np.pi) - np.log(sd) - 0.5 * ((x - mean) / sd) ** 2
+
+
+class Closed(unittest.TestCase):
+    """A straight line, whose density is known."""
+
+    def setUp(self):
+        self.model = sysid.loads(LINE, data={"u": U, "d": D})
+
+    def test_parameters(self):
+        self.assertEqual(self.model.names, ["slope", "sd"])
+        self.assertEqual(self.model.units, ["m/V", "m"])
+        self.assertEqual(self.model.dimension, 2)
+        slope, sd = self.model.parameters
+        self.assertEqual(sd.prior, "log_uniform(0.01, 10)")
+        self.assertEqual((sd.lower, sd.upper), (0.01, 10))
+        self.assertEqual((slope.lower, slope.upper), (-np.inf, np.inf))
+        self.assertEqual(self.model.tasks, [("posterior", "fit")])
+
+    def expected(self, slope, sd, jacobian):
+        # Samples have the unit of the model here, [mm] as the data block binds the column without a unit of the channel.
+        scale = self.scale
+        likelihood = log_normal(D * scale, slope * U, sd).sum()
+        prior = log_normal(slope, 0, 10) - np.log(sd) - np.log(np.log(10 / 0.01))
+        share = np.log(sd / 0.01) / np.log(10 / 0.01)
+        return likelihood, prior, np.log(sd * share * (1 - share) * np.log(10 / 0.01)) if jacobian else 0.0
+
+    def test_values(self):
+        values = np.array([[2.0, 0.1], [1.5, 0.3], [-3.0, 5.0]])
+        self.scale = 1e-3
+        likelihood = self.model.log_density(values, declared=True, part="likelihood")
+        prior = self.model.log_density(values, declared=True, part="prior")
+        for w, (slope, sd) in enumerate(values):
+            of_data, of_prior, _ = self.expected(slope, sd, False)
+            self.assertAlmostEqual(prior[w], of_prior, places=10)
+            # All constants are kept; densities are per declared unit of the sample, so they differ by one constant.
+            self.assertAlmostEqual(likelihood[w] - likelihood[0], of_data - self.expected(*values[0], False)[0], places=8)
+        np.testing.assert_allclose(self.model.log_density(values, declared=True), likelihood + prior, rtol=1e-14)
+
+    def test_constrain_and_back(self):
+        theta = np.random.default_rng(1).normal(size=(50, 2))
+        values = self.model.constrain(theta)
+        self.assertTrue(np.all((values[:, 1] > 0.01) & (values[:, 1] < 10)))
+        np.testing.assert_allclose(self.model.unconstrain(values), theta, rtol=1e-9, atol=1e-9)
+        # The density on R^P is that of the values times the Jacobian.
+        step = 1e-6
+        jacobian = (self.model.constrain(theta + [0, step])[:, 1] - self.model.constrain(theta - [0, step])[:, 1]) / (2 * step)
+        difference = self.model.log_density(theta) - self.model.log_density(values, declared=True)
+        np.testing.assert_allclose(difference, np.log(jacobian), atol=1e-6)
+
+    def test_outside_the_support(self):
+        density = self.model.log_density([[2.0, 0.1], [2.0, 20.0], [2.0, -1.0], [np.nan, 0.1]], declared=True)
+        self.assertTrue(np.isfinite(density[0]))
+        self.assertEqual(list(density[1:]), [-np.inf] * 3)
+
+    def test_gradient(self):
+        theta = np.random.default_rng(2).normal(size=(20, 2))
+        value, gradient = self.model.log_density_and_gradient(theta)
+        np.testing.assert_allclose(value, self.model.log_density(theta), rtol=1e-10)
+        np.testing.assert_array_equal(gradient, self.model.gradient(theta))
+        for p in range(2):
+            step = 1e-5 * np.eye(2)[p]
+            slope = (self.model.log_density(theta + step) - self.model.log_density(theta - step)) / 2e-5
+            np.testing.assert_allclose(gradient[:, p], slope, rtol=1e-5, atol=1e-4)
+
+    def test_residuals(self):
+        theta = np.random.default_rng(3).normal(size=(10, 2))
+        residuals = self.model.residuals(theta)
+        self.assertEqual(residuals.shape, (10, self.model.residual_count))
+        self.assertEqual(self.model.residual_count, len(U) + 1)
+        constant = self.model.log_density(theta, part="likelihood") + 0.5 * (residuals**2).sum(axis=1)
+        np.testing.assert_allclose(constant, constant[0], rtol=1e-10)
+        again, jacobian = self.model.residuals_and_jacobian(theta)
+        np.testing.assert_array_equal(again, residuals)
+        self.assertEqual(jacobian.shape, (10, len(U) + 1, 2))
+        step = np.array([1e-5, 0])
+        slope = (self.model.residuals(theta + step) - self.model.residuals(theta - step)) / 2e-5
+        np.testing.assert_allclose(jacobian[:, :, 0], slope, rtol=1e-4, atol=1e-4)
+
+    def test_simulate(self):
+        made = self.model.simulate([[2.0, 0.1], [3.0, 0.1]])
+        self.assertEqual(made.experiment, "bench")
+        np.testing.assert_allclose(made.values["d"][1] / made.values["d"][0], np.full(20, 1.5))
+        self.assertEqual(made.noisy["d"].shape, (2, 20))
+        self.assertFalse(np.array_equal(made.noisy["d"], self.model.simulate([[2.0, 0.1], [3.0, 0.1]], seed=1).noisy["d"]))
+        self.assertEqual(self.model.simulate([2.0, 0.1]).values["d"].shape, (20,))
+
+    def test_one_vector(self):
+        theta = np.array([0.3, -0.2])
+        self.assertIsInstance(self.model.log_density(theta), float)
+        self.assertEqual(self.model.log_density(theta), self.model.log_density(theta[np.newaxis])[0])
+        self.assertEqual(self.model.gradient(theta).shape, (2,))
+        self.assertEqual(self.model.constrain(theta).shape, (2,))
+        self.assertEqual(self.model.residuals(theta).shape, (21,))
+        with self.assertRaisesRegex(ValueError, "vector of 2 parameters"):
+            self.model.log_density([1.0, 2.0, 3.0])
+        with self.assertRaisesRegex(ValueError, r"shape \(W, 2\)"):
+            self.model.log_density(np.zeros((2, 3)))
+        with self.assertRaisesRegex(ValueError, "at least one"):
+            self.model.log_density(np.zeros((0, 2)))
+
+    def test_prior_draws(self):
+        draws = self.model.sample_prior(4000, seed=3)
+        np.testing.assert_array_equal(draws, self.model.sample_prior(4000, seed=3))
+        values = self.model.constrain(draws)
+        self.assertAlmostEqual(values[:, 0].std(), 10, delta=0.5)
+        self.assertAlmostEqual(np.log10(values[:, 1]).mean(), -0.5, delta=0.1)
+
+    def test_pickle(self):
+        again = pickle.loads(pickle.dumps(self.model))
+        theta = np.zeros((3, 2))
+        np.testing.assert_array_equal(again.log_density(theta), self.model.log_density(theta))
+
+    def test_display(self):
+        self.assertIn("slope [m/V] ~ normal(0, sd = 10)", repr(self.model))
+        self.assertIn("<td style='text-align:left'>log_uniform(0.01, 10)</td>", self.model._repr_html_())
+
+
+class Data(unittest.TestCase):
+    """Tables, mappings and frames give the same numbers."""
+
+    def test_the_same_from_a_file_a_mapping_a_frame_and_a_data_set(self):
+        import pandas
+        import xarray
+
+        table = pandas.read_csv(DUFFING.parent / "duffing_1pct.csv", comment="#", float_precision="round_trip")
+        columns = {name: table[name].to_numpy() for name in table.columns}
+        theta = np.tile(sysid.load(DUFFING).sample_prior(1, seed=5), (3, 1))
+        expected = sysid.load(DUFFING).log_density(theta)
+        self.assertTrue(np.all(np.isfinite(expected)))
+        given = [
+            columns,
+            {"bench": columns},
+            pandas.DataFrame(columns),
+            {"bench": pandas.DataFrame(columns)},
+            xarray.Dataset({name: ("row", values) for name, values in columns.items()}),
+        ]
+        for data in given:
+            np.testing.assert_array_equal(sysid.load(DUFFING, data=data).log_density(theta), expected)
+
+    def test_missing_samples(self):
+        holes = D.copy()
+        holes[3] = np.nan
+        whole, rest = (sysid.loads(LINE, data={"u": U, "d": each}) for each in (D, holes))
+        self.assertEqual(rest.residual_count, whole.residual_count - 1)
+
+    def test_what_is_wrong_with_data(self):
+        with self.assertRaisesRegex(sysid.Error, "no column `d`.*\n.*reads `u`, `d`; there are `u`"):
+            sysid.loads(LINE, data={"u": U})
+        with self.assertRaisesRegex(sysid.Error, "no data block `hall`"):
+            sysid.loads(LINE, data={"hall": {"u": U, "d": D}})
+        with self.assertRaisesRegex(ValueError, "differ in length"):
+            sysid.loads(LINE, data={"u": U, "d": D[1:]})
+        with self.assertRaisesRegex(TypeError, "not numbers"):
+            sysid.loads(LINE, data={"u": U, "d": np.array(["a"] * 20)})
+
+
+class Errors(unittest.TestCase):
+    def test_located(self):
+        with self.assertRaises(sysid.Error) as caught:
+            sysid.loads(LINE.replace("slope*u", "slop*u"), folder="there")
+        error = caught.exception
+        self.assertTrue(str(error).startswith("there/text.sysid:5:"), str(error))
+        self.assertIn("did you mean `slope`?", str(error))
+        self.assertEqual(error.code, "E2001")
+        self.assertEqual(error.line, 5)
+        self.assertEqual(error.help, "did you mean `slope`?")
+        again = pickle.loads(pickle.dumps(error))
+        self.assertEqual((str(again), again.code), (str(error), "E2001"))
+
+    def test_files(self):
+        with self.assertRaisesRegex(sysid.Error, "cannot read `nowhere.sysid`"):
+            sysid.load("nowhere.sysid")
+        with self.assertRaises(sysid.Error) as caught:
+            sysid.loads(LINE).log_density([0, 0])
+        self.assertEqual(caught.exception.line, 8)
+        with self.assertRaisesRegex(sysid.Error, "`forecast` is not a fit task"):
+            sysid.load(DUFFING, task="forecast").log_density(np.zeros(5))
+        with self.assertRaisesRegex(sysid.Error, "no fit task"):
+            sysid.loads(LINE[: LINE.index("posterior")], data={"u": U, "d": D}).dimension
+
+    def test_failures_are_counted_where_they_happen(self):
+        text = """model growth {
+  state y
+  initial y = 1
+  parameter rate ~ normal(0, sd = 1000)
+  y' = rate*y^3 * 1 [1/s]
+  observe d ~ normal(y, sd = 0.1)
+}
+data bench {
+  file    "nowhere.csv"
+  time    t [s]
+  measure d = d
+}
+posterior = fit growth to bench with mh, seed = 1
+"""
+        model = sysid.loads(text, data={"t": np.arange(20.0), "d": np.ones(20)})
+        density = model.log_density([[-1.0], [500.0], [600.0]], declared=True)
+        self.assertTrue(np.isfinite(density[0]))
+        self.assertEqual(list(density[1:]), [-np.inf, -np.inf])
+        self.assertEqual(sum(each["count"] for each in model.failures), 2)
+        self.assertIn("`y^3` (./text.sysid:5:", model.failures[0]["where"])
+        np.testing.assert_array_equal(model.gradient(model.unconstrain([[500.0]])), [[0.0]])
+        self.assertTrue(np.all(np.isinf(model.residuals(model.unconstrain([500.0])))))
+        self.assertTrue(np.all(np.isnan(model.simulate([500.0]).values["y"])))
+
+
+class Running(unittest.TestCase):
+    def test_threads_and_forks(self):
+        model = sysid.load(DUFFING)
+        theta = model.sample_prior(64, seed=2)
+        expected = model.log_density(theta)
+        np.testing.assert_array_equal(sysid.load(DUFFING, threads=1).log_density(theta), expected)
+        found = [None] * 4
+        workers = [threading.Thread(target=lambda i=i: found.__setitem__(i, model.log_density(theta))) for i in range(4)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        for each in found:
+            np.testing.assert_array_equal(each, expected)
+        read, write = os.pipe()
+        if os.fork() == 0:
+            try:
+                os.write(write, model.log_density(theta).tobytes())
+            finally:
+                os._exit(0)
+        os.close(write)
+        with os.fdopen(read, "rb") as pipe:
+            self.assertEqual(pipe.read(), expected.tobytes())
+        os.wait()
+
+
+if __name__ == "__main__":
+    unittest.main()
