@@ -1,4 +1,4 @@
-// The last digit follows from the shortest decimal that reads back as the number.
+// The last digit follows from the shortest decimal that reads back as the number, or is binary.
 #include "data/rounded_times.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace sysid {
 namespace {
 
 constexpr double least_units = 20;  // of a step
-constexpr double tolerance = 1.01;  // units of the last digit: beside both halves the error of h
+constexpr double tolerance = 1.05;  // units of the last digit: half of one either way, and the error of h
 
 struct Decimal {
   int digits = 1;    // significant ones
@@ -27,6 +27,25 @@ Decimal shortest(double value) {
   return decimal;
 }
 
+/// Whether all numbers are of single precision, written out in full or with the nine digits that such a number needs.
+bool of_single_precision(std::span<double const> time) {
+  constexpr int enough = 9;
+  return std::all_of(time.begin(), time.end(), [](double each) {
+    double const off = std::fabs(each - static_cast<double>(static_cast<float>(each)));
+    if (off == 0) return true;
+    Decimal const decimal = shortest(each);
+    return decimal.digits <= enough && off <= 0.501 * std::pow(10, decimal.exponent + 1 - enough);
+  });
+}
+
+/// The distance of the next number of single precision from the largest one.
+double single_unit(std::span<double const> time) {
+  double largest = 0;
+  for (double const each : time) largest = std::max(largest, std::fabs(each));
+  auto const single = static_cast<float>(largest);
+  return static_cast<double>(std::nextafter(single, std::numeric_limits<float>::infinity())) - static_cast<double>(single);
+}
+
 /// The largest unit of the last digit. Zeros at the end are not written by all programs, so the longest number shows how many
 /// digits there are: as many significant ones, or as many behind the point.
 double last_unit(std::span<double const> time) {
@@ -38,25 +57,53 @@ double last_unit(std::span<double const> time) {
     decimals = std::max(decimals, decimal.digits - 1 - decimal.exponent);
     exponent = std::max(exponent, decimal.exponent);
   }
-  return std::max(std::pow(10, -decimals), std::pow(10, exponent + 1 - digits));
+  double const unit = std::max(std::pow(10, -decimals), std::pow(10, exponent + 1 - digits));
+  return of_single_precision(time) ? std::max(unit, single_unit(time)) : unit;
+}
+
+/// Of t_i - i h.
+double spread(std::span<double const> time, double step) {
+  double least = 0, most = 0;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    double const off = time[i] - time[0] - static_cast<double>(i) * step;
+    least = std::min(least, off);
+    most = std::max(most, off);
+  }
+  return most - least;
+}
+
+/// Near a step: a spread is a convex function of it. Where rounding errors grow along half of the record, as those of steps that
+/// are nearly whole units do, least squares take them for a part of the step.
+double of_least_spread(std::span<double const> time, double step, double unit) {
+  constexpr int thirds = 60;
+  double const about = 3 * unit / static_cast<double>(time.size() - 1);
+  double low = step - about, high = step + about;
+  for (int round = 0; round < thirds; ++round) {
+    double const left = low + (high - low) / 3, right = high - (high - low) / 3;
+    if (spread(time, left) < spread(time, right))
+      high = right;
+    else
+      low = left;
+  }
+  return (low + high) / 2;
 }
 
 }  // namespace
 
 std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time) {
+  double const middle = static_cast<double>(time.size() - 1) / 2, unit = last_unit(time);
   double sum = 0, squares = 0;
-  for (std::size_t i = 1; i < time.size(); ++i) {
-    double const n = static_cast<double>(i);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    double const n = static_cast<double>(i) - middle;
     sum += n * (time[i] - time[0]);
     squares += n * n;
   }
-  double const step = sum / squares, unit = last_unit(time);
+  double step = sum / squares;
   if (!(step >= least_units * unit)) return std::nullopt;
+  if (!(spread(time, step) <= tolerance * unit)) step = of_least_spread(time, step, unit);
+  if (!(spread(time, step) <= tolerance * unit)) return std::nullopt;
   std::vector<double> equal(time.size());
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    equal[i] = time[0] + static_cast<double>(i) * step;
-    if (!(std::fabs(time[i] - equal[i]) <= tolerance * unit)) return std::nullopt;
-  }
+  for (std::size_t i = 0; i < time.size(); ++i) equal[i] = time[0] + static_cast<double>(i) * step;
   return equal;
 }
 

@@ -8,10 +8,12 @@ namespace sysid {
 
 /// The equal steps that rounded times come from; nothing where no equal steps give them.
 ///
-///   t_i = t_0 + i h,   h = sum of i (t_i - t_0) / sum of i^2,   each within one unit of the last digit of the longest numbers
+///   t_i = t_0 + i h,   h = sum of (i - mean i) t_i / sum of (i - mean i)^2, or the one with the least spread of t_i - i h
 ///
-/// Two times are rounded, the first one as well, by half a unit each. The step has at least 20 units: of fewer digits, steps that
-/// differ look the same. time: as the numbers stand in the file, at least two, rising.
+/// What is rounded off lies within half a unit of the last digit of the longest numbers, either way, so that the differences t_i -
+/// t_0 - i h lie within one unit of each other. Those of a clock that is off by a unit now and then do not. The step has at least
+/// 20 units: of fewer digits, steps that differ look the same. Numbers of single precision were rounded to its last binary digit.
+/// time: as the numbers stand in the file, at least two, rising.
 std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time);
 
 }  // namespace sysid

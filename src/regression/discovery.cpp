@@ -298,7 +298,8 @@ class Finder {
       if (std::any_of(near.terms.begin(), near.terms.end(), [&](int j) { return !is_settled(j); }))
         found_.concerns.push_back(std::move(near));
     if (NoiseOfEquation const* noise = projection_.noise_of_equation()) {
-      Concerns const of_errors = error_concerns(*noise, index_, errors_, runs_, !found_.chosen.terms.empty());
+      Concerns const of_errors =
+          error_concerns(*noise, index_, errors_, runs_, !found_.chosen.terms.empty(), !found_.moving_average.empty());
       found_.concerns.insert(found_.concerns.end(), of_errors.begin(), of_errors.end());
     }
     if (projection_.residual_size() == ResidualSize::one) {

@@ -12,16 +12,29 @@ namespace {
 constexpr Eigen::Index most_lags = 20;
 /// Rows that follow one another, below which a moving average of the noise is hardly seen, nor that it is missing.
 constexpr Eigen::Index shortest_runs = 10;
+/// The same where there is one: the errors before each run are known from samples before it, which its likelihood takes for
+/// independent of them. So each gap counts against a moving average that is long enough, and a lag too many comes in its place:
+/// with runs of 14 rows in 16 of 20 records, with runs of 35 in at most 1 of 10 (tests/statistical/narmax.cpp).
+constexpr Eigen::Index short_of_average = 25;
 
 }  // namespace
 
-Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::VectorXd const& errors, int runs, bool any_term) {
+Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::VectorXd const& errors, int runs, bool any_term,
+                        bool coloured) {
   Concerns concerns;
   if (errors.size() == 0) return concerns;
   if (errors.size() < shortest_runs * runs) {
     Concern concern{.kind = Concern::Kind::short_runs, .value = static_cast<double>(errors.size()) / runs};
     concern.clause = fmt::format(
         "missing samples leave {:.1f} rows in sequence on average: correlation of the noise is hardly seen", concern.value);
+    concerns.push_back(std::move(concern));
+  } else if (coloured && errors.size() < short_of_average * runs) {
+    Concern concern{.kind = Concern::Kind::short_runs, .value = static_cast<double>(errors.size()) / runs};
+    concern.clause = fmt::format(
+        "missing samples leave {:.1f} rows in sequence on average: the moving average of the noise may have come out too short, "
+        "with "
+        "a lag too many in its place",
+        concern.value);
     concerns.push_back(std::move(concern));
   }
   Eigen::Index const rows = errors.size(), most = std::min(most_lags, rows / 4);

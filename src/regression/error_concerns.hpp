@@ -8,7 +8,8 @@
 namespace sysid::regression {
 
 /// errors: row by row; empty where they are rounding, of which nothing is said. runs: of rows that follow one another. any_term:
-/// whether one was chosen.
-Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::VectorXd const& errors, int runs, bool any_term);
+/// whether one was chosen. coloured: whether the noise has come out as a moving average.
+Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::VectorXd const& errors, int runs, bool any_term,
+                        bool coloured);
 
 }  // namespace sysid::regression

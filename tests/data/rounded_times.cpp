@@ -58,3 +58,43 @@ TEST_CASE("steps that grow are unequal, however many digits there are") {
   for (int i = 0; i < 100; ++i) time.push_back(std::stod(fmt::format("{:.7g}", 0.03 * i + 1e-6 * i * i)));
   CHECK_FALSE(equal_times_before_rounding(time));
 }
+
+TEST_CASE("a clock that is a unit early or late now and then has not been rounded") {
+  // 20 ms in milliseconds: off by 5 % of a step, which a model in discrete time does not take for equal.
+  std::vector<double> time;
+  for (int i = 0; i < 200; ++i) time.push_back((20.0 * i + (i % 7 == 3 ? 1 : i % 11 == 5 ? -1 : 0)) / 1e3);
+  CHECK_FALSE(equal_times_before_rounding(time));
+}
+
+TEST_CASE("steps that are nearly whole units leave errors that grow, which are not a part of the step") {
+  std::vector<double> time;
+  for (int i = 0; i < 201; ++i) time.push_back(std::round(i * (26 + 0.75 / 200)) / 1e3);
+  REQUIRE(equal_times_before_rounding(time));
+}
+
+TEST_CASE("equal steps of many lengths, rounded to one unit in 20 to 1000 steps, are found again") {
+  for (double step = 0.0203; step < 1; step *= 1.37)
+    for (double const begin : {0.0, 0.0004, 12.3457}) {
+      std::vector<double> time;
+      for (int i = 0; i < 400; ++i) time.push_back(std::round((begin + i * step) * 1e3) / 1e3);
+      auto const equal = equal_times_before_rounding(time);
+      REQUIRE(equal);
+      CHECK(((*equal)[399] - (*equal)[0]) / 399 == doctest::Approx(step).epsilon(1e-3 / (399 * step)));
+    }
+}
+
+TEST_CASE("times of single precision were rounded, too, however they are written") {
+  std::vector<double> whole, nine;
+  for (int i = 0; i < 800; ++i) {
+    double const single = static_cast<double>(static_cast<float>((3.7 + i) * 0.01));
+    whole.push_back(single);
+    nine.push_back(std::stod(fmt::format("{:.9g}", single)));
+  }
+  for (std::vector<double> const& time : {whole, nine}) {
+    auto const equal = equal_times_before_rounding(time);
+    REQUIRE(equal);
+    CHECK(((*equal)[799] - (*equal)[0]) / 799 == doctest::Approx(0.01).epsilon(1e-7));
+  }
+  whole[400] = static_cast<double>(static_cast<float>(whole[400] + 2e-6));  // four of its units
+  CHECK_FALSE(equal_times_before_rounding(whole));
+}

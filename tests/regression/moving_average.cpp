@@ -152,3 +152,22 @@ TEST_CASE("runs of seven rows show the coefficient as well as one of their lengt
   CHECK(std::abs(mean) < 4 * spread / std::sqrt(series));
   CHECK(spread < 0.06);  // of one run sqrt((1 - c^2)/1050) = 0.022; seven rows show less of a zero at 0.7
 }
+
+TEST_CASE("an estimate from short runs is where the likelihood is largest") {
+  Series const made(300, {0.7}, {1500});
+  std::vector<Run> runs;
+  Eigen::VectorXd v(5 * 300);
+  for (Eigen::Index r = 0; r < 300; ++r) {
+    runs.push_back({5 * r, 5});
+    v.segment(5 * r, 5) = made.v.segment(5 * r, 5);
+  }
+  auto const minus_twice = [&](double c) {
+    MovingAverage const average{{c}};
+    return 1500 * std::log(average.errors(v, runs).squares()) + average.log_determinant(runs);
+  };
+  double const found = fitted_moving_average(v, runs, {{0}}).coefficients[0], step = 1e-4;
+  double const slope = (minus_twice(found + step) - minus_twice(found - step)) / (2 * step);
+  double const curvature = (minus_twice(found + step) - 2 * minus_twice(found) + minus_twice(found - step)) / (step * step);
+  CHECK(curvature > 0);
+  CHECK(std::abs(slope / curvature) < 1e-4);
+}

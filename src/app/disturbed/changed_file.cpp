@@ -107,13 +107,14 @@ class FileChange {
   }
 
   void change(ast::Task const& task) {
-    bool const is_fit = task.called() == fit_.name && task.verb.text == "fit";
+    // By its place: a fit without a name is called after a model of a family, which the text names without its arguments.
+    bool const is_fit = task.verb.text == "fit" && task.span.begin <= fit_.span.begin && fit_.span.begin < task.span.end;
     bool const of_fit = task.verb.text == "predict" && task.subject.text == fit_.name && task.others.empty();
     if (!is_fit && !of_fit) {
       edits_.push_back({line_of(source_, task.span), ""});
       return;
     }
-    std::string const name = changed_name(task.called());
+    std::string const name = changed_name(is_fit ? fit_.name : task.called());
     if (task.name)
       edits_.push_back({task.name->span, name});
     else

@@ -57,12 +57,15 @@ std::string sizes(OrderedJson const& with, std::vector<DisturbedEquation> const&
       bool const by_rms = each.white() && derived(each);
       std::string const quantity = by_rms ? each.name + "_rms" : each.parameter();
       if (name != quantity && !name.ends_with("." + quantity)) continue;
+      // In a part, with the name of the part; another part may have one of the same name, but not the same parameter.
+      std::string const part = name.substr(0, name.size() - quantity.size());
       if (auto const value = estimate(with, name))
-        text += fmt::format("{}: {}{} {}\n", each.name, with_sd(*value), unit_after_number(value->unit),
+        text += fmt::format("{}{}: {}{} {}\n", part, each.name, with_sd(*value), unit_after_number(value->unit),
                             each.discrete   ? "rms from sample to sample"
                             : !each.white() ? "rms"
                             : by_rms        ? "rms in a sampling interval"
                                             : "intensity");
+      break;
     }
   return text;
 }

@@ -15,6 +15,18 @@
 namespace sysid {
 namespace {
 
+/// The results of another task of this file would be written over.
+void require_free_name(CheckedFile const& file, Task const& fit) {
+  for (Task const& other : file.tasks)
+    if (other.name == changed_name(fit.name))
+      throw UserError({Severity::error,
+                       "",
+                       fmt::format("`{}` would be the name of this fit with a disturbance, and another task has it", other.name),
+                       Label{other.span, {}},
+                       {},
+                       "give that task another name"});
+}
+
 /// Those whose model can have a disturbance; the others are named in a notice. UserError where there is none.
 std::vector<Task const*> wanted_fits(Source const& source, CheckedFile const& file, std::ostream& notices) {
   std::vector<Task const*> wanted;
@@ -22,6 +34,7 @@ std::vector<Task const*> wanted_fits(Source const& source, CheckedFile const& fi
   for (Task const& task : file.tasks) {
     if (kind_of(task) != TaskKind::fit) continue;
     try {
+      require_free_name(file, task);
       (void)disturbed_equations(source, file, task);
       wanted.push_back(&task);
     } catch (UserError const& error) {

@@ -214,6 +214,8 @@ std::optional<Finding> FittedParticles::check_estimates(ConstLanes draws) const 
   }
   ParameterInfo const& parameter = target_->parameters()[static_cast<std::size_t>(farthest)];
   bool const useless = 3 * many > draws.width() || need_.sd > useless_sd;
+  bool const all_normal = std::ranges::all_of(
+      model_.channels, [](Channel const& channel) { return channel.noise.row->gaussian; });  // for others there is no other filter
   return Finding{
       FindingCode::likelihood_too_noisy,
       useless ? Severity::error : Severity::warning,
@@ -222,10 +224,11 @@ std::optional<Finding> FittedParticles::check_estimates(ConstLanes draws) const 
                   "{:.2g} where {} = {:.3g}{}: chains stay there for long",
                   need_.particles, large_sd, many, draws.width(), largest, parameter.name, draws(farthest, worst),
                   unit_after_number(parameter.unit)),
-      fmt::format("use more particles, `particles = {}` or more, or a prior without such places; where the noise of a "
-                  "sensor is small against what a disturbance moves within a sampling interval, `filter = unscented` is "
-                  "the better filter",
-                  4 * need_.particles)};
+      fmt::format("use more particles, `particles = {}` or more, or a prior without such places{}", 4 * need_.particles,
+                  all_normal
+                      ? "; where the noise of a sensor is small against what a disturbance moves within a sampling interval, "
+                        "`filter = unscented` is the better filter"
+                      : "")};
 }
 
 Findings FittedParticles::check(std::vector<LaneArray> const& parameters, ConstLanes draws) const {

@@ -51,9 +51,9 @@ SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate,
   Along out;
   out.compiled = session_.compiled(fit, free_start, fit.solver.method, what_.prediction);
   out.start_rows = start_rows(what_.start);
-  std::vector<ExperimentData> data =
-      load_experiments(session_, what_.candidate_experiments[candidate], session_.file.models[static_cast<std::size_t>(fit.model)],
-                       what_.start, what_.prediction, fit.solver);
+  Model const& written = session_.file.models[static_cast<std::size_t>(fit.model)];
+  std::vector<ExperimentData> data = load_experiments(session_, what_.candidate_experiments[candidate], written, what_.start,
+                                                      rule_of_lags(fit, written, what_.prediction), fit.solver);
   if (out.model().filtered()) data[experiment].experiment.corrects = corrected_rows(data[experiment].experiment, what_.prediction);
   out.data = std::make_unique<ExperimentData const>(std::move(data[experiment]));
   auto const space = parameter_space(without_noise_parameters(out.model()), fit.experiments);

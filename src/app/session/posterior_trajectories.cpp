@@ -40,7 +40,8 @@ PosteriorTrajectories::PosteriorTrajectories(Session& session, PredictTask const
       compiled_(session.compiled(fit_, free_start_, solver_.method, what.prediction)),
       space_(parameter_space(compiled_->model, fit_.experiments)),
       data_(load_experiments(session, what.experiments, session.file.models[static_cast<std::size_t>(fit_.model)], what.start,
-                             what.prediction, solver_)),
+                             rule_of_lags(fit_, session.file.models[static_cast<std::size_t>(fit_.model)], what.prediction),
+                             solver_)),
       seed_(seed),
       wanted_(std::min<int>(what.draws, static_cast<int>(fitted_.draws.total()))) {
   if (model().filtered())
@@ -108,7 +109,9 @@ Trajectory::Result PosteriorTrajectories::by_particles(int e, ConstLanes paramet
   ParticleTrajectory const particles(particle_model(model(), fitted_.solver.method), model(),
                                      data_[static_cast<std::size_t>(e)].experiment, fitted_.solver,
                                      fit_.particles > 0 ? fit_.particles : particles_of_prediction, session_.abandonable());
-  return particles.run(parameters, {seed_, Purpose::particle, static_cast<std::uint64_t>(e) << 32, 0}, false).predicted;
+  return particles
+      .run(parameters, {seed_, Purpose::particle, static_cast<std::uint64_t>(e) << 32, 0}, false, std::max(1, what_.ahead))
+      .predicted;
 }
 
 PointwiseLikelihood PosteriorTrajectories::pointwise(int e) const {

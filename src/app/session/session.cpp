@@ -26,14 +26,18 @@ void Session::find_results_in(std::filesystem::path folder, Task const& task) {
   selected.erase(index);
 }
 
+// Random states are before each sample what the filter makes of those before it: lags stay as they were fitted. In continuous time
+// there are none.
+PredictionRule rule_of_lags(FitTask const& fit, Model const& model, PredictionRule asked) {
+  bool const random = model.filtered() || !fit.input_errors.empty();
+  bool const by_equations = model.dynamics == Dynamics::discrete && !random;
+  return asked == PredictionRule::one_step && !by_equations ? fit.prediction : asked;
+}
+
 std::shared_ptr<CompiledModel const> Session::compiled(FitTask const& fit, bool free_start, std::string const& method,
                                                        PredictionRule prediction) {
-  // Random states are before each sample what the filter makes of those before it: lags stay as they were fitted. In continuous
-  // time there are none.
   Model const& written = file.models[static_cast<std::size_t>(fit.model)];
-  bool const random = written.filtered() || !fit.input_errors.empty();
-  bool const by_equations = written.dynamics == Dynamics::discrete && !random;
-  if (prediction == PredictionRule::one_step && !by_equations) prediction = fit.prediction;
+  prediction = rule_of_lags(fit, written, prediction);
   auto& place = compiled_[{fit.model, free_start, method, prediction, fit.filter, fit.input_errors}];
   if (!place) {
     auto ruled = with_prediction(written, prediction);

@@ -83,6 +83,10 @@ class Session {
   std::uint64_t polls_ = 0;
 };
 
+/// The rule by which the model of a fit has its lags where a prediction asks for this one: that of the fit, where one step ahead
+/// means that a filter corrects the states. Samples that lags do not read then do not have to be there.
+PredictionRule rule_of_lags(FitTask const& fit, Model const& model, PredictionRule asked);
+
 /// Reads them in order, for a model of the file; UserError, UnusableData, UnreadableData as above. solver: which may need equal
 /// steps.
 std::vector<ExperimentData> load_experiments(Session& session, std::vector<ExperimentUse> const& uses, Model const& model,

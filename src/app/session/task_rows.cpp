@@ -108,16 +108,19 @@ Experiments experiments(Task const& task) { return of(task).experiments; }
 std::vector<TaskData> data(CheckedFile const& file, Task const& task) {
   PredictTask const& what = of(task);
   std::vector<TaskData> all;
-  auto const add = [&](FitTask const& fitted, Experiments const& experiments) {
-    all.push_back({&model_of(file, fitted.model), &experiments, what.start, what.prediction, fitted.solver});
+  auto const add = [&](FitTask fitted, std::vector<double> const& input_errors, Experiments const& experiments) {
+    Model const& model = model_of(file, fitted.model);
+    fitted.input_errors = input_errors;
+    all.push_back({&model, &experiments, what.start, rule_of_lags(fitted, model, what.prediction), fitted.solver});
   };
   Task const& from = subject(file, task);
   if (what.averages())
-    for (PredictTask const& member : what.members) add(fit::of(task_at(file, member.fit)), member.experiments);
+    for (PredictTask const& member : what.members) add(fit::of(task_at(file, member.fit)), member.input_errors, member.experiments);
   else if (kind_of(from) == TaskKind::select)
-    for (std::size_t c = 0; c < select::of(from).fits.size(); ++c) add(select::of(from).fits[c], what.candidate_experiments[c]);
+    for (std::size_t c = 0; c < select::of(from).fits.size(); ++c)
+      add(select::of(from).fits[c], what.candidate_input_errors[c], what.candidate_experiments[c]);
   else
-    add(fit::of(from), what.experiments);
+    add(fit::of(from), what.input_errors, what.experiments);
   return all;
 }
 std::string name(Session const& session, Task const& task) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "core/numeric/elementary.hpp"
@@ -45,14 +46,16 @@ class ParticleRun {
       if (simulator_.stopped()) return failed(sample);
       if (sample > 0) particles_.step(sample - 1);
       std::span<double const> const numbers = normals.take(numbers_of_sample(model_, particles_.count()));
-      set_noises(sample, numbers, true);
+      set_noises(particles_.states(), sample, numbers, true);
       bool const weighed = is_weighed(sample);
       ConstLanes const densities = weighed ? particles_.record(sample) : ConstLanes();
-      if (view.predicted) view.predicted({sample, particles_.states(), weights_, densities});
+      if (view.predicted && view.ahead == 1) view.predicted({sample, particles_.states(), weights_, densities});
+      if (view.predicted && view.ahead > 1) go_ahead(sample, parameters, normals, view);
       if (weighed && !weigh(sample, densities)) return failed(sample);
       if (view.weighed) view.weighed({sample, particles_.states(), weights_});
       if (weighed && sample + 1 < end && effective_ < fewest_effective) resample(numbers.back(), view);
-      set_noises(sample, numbers, false);
+      set_noises(particles_.states(), sample, numbers, false);
+      if (view.ahead > 1 && sample + view.ahead < to) leave(sample);
     }
     return outcome_;
   }
@@ -70,6 +73,46 @@ class ParticleRun {
     particles_.start({parameters.data(), model_.first_start, 1, parameters.stride()}, own);
   }
 
+  /// Particles as they are behind a sample, which no later one weighs.
+  struct Left {
+    int sample;
+    LaneArray states;
+    std::vector<double> weights;
+  };
+  void leave(int sample) {
+    ConstLanes const states = particles_.states();
+    Left left{sample, LaneArray(states.rows(), states.width()), weights_};
+    copy(states, left.states);
+    left_.push_back(std::move(left));
+  }
+  static void copy(ConstLanes from, Lanes to) {
+    for (int s = 0; s < from.rows(); ++s) std::copy_n(from.row(s).begin(), from.width(), to.row(s).begin());
+  }
+
+  /// Shows a sample as it is known from those `ahead` rows before it and earlier: particles that were left there have gone on by
+  /// themselves. The first ones have nothing before them but the start.
+  void go_ahead(int sample, ConstLanes parameters, ParticleNormals& normals, ParticleView const& view) {
+    if (!free_) {
+      free_.emplace(simulator_, particles_.count());
+      LaneArray const starts(model_.starts, particles_.count());  // only a start reads them
+      free_->start({parameters.data(), model_.first_start, 1, parameters.stride()}, starts);
+      leave(-1);
+    }
+    for (Left& each : left_) {
+      Lanes const states = free_->states();
+      copy(each.states, states);
+      if (sample > 0) free_->step(sample - 1);
+      std::span<double const> const numbers = normals.take(numbers_of_sample(model_, particles_.count()));
+      if (sample > 0) set_noises(states, sample, numbers, true);
+      bool const is_start = each.sample < 0;
+      if (is_start ? sample < view.ahead : each.sample + view.ahead == sample)
+        view.predicted({sample, states, each.weights, ConstLanes()});
+      set_noises(states, sample, numbers, false);
+      copy(states, each.states);
+    }
+    std::erase_if(left_, [&](Left const& each) { return std::max(each.sample, -1) + view.ahead <= sample; });
+  }
+
   FilterOutcome failed(int sample) const {
     FilterOutcome outcome = outcome_;
     outcome.log_likelihood = -infinity;
@@ -78,9 +121,8 @@ class ParticleRun {
   }
 
   /// Disturbances of the interval that begins with a sample: those that a channel reads there, or the others.
-  void set_noises(int sample, std::span<double const> numbers, bool observed) {
+  void set_noises(Lanes states, int sample, std::span<double const> numbers, bool observed) const {
     auto const count = weights_.size();
-    Lanes const states = particles_.states();
     int const from = sample + 1 < schedule_.samples() ? sample : sample - 1;
     double const step = from < 0 ? 1 : schedule_.time(from + 1) - schedule_.time(from);
     std::size_t first = 0;
@@ -152,6 +194,8 @@ class ParticleRun {
   std::vector<int> ancestors_;
   double effective_ = 1;
   FilterOutcome outcome_;
+  std::optional<ParticleLanes> free_;  // moves those that were left, the oldest first
+  std::vector<Left> left_;
 };
 
 }  // namespace

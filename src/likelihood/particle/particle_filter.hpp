@@ -37,6 +37,8 @@ struct PredictedParticles {
 
 /// Who looks at a run; what is not given is not called. It goes on to the end of the record, weighed or not.
 struct ParticleView {
+  /// What `predicted` sees of a sample is known from those so many rows before it and earlier; beyond 1 without densities.
+  int ahead = 1;
   std::function<void(PredictedParticles const&)> predicted;
   SeeParticles weighed;  // at each sample, also where nothing was to be weighed
   /// After that, where particles are chosen anew: particle w becomes what ancestors[w] was, all of equal weight. weights: before.

@@ -328,28 +328,31 @@ void ParticleTrajectory::choose_shown() {
   }
 }
 
-ParticleTrajectory::Path ParticleTrajectory::path(ConstLanes parameters, StreamKey key, int picks) const {
+ParticleTrajectory::Path ParticleTrajectory::path(ConstLanes parameters, StreamKey key, int picks, int ahead) const {
   Path path;
   Recorder recorder(*this, parameters, key, picks, path);
   StreamNormals normals(key);
-  path.outcome = ParticleFilter(*model_, densities_, particles_).run(parameters, normals, recorder.view());
+  ParticleView view = recorder.view();
+  view.ahead = std::clamp(ahead, 1, std::max(1, samples()));
+  path.outcome = ParticleFilter(*model_, densities_, particles_).run(parameters, normals, view);
   if (path.solved()) recorder.end();
   return path;
 }
 
-ParticleTrajectory::Result ParticleTrajectory::run(ConstLanes parameters, StreamKey key, bool smooth) const {
+ParticleTrajectory::Result ParticleTrajectory::run(ConstLanes parameters, StreamKey key, bool smooth, int ahead) const {
   Result result;
   double const each = static_cast<double>(smoothed_.size()) * samples() * parameters.width();
-  result.picks = smooth ? std::clamp(static_cast<int>(std::min(numbers_of_paths / std::max(each, 1.0), 1e6)), 1, most_picks) : 0;
+  result.picks =
+      smooth && ahead == 1 ? std::clamp(static_cast<int>(std::min(numbers_of_paths / std::max(each, 1.0), 1e6)), 1, most_picks) : 0;
   std::vector<Path> paths(static_cast<std::size_t>(parameters.width()));
   Work work;
   work.given_up = densities_.given_up();
   work.instructions =
-      work_per_sample(densities_.program(), densities_.schedule().solver()) * samples() * particles_ * parameters.width();
+      work_per_sample(densities_.program(), densities_.schedule().solver()) * samples() * particles_ * parameters.width() * ahead;
   for (int d = 0; d < parameters.width(); ++d)
     work.blocks.push_back([&, d] {
       paths[static_cast<std::size_t>(d)] =
-          path(parameters.columns(d, 1), key.with_index(key.index + static_cast<std::uint64_t>(d)), result.picks);
+          path(parameters.columns(d, 1), key.with_index(key.index + static_cast<std::uint64_t>(d)), result.picks, ahead);
     });
   do_work({&work, 1}, pool_.get());
   collect(paths, result);

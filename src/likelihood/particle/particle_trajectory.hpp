@@ -43,7 +43,9 @@ class ParticleTrajectory {
     int picks = 0;
   };
   /// parameters: of the model, SI [parameters x W]. Vector d has the numbers of (key, index d).
-  Result run(ConstLanes parameters, StreamKey key, bool smooth) const;
+  /// ahead: each sample is predicted from those so many rows before it and earlier; it costs about that many times as much. Nothing
+  /// is smoothed then.
+  Result run(ConstLanes parameters, StreamKey key, bool smooth, int ahead = 1) const;
   /// parameters: [parameters x 1].
   ParticleInnovations innovations(ConstLanes parameters, StreamKey key) const;
 
@@ -55,7 +57,7 @@ class ParticleTrajectory {
     Kind kind;
     int index;  // state, disturbance, record
   };
-  Path path(ConstLanes parameters, StreamKey key, int picks) const;
+  Path path(ConstLanes parameters, StreamKey key, int picks, int ahead) const;
   void choose_shown();
   void collect(std::vector<Path>& paths, Result& result) const;
   Quantity const& quantity_of(CompiledModel::Record const& record) const;

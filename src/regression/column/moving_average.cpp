@@ -165,7 +165,7 @@ MovingAverage fitted_moving_average(Eigen::VectorXd const& v, std::span<Run cons
     OrthogonalTriangular const decomposed(slopes);
     Eigen::MatrixXd const root = solve_upper(decomposed.triangle(), Eigen::MatrixXd::Identity(order, order));
     Eigen::VectorXd const step =
-        decomposed.solve(best.turned(e.in_runs, runs)) - e.squares() / (2 * rows) * (root * (root.transpose() * rise));
+        decomposed.solve(best.turned(best.divided(v, runs), runs)) - e.squares() / (2 * rows) * (root * (root.transpose() * rise));
     double factor = 1, gain = 0;
     for (int halving = 0; halving < most_halvings && gain == 0; ++halving, factor /= 2) {
       MovingAverage next = best;

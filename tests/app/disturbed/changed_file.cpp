@@ -157,6 +157,19 @@ TEST_CASE("a vector equation gets a vector, a part its own, and a model in discr
   CHECK(can_be_loaded(sampled));
 }
 
+TEST_CASE("a fit without a name of a model with arguments stays in the file") {
+  Found const found(
+      "model row(n = 2) {\n input x [N]\n state q(n) [m]\n initial q = 0, q' = 0\n parameter k [N/m] ~ log_uniform(1, 100)\n"
+      " 1 [kg]*q'' + k*q = x*unit_vector(n, n)\n observe d ~ normal(q[1], sd = 1)\n}\n"
+      "data b { file \"b.csv\"; time t [s]; input x = x [N] hold linear; measure d = y [m] }\nfit row to b with map\n"
+      "fit row(n = 3) to b with map\n");
+  std::string const text = found.changed({"N", 1, 0.1});
+  INFO(text);
+  CHECK(has(text, found.fit->name + "_with_disturbance = fit row to b with map\n"));
+  CHECK_FALSE(has(text, "fit row(n = 3)"));
+  CHECK(can_be_loaded(text));
+}
+
 TEST_CASE("a model that can have no disturbance is refused where it says so") {
   auto const refused = [](std::string const& text) { return Found(text, false).refusal(); };
   auto const [has_one, at_one] =

@@ -137,3 +137,46 @@ TEST_CASE("a fit that does not move says nothing of how large a disturbance may 
     CHECK(error.diagnostic().primary);
   }
 }
+
+TEST_CASE("disturbances of a model and of its part are told apart") {
+  std::string const text = R"(
+model leg {
+  input base [m]
+  state z [m]
+  initial z = 0, z' = 0
+  0.1 [kg]*z'' = 100 [N/m]*(base - z) - 0.2 [N s/m]*z'
+  let force = 100 [N/m]*(base - z)
+}
+model rig {
+  input x [N]
+  state y [m]
+  initial y = 0, y' = 0
+  part joint = leg(base = y)
+  parameter k [N/m] ~ log_uniform(40, 4000)
+  1 [kg]*y'' + 1 [N s/m]*y' + k*y + joint.force = x
+  observe d [m] ~ normal(y, sd = 2e-5)
+}
+data bench { file "b.csv"; time t [s]; input x = x [N] hold zero_order; measure d = y [m] }
+post = fit rig to bench with map, seed = 1
+)";
+  Pair pair(oscillator_record(5, 0.05));
+  pair.run(text);
+  std::string const said = pair.out.str();
+  INFO(said);
+  auto const lines = [&](std::string const& start) {
+    int count = 0;
+    for (auto at = said.find(start); at != std::string::npos; at = said.find(start, at + 1)) ++count;
+    return count;
+  };
+  CHECK(lines("\nunmeasured: ") == 1);
+  CHECK(lines("\njoint.unmeasured: ") == 1);
+}
+
+TEST_CASE("a fit that would write over the results of another task is left as it is") {
+  Pair pair(oscillator_record(5, 0.05));
+  std::string const both = plain + "post_with_disturbance = fit shaken to bench with map, seed = 2\n";
+  pair.run(both);
+  CHECK(contains(pair.notices.str(), "post: fitted without a disturbance only: `post_with_disturbance` would be the name"));
+  CHECK(pair.summary("post_with_disturbance").at("seed") == 2);
+  CHECK(contains(pair.out.str(), "\nunmeasured: "));  // of the other fit
+}

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
+#include "app/tables.hpp"
 #include "core/numeric/random.hpp"
 
 using namespace sysid;
@@ -81,6 +82,62 @@ model shaken {
 data bench { file "b.csv"; time t [s]; input x = x [N] hold zero_order; measure d = y [m]
   split train = rows 1..300, test = rows 301..600 }
 )";
+
+/// y_i = 0.8 y_i-1 + w, w of sd 0.5, measured with noise of sd 0.2 in every other row from 21 on.
+std::vector<double> every_other(std::uint64_t seed) {
+  Stream stream({seed, Purpose::test});
+  std::vector<double> measured;
+  double y = 0;
+  for (int i = 0; i < 60; ++i) {
+    if (i > 0) y = 0.8 * y + 0.5 * stream.normal();
+    double const m = y + 0.2 * stream.normal();
+    measured.push_back(i < 20 || i % 2 == 0 ? m : std::nan(""));
+  }
+  return measured;
+}
+
+struct Known {
+  double mean, variance;
+};
+/// Row by row what is known of y from the rows `ahead` before it and earlier.
+std::vector<Known> forecasts(std::vector<double> const& measured, std::size_t ahead) {
+  auto const moved = [](Known const& y) { return Known{0.8 * y.mean, 0.64 * y.variance + 0.25}; };
+  std::vector<Known> behind, out;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    Known y = moved(i == 0 ? Known{0, 1} : behind.back());
+    if (!std::isnan(measured[i])) {
+      double const gain = y.variance / (y.variance + 0.04);
+      y = {y.mean + gain * (measured[i] - y.mean), (1 - gain) * y.variance};
+    }
+    behind.push_back(y);
+  }
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    Known y = i < ahead ? Known{0, 1} : behind[i - ahead];  // the start is a row before the first one
+    for (std::size_t k = 0; k < (i < ahead ? i + 1 : ahead); ++k) y = moved(y);
+    out.push_back(y);
+  }
+  return out;
+}
+
+std::string const gappy = R"(
+model level {
+  time discrete 1 [s]
+  state y
+  initial y ~ normal(0, sd = 1)
+  parameter a ~ normal(0.8, sd = 1e-9)
+  disturbance w ~ normal(0, sd = 0.5)
+  y = a*lag(y, 1) + w
+  observe m ~ normal(y, sd = 0.2)
+}
+data d { file "d.csv"; time t [s]; measure m = m; split train = rows 1..20, test = rows 21..60 }
+)";
+
+std::string gappy_record(std::vector<double> const& measured) {
+  std::string text = "t,m\n";
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    text += std::isnan(measured[i]) ? fmt::format("{},\n", i) : fmt::format("{},{}\n", i, measured[i]);
+  return text;
+}
 
 }  // namespace
 
@@ -186,4 +243,50 @@ TEST_CASE("a simulation draws its disturbances") {
     sum += std::stod(cell) * std::stod(cell);
   }
   CHECK(std::sqrt(sum / (count - 500)) == doctest::Approx(std::sqrt(1e-4 / (2 * 1 * 400))).epsilon(0.15));
+}
+
+TEST_CASE("in discrete time every sample corrects the states behind it, also where the one before is missing") {
+  // The equation reads the state of the row before, not its sample.
+  std::vector<double> const measured = every_other(3);
+  std::string const text = gappy +
+                           "post = fit level to d.train with map, seed = 1\n"
+                           "step = predict post on d.test with prediction = one_step, seed = 1\n"
+                           "third = predict post on d.test with prediction = steps(3), seed = 1\n";
+  CaseRun const run(text, {{"d.csv", gappy_record(measured)}});
+  for (auto const& [task, ahead] : {std::pair("step", 1), std::pair("third", 3)}) {
+    CAPTURE(task);
+    std::vector<Known> const known = forecasts(measured, static_cast<std::size_t>(ahead));
+    std::vector<double> const mean = column(run.file(fmt::format("{}/predict.csv", task)), "m_mean"),
+                              sd = column(run.file(fmt::format("{}/predict.csv", task)), "m_sd");
+    REQUIRE(mean.size() >= 40);
+    for (std::size_t k = 1; k <= 40; ++k) {
+      CHECK(mean[mean.size() - k] == doctest::Approx(known[60 - k].mean).epsilon(1e-6));
+      CHECK(sd[sd.size() - k] == doctest::Approx(std::sqrt(known[60 - k].variance)).epsilon(1e-6));
+    }
+    CHECK(run.summary(task).at("data").dump().find("a past sample is missing") == std::string::npos);
+  }
+}
+
+TEST_CASE("particles predict as many rows ahead as is asked for") {
+  std::vector<double> const measured = every_other(3);
+  std::string text = with(gappy, "normal(y, sd = 0.2)", "student_t(y, 1e4, scale = 0.2)");
+  text +=
+      "post = fit level to d.train with mh(samples = 400, burn_in = 200, chains = 2), particles = 1000, seed = 1\n"
+      "step = predict post on d.test with draws(50), prediction = one_step, seed = 1\n"
+      "third = predict post on d.test with draws(50), prediction = steps(3), seed = 1\n"
+      "all = predict post on d.test with draws(50), prediction = steps(100), seed = 1\n";
+  CaseRun const run(text, {{"d.csv", gappy_record(measured)}});
+  for (auto const& [task, ahead] : {std::pair("step", 1), std::pair("third", 3), std::pair("all", 100)}) {
+    CAPTURE(task);
+    std::vector<Known> const known = forecasts(measured, static_cast<std::size_t>(ahead));
+    std::vector<double> const mean = column(run.file(fmt::format("{}/predict.csv", task)), "m_mean"),
+                              sd = column(run.file(fmt::format("{}/predict.csv", task)), "m_sd");
+    REQUIRE(mean.size() >= 40);
+    // 50 runs of 1000 particles: a mean is off by 0.004 sds or so.
+    for (std::size_t k = 1; k <= 40; ++k) {
+      double const exact = std::sqrt(known[60 - k].variance);
+      CHECK(std::abs(mean[mean.size() - k] - known[60 - k].mean) < 0.03 * exact);
+      CHECK(sd[sd.size() - k] == doctest::Approx(exact).epsilon(0.03));
+    }
+  }
 }
