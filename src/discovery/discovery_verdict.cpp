@@ -98,7 +98,8 @@ void temper_by_form(ValidationReport const& validation, std::string const& targe
       finding.severity = Severity::note;
       break;
     case FindingCode::terms_collinear:
-      if (std::none_of(finding.names.begin() + std::min<std::ptrdiff_t>(1, std::ssize(finding.names)), finding.names.end(), kept))
+      // Where all of the others are in the equation, the one that was left out makes an equation that is no longer.
+      if (!std::all_of(finding.names.begin() + std::min<std::ptrdiff_t>(1, std::ssize(finding.names)), finding.names.end(), kept))
         finding.severity = Severity::note;
       break;
     case FindingCode::residual_correlated:

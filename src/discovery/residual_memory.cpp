@@ -22,10 +22,10 @@ double size_of(std::vector<double> const& series) {
 
 std::vector<ResidualMemory> residual_memory(ValidatedModel const& model, ShootingFit const& fit,
                                             std::span<Experiment const> experiments, std::vector<Segment> const& segments,
-                                            SolverSettings const& solver, ExecutionOptions const& execution,
-                                            std::shared_ptr<ThreadPool> const& pool) {
+                                            SolverSettings const& solver, NoiseShape const& noise,
+                                            ExecutionOptions const& execution, std::shared_ptr<ThreadPool> const& pool) {
   SegmentSimulation const simulation(model.compiled, experiments, segments,
-                                     {model.fitted(), model.others, 0, solver, execution, pool, model.centres});
+                                     {model.fitted(), model.others, 0, solver, execution, pool, model.centres, noise});
   std::vector<SegmentSlopes> const runs = simulation.residuals(fit.point);
   std::size_t const channels = model.channels.size();
   std::vector<std::vector<double>> series(channels * experiments.size());

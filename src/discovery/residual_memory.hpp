@@ -17,10 +17,11 @@ struct ResidualMemory {
 };
 
 /// Series that are not white, over all channels and experiments of a structure at its fit; a residual below 1e-5 of the motion is
-/// not tested. experiments: as the model reads them, in the segments of the fit.
+/// not tested. experiments: as the model reads them, in the segments of the fit. noise: of samples where it is not alike in all, by
+/// which residuals are divided; with the channels of the model.
 std::vector<ResidualMemory> residual_memory(ValidatedModel const& model, ShootingFit const& fit,
                                             std::span<Experiment const> experiments, std::vector<Segment> const& segments,
-                                            SolverSettings const& solver, ExecutionOptions const& execution,
-                                            std::shared_ptr<ThreadPool> const& pool);
+                                            SolverSettings const& solver, NoiseShape const& noise,
+                                            ExecutionOptions const& execution, std::shared_ptr<ThreadPool> const& pool);
 
 }  // namespace sysid

@@ -14,14 +14,18 @@
 #include "discovery/residual_memory.hpp"
 #include "discovery/simulated_structure.hpp"
 #include "discovery/structure_fits.hpp"
+#include "discovery/structure_prior.hpp"
 #include "discovery/validation_findings.hpp"
 #include "discovery/validation_rows.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "regression/column/signals.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
 namespace {
 
+constexpr double near_floor = 3;
+constexpr double by_differences = 0.9;  // of what differences have
 constexpr int draws = 50, draws_one_by_one = 10;
 constexpr int origins = 200, origins_one_by_one = 20;  // of forecasts, in each experiment
 
@@ -105,7 +109,6 @@ class Validator {
 
   bool is_validated(std::size_t m) const { return fits_ && fits_->failure(m).empty(); }
 
-  // Every number of terms of an equation is as probable before, and among as many terms every choice (Scott, Berger 2010).
   double log_prior(std::size_t m) const {
     double sum = 0;
     for (std::size_t e = 0; e < structures_[m].equations.size(); ++e) {
@@ -115,7 +118,7 @@ class Validator {
         if (!terms[j].in_target && is_offered(source_.discovery.equations[e], j)) ++offered;
       for (int const j : structures_[m].equations[e]->terms)
         if (!terms[static_cast<std::size_t>(j)].in_target) ++taken;
-      for (int i = 1; i <= taken; ++i) sum -= elementary::log(static_cast<double>(offered - taken + i) / i);
+      sum += log_structure_prior(offered, taken);
     }
     return sum;
   }
@@ -196,10 +199,10 @@ class Validator {
     }
   }
 
-  // As the fit of the written model finds it, so that the two agree.
+  // As the fit of the written model finds it, so that the two agree; but for noise that grows, which that model does not have.
   void add_memory(std::size_t m, Findings& findings) const {
     for (ResidualMemory const& each : residual_memory(models_[m], fits_->fit(m), views(m, rows_.records), fits_->segments(),
-                                                      fits_->solver(m), execution_, pool_))
+                                                      fits_->solver(m), fits_->noise(m), execution_, pool_))
       findings.push_back(not_white(dictionary_.measured.channels[models_[m].channels[each.channel]].name,
                                    rows_.records[each.experiment].name, each));
   }
@@ -215,6 +218,29 @@ class Validator {
     regression::FoundEquation const& found = source_.discovery.equations[equation];
     return &support == &found.chosen || std::any_of(found.supports.begin(), found.supports.end(),
                                                     [&](regression::Support const& each) { return &each == &support; });
+  }
+
+  bool is_stated(std::size_t channel) const { return !source_.what.noise.empty() && source_.what.noise[channel].has_value(); }
+
+  /// sd of a channel's noise as the regression took it; of noise that grows, as samples have it that are divided by its shape. A
+  /// residual near what digits, inputs and integrator show is theirs.
+  double noise_of(std::size_t channel, double residual) const {
+    double noise = source_.discovery.noise_sd[channel];
+    if (!searched_.growth.empty() && searched_.growth[channel] > 0 && !is_stated(channel)) {
+      double plain = 0, shaped = 0, rows = 0;
+      for (std::size_t e = 0; e < rows_.records.size(); ++e) {
+        std::vector<double> samples = rows_.records[e].measured[channel];
+        auto const count = static_cast<double>(samples.size());
+        rows += count;
+        plain += count * std::pow(regression::estimated_noise(samples), 2);
+        for (std::size_t i = 0; i < samples.size(); ++i) samples[i] /= searched_.noise.relative[e][channel][i];
+        shaped += count * std::pow(regression::estimated_noise(samples), 2);
+      }
+      // Where motion is fast, both are motion, and the regression has the noise from the spectrum.
+      if (plain > 0 && noise > by_differences * std::sqrt(plain / rows)) noise *= std::sqrt(shaped / plain);
+    }
+    bool const near = !searched_.noise.floor.empty() && residual < near_floor * searched_.noise.floor[channel];
+    return near ? std::max(noise, searched_.noise.floor[channel]) : noise;
   }
 
   ValidatedStructure described(std::size_t m) const {
@@ -264,7 +290,7 @@ class Validator {
     for (std::size_t e = 0; e < printed.size(); ++e) out.equations.push_back(equation_text(dictionary_.equations[e], printed[e]));
     for (std::size_t c = 0; c < models_[m].channels.size(); ++c) {
       Channel const& channel = dictionary_.measured.channels[models_[m].channels[c]];
-      double const noise = source_.discovery.noise_sd[models_[m].channels[c]];
+      double const noise = noise_of(models_[m].channels[c], fit.noise_sd[c]);
       ValidatedChannel of{
           channel.name, channel.unit_text(), 0, channel.from_si(fit.noise_sd[c]), channel.from_si(noise), 0, {}, {}, {}};
       std::size_t const own = models_[m].channels[c];

@@ -77,18 +77,24 @@ SolverSettings StructureFits::solver(std::size_t m) const {
   return out;
 }
 
+NoiseShape StructureFits::noise(std::size_t m) const {
+  NoiseShape own;
+  for (std::size_t const c : models_[m].channels)
+    if (!settings_.noise.floor.empty()) own.floor.push_back(settings_.noise.floor[c]);
+  for (auto const& experiment : settings_.noise.relative) {
+    auto& channels = own.relative.emplace_back();
+    for (std::size_t const c : models_[m].channels) channels.push_back(experiment[c]);
+  }
+  return own;
+}
+
 // starts_alone: coefficients are held at the regression's.
 SegmentSimulation StructureFits::simulation(std::size_t m, std::vector<Segment> const& segments, bool starts_alone) const {
   ValidatedModel const& model = models_[m];
   std::vector<Experiment> own;
   for (Experiment const& each : settings_.records) own.push_back(model.view(each));
-  SegmentSimulation::Settings settings{{}, model.others, 0, solver(m), settings_.execution, settings_.pool, model.centres};
-  for (std::size_t const c : model.channels)
-    if (!settings_.noise.floor.empty()) settings.noise.floor.push_back(settings_.noise.floor[c]);
-  for (auto const& experiment : settings_.noise.relative) {
-    auto& own_channels = settings.noise.relative.emplace_back();
-    for (std::size_t const c : model.channels) own_channels.push_back(experiment[c]);
-  }
+  SegmentSimulation::Settings settings{{},      model.others, 0, solver(m), settings_.execution, settings_.pool, model.centres,
+                                       noise(m)};
   if (starts_alone)
     for (ValidatedModel::Coefficient const& each : model.coefficients)
       settings.others[static_cast<std::size_t>(each.parameter)] = each.start;

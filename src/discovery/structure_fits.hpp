@@ -46,6 +46,8 @@ class StructureFits {
   /// No record could be cut less.
   bool whole() const { return halved_ == 0; }
   SolverSettings solver(std::size_t m) const;
+  /// With the channels of structure m.
+  NoiseShape noise(std::size_t m) const;
   /// Its solver takes one simulation after the other: hundreds of times what lanes cost.
   bool one_by_one(std::size_t m) const;
   /// It is not validated because its allowance was spent.

@@ -106,8 +106,10 @@ TEST_CASE("what the regression cannot tell apart is a note where simulation comp
   CHECK(tempered(report(0.3), correlated) == Severity::warning);
 }
 
-TEST_CASE("a term left out as a combination of others warns where one of these is in the equation") {
-  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"sin(x)", "x", "x^3"})) == Severity::warning);
+TEST_CASE("a term left out as a combination of others warns where it makes another equation of as many terms") {
+  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"sin(x)", "x", "x^2"})) == Severity::warning);
+  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"sin(x)", "x"})) == Severity::warning);
+  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"sin(x)", "x", "x^3"})) == Severity::note);
   CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"x", "cos(x)", "1"})) == Severity::note);
   Finding other = finding(FindingCode::terms_collinear, {"sin(x)", "x"});
   temper_by_form(report(0.99), "y'", other);
@@ -139,4 +141,25 @@ TEST_CASE("another first structure of the regression is a note where simulation 
     REQUIRE(prefers != findings.end());
     CHECK(prefers->severity == severity);
   }
+}
+
+TEST_CASE("a coefficient less than two sds from zero is called idle, but one of the target is not") {
+  ValidationReport validation = report(0.99);
+  auto const codes = [&] {
+    std::vector<FindingCode> all;
+    for (Finding const& each : validation_findings(validation)) all.push_back(each.code);
+    return all;
+  };
+  for (ValidatedStructure& each : validation.structures) each.of_regression = 1;
+  CHECK(codes().empty());
+  std::vector<ValidatedCoefficient>& coefficients = validation.structures.front().coefficients;
+  coefficients.push_back(coefficient("1", -0.019, 0.01));
+  coefficients.push_back(coefficient("x^3", 0.021, 0.01));
+  coefficients.push_back(coefficient("x''", 0.001, 0.01));
+  coefficients.back().of_target = true;
+  Findings const findings = validation_findings(validation);
+  REQUIRE(codes() == std::vector{FindingCode::term_idle});
+  CHECK(findings.front().severity == Severity::warning);
+  CHECK(findings.front().names == std::vector<std::string>{"1"});
+  CHECK(findings.front().message == "in the fit by simulation the coefficient of `1` is less than two sds from zero");
 }

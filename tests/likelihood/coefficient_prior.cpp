@@ -11,7 +11,7 @@ TEST_CASE("the weight of a coefficient is the integral of its likelihood over it
   double const signal = 300;
   for (double const estimate : {-0.3, 2.0, 5e4}) {
     double const sd = std::abs(estimate) / 12, size = signal * sd;
-    auto const prior = [&](double c) { return std::exp(-std::abs(std::log(std::abs(c) / size)) / 2) / (8 * std::abs(c)); };
+    auto const prior = [&](double c) { return std::exp(-std::abs(std::log(std::abs(c) / size)) / 1.5) / (6 * std::abs(c)); };
     double const from = estimate - 8 * sd, step = 16 * sd / 20000;
     double sum = 0;
     for (int i = 0; i < 20000; ++i) {
@@ -38,5 +38,5 @@ TEST_CASE("the weight of coefficients does not depend on their units, and falls 
   CHECK(log_coefficient_weight(estimate.cwiseProduct(unit), scaled, 500) ==
         doctest::Approx(log_coefficient_weight(estimate, upper, 500)).epsilon(1e-12));
   CHECK(log_coefficient_weight(estimate, upper, 1000) ==
-        doctest::Approx(log_coefficient_weight(estimate, upper, 500) - std::log(2.0)).epsilon(1e-12));
+        doctest::Approx(log_coefficient_weight(estimate, upper, 500) - 2 / 1.5 * std::log(2.0)).epsilon(1e-12));
 }

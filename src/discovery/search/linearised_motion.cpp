@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/numeric/elementary.hpp"
+#include "discovery/structure_prior.hpp"
 #include "likelihood/segments/coefficient_prior.hpp"
 #include "linear_algebra/decompositions.hpp"
 
@@ -124,8 +125,7 @@ double LinearisedMotion::log_prior(Terms const& terms) const {
   for (int const j : terms)
     if (!always(j)) ++counts[settings_.equations[static_cast<std::size_t>(j)]].second;
   double sum = 0;
-  for (auto const& [equation, count] : counts)
-    for (int i = 1; i <= count.second; ++i) sum -= elementary::log(static_cast<double>(count.first - count.second + i) / i);
+  for (auto const& [equation, count] : counts) sum += log_structure_prior(count.first, count.second);
   return sum;
 }
 

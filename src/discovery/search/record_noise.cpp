@@ -45,22 +45,26 @@ double likelihood(std::span<double const> residual, std::span<double const> rela
 
 }  // namespace
 
-double rounding_sd(std::span<double const> samples) {
+std::vector<double> rounding_sds(std::span<double const> samples) {
   int digits = 0, decimals = -400;
-  std::vector<Decimal> all;
-  for (double const y : samples) {
-    if (!std::isfinite(y) || y == 0) continue;
-    all.push_back(decimal_of(y));
-    digits = std::max(digits, all.back().digits);
-    decimals = std::max(decimals, all.back().digits - 1 - all.back().exponent);
+  std::vector<double> sds(samples.size(), 0);
+  std::vector<Decimal> all(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!std::isfinite(samples[i]) || samples[i] == 0) continue;
+    all[i] = decimal_of(samples[i]);
+    digits = std::max(digits, all[i].digits);
+    decimals = std::max(decimals, all[i].digits - 1 - all[i].exponent);
   }
-  if (all.empty() || digits >= all_digits) return 0;
-  double squares = 0;
-  for (Decimal const& each : all) {
-    double const place = std::pow(10.0, std::max(-decimals, each.exponent + 1 - digits));
-    squares += place * place / 12;
-  }
-  return std::sqrt(squares / static_cast<double>(all.size()));
+  if (digits == 0 || digits >= all_digits) return sds;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (all[i].digits > 0) sds[i] = std::pow(10.0, std::max(-decimals, all[i].exponent + 1 - digits)) / std::sqrt(12.0);
+  return sds;
+}
+
+double rounding_sd(std::span<double const> samples) {
+  double squares = 0, count = 0;
+  for (double const sd : rounding_sds(samples)) squares += sd * sd, count += sd > 0 ? 1 : 0;
+  return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
 std::optional<GrowingNoise> growing_noise(std::span<double const> signal, std::span<double const> residual) {

@@ -6,8 +6,10 @@
 
 namespace sysid {
 
-/// The sd of rounding of samples that were written with a fixed number of significant digits or of decimals (the unit of the last
-/// place over sqrt(12), root mean square); 0 where they carry all digits of a double.
+/// The sd of rounding of each sample, where samples were written with a fixed number of significant digits or of decimals: the unit
+/// of the last place over sqrt(12). 0 where they carry all digits of a double, and of samples that are 0 or missing.
+std::vector<double> rounding_sds(std::span<double const> samples);
+/// The root mean square of these, over samples that are neither 0 nor missing.
 double rounding_sd(std::span<double const> samples);
 
 /// Noise of a channel whose sd is in proportion to sqrt(signal^2 + offset^2).

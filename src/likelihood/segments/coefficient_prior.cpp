@@ -9,6 +9,11 @@
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
+namespace {
+
+constexpr double prior_scale = 1.5;  // of the logarithm of a coefficient
+
+}  // namespace
 
 double signal_of(double samples, double variance_ratio) { return std::sqrt(1 + samples * variance_ratio); }
 
@@ -21,7 +26,7 @@ double log_coefficient_weight(Eigen::VectorXd const& estimate, Eigen::MatrixXd c
     sum -= elementary::log(std::abs(upper(j, j)));
     if (j >= k - others) continue;
     double const size = std::max(std::abs(estimate(j)), inverse.row(j).norm());
-    sum -= elementary::log(8 * size) + std::abs(elementary::log(size * upper.col(j).norm() / signal)) / 2;
+    sum -= elementary::log(4 * prior_scale * size) + std::abs(elementary::log(size * upper.col(j).norm() / signal)) / prior_scale;
   }
   return sum;
 }

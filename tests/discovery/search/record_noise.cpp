@@ -31,6 +31,9 @@ TEST_CASE("the rounding of a record is read off its digits, significant ones or 
     // The mean of 300 squares of uniform errors lies within 16 % of its expectation, three sds.
     CHECK(rounding_sd(written) == doctest::Approx(std::sqrt(squares / 300)).epsilon(0.16));
   }
+  std::vector<double> const sds = rounding_sds(std::vector<double>{1.23, -12.3, 0, std::nan(""), 0.456});
+  std::vector<double> const places = {0.01, 0.1, 0, 0, 0.001};
+  for (std::size_t i = 0; i < places.size(); ++i) CHECK(sds[i] == doctest::Approx(places[i] / std::sqrt(12.0)));
   CHECK(rounding_sd(motion()) == 0);
   CHECK(rounding_sd(std::vector<double>{0, std::nan(""), 0}) == 0);
 }

@@ -106,10 +106,11 @@ TEST_CASE("noise that grows with the signal is named, and the terms are found wi
 }
 
 TEST_CASE("terms that the regression exchanges for others are found by simulation") {
-  // By the regression x' = sin(x), y^2 and the like: four swaps from the truth.
+  // By the regression x' = sin(x), y^2 and the like: four swaps from the truth. With noise of 1 % the record does not tell: such
+  // forms have a log likelihood within two of that of the true one, and as many terms.
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     CAPTURE(seed);
-    Trial const record{.rates = competing, .start = {0.5, 0.4}, .length = 12, .proportional = 0.01, .seed = seed};
+    Trial const record{.rates = competing, .start = {0.5, 0.4}, .length = 12, .proportional = 0.001, .seed = seed};
     CHECK(record.found(narrow).at("terms") == "x': x, x^2, x*y; y': y, x*y, y^2");
   }
 }

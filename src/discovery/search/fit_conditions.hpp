@@ -1,0 +1,39 @@
+// What a search learns about the record and the integrator from its leading structure: how fine steps have to be, what bounds the
+// noise from below, and how it differs from sample to sample.
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "discovery/search/whole_dictionary.hpp"
+
+namespace sysid {
+
+class RecordLimits {
+ public:
+  explicit RecordLimits(WholeDictionary const& dictionary);
+
+  /// Smaller steps until the integrator is off by less than a tenth of the noise, and what bounds the noise from below: digits of
+  /// samples and inputs, and the integrator. Whether fits before are of other steps.
+  bool settle_step(FittedTerms const& lead, FitConditions& conditions);
+
+  /// Noise near that bound has the shape of the digits, other noise is alike in all samples or grows with the signal. Whether a
+  /// channel's is found to have another shape than before.
+  bool settle_noise(FittedTerms const& lead, FitConditions& conditions);
+
+  /// Of a channel of the model, SI: ValidatedChannel::growth.
+  double growth(std::size_t channel) const { return std::max(shape_[channel], 0.0); }
+
+ private:
+  using Relative = std::vector<std::vector<std::vector<double>>>;  // as NoiseShape has it
+  double shape_of_rounding(std::size_t channel, Relative& relative) const;
+  double shape_of_growth(std::size_t channel, std::vector<SegmentSlopes> const& runs, std::vector<Segment> const& parts,
+                         Relative& relative) const;
+
+  WholeDictionary const& dictionary_;
+  Relative rounding_of_samples_;
+  std::vector<double> rounding_, other_errors_;  // per channel, root mean squares
+  std::vector<double> shape_;                    // per channel: where noise begins to grow; 0: alike; -1: that of the digits
+  std::vector<Experiment> rounded_;              // with inputs that are rounded otherwise; empty: these carry all digits
+};
+
+}  // namespace sysid
