@@ -8,7 +8,7 @@
 
 #include "core/text/diagnostic.hpp"
 #include "discovery/found_model.hpp"
-#include "discovery/held_out_rows.hpp"
+#include "discovery/preparation/held_out_rows.hpp"
 #include "syntax/format.hpp"
 #include "syntax/unparse.hpp"
 

@@ -95,6 +95,8 @@ class DictionaryChecker {
   std::optional<Candidate> candidate(WrittenTerm written);
   // Whether each parameter inside does more than scale the term.
   bool bends(Candidate const& made);
+  /// "K [kg]".
+  static std::string declared_text(ParameterInfo const& parameter);
   bool depends_on(NodeId root, NodeId leaf) const;
   // Numbers for the parameters that have one.
   NodeId with_values(NodeId root);

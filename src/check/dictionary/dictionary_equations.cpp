@@ -44,7 +44,7 @@ void DictionaryChecker::equation(int index) {
     if (!graph.depends(root, [&](Node const& node) { return is_parameter(node) && node.index == static_cast<int>(p); })) continue;
     std::string const& name = parameters_[p].tree->name.name.text;
     if (parameters_[p].inner) {
-      diagnostics_.add(errors::inner_in_target(target.tree->span, equation.text, name));
+      diagnostics_.add(errors::inner_in_target(target.tree->span, equation.text, name, declared_text(parameters_[p])));
       return;
     }
     coefficients.emplace_back(name, leaf);

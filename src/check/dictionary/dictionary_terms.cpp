@@ -103,10 +103,16 @@ bool DictionaryChecker::bends(Candidate const& made) {
       return power.first != each.leaf && depends_on(power.first, each.leaf);
     });
     if (elsewhere) continue;
-    diagnostics_.add(errors::inner_scales(made.written.tree.span, made.written.text, each.quantity.name));
+    diagnostics_.add(errors::inner_scales(made.written.tree.span, made.written.text, each.quantity.name,
+                                          declared_text(parameter_of(each.quantity.name))));
     return false;
   }
   return true;
+}
+
+std::string DictionaryChecker::declared_text(ParameterInfo const& parameter) {
+  ast::Declared const& name = parameter.tree->name;
+  return name.name.text + (name.unit ? " [" + unparse(*name.unit) + "]" : "");
 }
 
 bool DictionaryChecker::depends_on(NodeId root, NodeId leaf) const {

@@ -207,8 +207,9 @@ Diagnostic generator_number(Span span, std::string const& option, int most, std:
 Diagnostic target_not_linear(Span target, std::string const& text, Names const& parameters);
 Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter);
 Diagnostic inner_prior(Span prior, std::string const& parameter, std::string const& why);
-Diagnostic inner_scales(Span term, std::string const& text, std::string const& parameter);
-Diagnostic inner_in_target(Span target, std::string const& text, std::string const& parameter);
+/// declared: "K [kg]".
+Diagnostic inner_scales(Span term, std::string const& text, std::string const& parameter, std::string const& declared);
+Diagnostic inner_in_target(Span target, std::string const& text, std::string const& parameter, std::string const& declared);
 Diagnostic coefficient_inside(Span term, std::string const& text);
 Diagnostic target_of_discrete_time(Span target, std::string const& text, std::string const& state);
 Diagnostic present_in_term(Span term, std::string const& text, std::string const& state);

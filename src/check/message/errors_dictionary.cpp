@@ -83,19 +83,19 @@ Diagnostic inner_prior(Span prior, std::string const& parameter, std::string con
                                   "`uniform(0, 1)` or `log_uniform(0.01, 10)`"));
 }
 
-Diagnostic inner_scales(Span term, std::string const& text, std::string const& parameter) {
+Diagnostic inner_scales(Span term, std::string const& text, std::string const& parameter, std::string const& declared) {
   return about({text, parameter},
                error("E6617", term, fmt::format("`{}` only scales `{}`, whose coefficient is looked for", parameter, text),
-                     fmt::format("declare `parameter {}` without a prior, or leave it out of the term", parameter)));
+                     fmt::format("declare `parameter {}` without a prior, or leave it out of the term", declared)));
 }
 
-Diagnostic inner_in_target(Span target, std::string const& text, std::string const& parameter) {
+Diagnostic inner_in_target(Span target, std::string const& text, std::string const& parameter, std::string const& declared) {
   return about(
       {text, parameter},
       error("E6617", target, fmt::format("`{}` has a prior and stands in the target `{}`", parameter, text),
             fmt::format("parameters with priors stand inside terms; in a target declare `parameter {}` without a prior, as a "
                         "factor, or with a value",
-                        parameter)));
+                        declared)));
 }
 
 Diagnostic state_without_channel(Span state, std::string const& name) {

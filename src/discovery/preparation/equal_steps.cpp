@@ -1,5 +1,5 @@
 // Splines of the samples that are there; divided differences by their weights.
-#include "discovery/equal_steps.hpp"
+#include "discovery/preparation/equal_steps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // By the rows of parts, as far as they are known before the file is read.
-#include "discovery/held_out_rows.hpp"
+#include "discovery/preparation/held_out_rows.hpp"
 
 #include <algorithm>
 #include <limits>

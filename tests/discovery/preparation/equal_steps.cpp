@@ -1,5 +1,5 @@
 // Records of unequal steps: what the regression reads, the noise they are given, and that the equation is found.
-#include "discovery/equal_steps.hpp"
+#include "discovery/preparation/equal_steps.hpp"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

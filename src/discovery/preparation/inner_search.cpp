@@ -1,5 +1,5 @@
 // A grid over probabilities of the priors, then from each local maximum a pattern search (Hooke and Jeeves 1961).
-#include "discovery/inner_search.hpp"
+#include "discovery/preparation/inner_search.hpp"
 
 #include <algorithm>
 #include <cmath>
