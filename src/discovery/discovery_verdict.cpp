@@ -15,7 +15,9 @@
 namespace sysid {
 namespace {
 
-constexpr double decided_probability = 0.95, probable = 0.5;
+constexpr double decided_probability = 0.95;
+constexpr double probable = 0.8;  // between one half and this, one structure in five is wrong
+constexpr double majority = 0.5;
 constexpr double settled_residual = 1.5;  // of the noise
 constexpr double few_noises = 3;
 constexpr double shared_probability = 0.95;
@@ -42,6 +44,7 @@ std::string form_clause(ValidationReport const& validation) {
   return fmt::format("the form is {} (probability {})",
                      probability >= decided_probability ? "decided"
                      : probability >= probable          ? "more probable than all others"
+                     : probability >= majority          ? "not decided, but more probable than all others"
                                                         : "not decided",
                      probability_text(probability));
 }
@@ -81,7 +84,7 @@ std::string elsewhere_clause(ValidationReport const& validation) {
 }  // namespace
 
 bool is_settled(ValidationReport const& validation) {
-  return checked(validation) && validation.structures.front().probability >= probable &&
+  return checked(validation) && validation.structures.front().probability >= majority &&
          validation.structures.front().residual_over_noise <= settled_residual;
 }
 
