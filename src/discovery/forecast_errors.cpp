@@ -84,6 +84,7 @@ bool shows_start(Experiment const& experiment, int first, int window) {
       return static_cast<double>(std::count_if(from, to, [](double y) { return std::isfinite(y); }));
     };
     if (channel.empty()) continue;
+    if (samples(channel.begin(), channel.end()) == 0) return false;
     double const average = samples(channel.begin(), channel.end()) * window / static_cast<double>(channel.size());
     if (samples(channel.begin() + first, channel.begin() + first + window) < average / 2) return false;
   }
@@ -120,9 +121,10 @@ ForecastErrors forecast_errors(ValidatedModel const& model, Eigen::VectorXd cons
       int const first = origins == 1 ? 0 : static_cast<int>(static_cast<std::int64_t>(o) * (places - 1) / (origins - 1));
       if (shows_start(experiment, first, window)) segments.push_back({e, first, window + horizon});
     }
+    int const last = rows - window;
     int begin = 0;
-    while (begin < places && !shows_start(experiment, begin, window)) ++begin;
-    if (begin < places) whole.push_back({e, begin, rows - begin});
+    while (begin < last && !shows_start(experiment, begin, window)) ++begin;
+    if (begin < last) whole.push_back({e, begin, rows - begin});
   }
   ForecastErrors out;
   out.sd = sds_of(experiments, channels);

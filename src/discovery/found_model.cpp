@@ -125,10 +125,16 @@ class ModelText {
   }
   void use_name(std::string const& name) {
     if (!used_.insert(name).second) return;
-    for (ast::DictionaryStatement const& statement : dictionary().tree.statements)
+    for (ast::DictionaryStatement const& statement : dictionary().tree.statements) {
       if (auto const* definition = std::get_if<ast::Definition>(&statement);
           definition != nullptr && definition->name.name.text == name)
         use(definition->value);
+      auto const* parameter = std::get_if<ast::DictionaryParameter>(&statement);
+      if (parameter == nullptr || parameter->name.name.text != name) continue;
+      if (parameter->value) use(*parameter->value);
+      if (parameter->prior)
+        for (ast::Argument const& argument : parameter->prior->arguments) use(argument.value);
+    }
   }
   void use_function(std::string const& name) {
     if (!functions_.insert(name).second) return;
@@ -328,15 +334,32 @@ class ModelText {
       if (measured.order > orders_[s]) continue;  // of nothing in the model
       std::string const name = fresh("noise_" + identifier(channel.name), taken_);
       double sd = source_.discovery.noise_sd.size() > c ? source_.discovery.noise_sd[c] : 0;
+      if (source_.noise_sd.size() > c && source_.noise_sd[c] > 0) sd = source_.noise_sd[c];
       double const size = motion_of(source_.data, c, 0).size[0];
       double low = sd / noise_factor, high = sd * std::max(noise_factor, residual_factor * residual_over_noise());
       if (!(sd > 1e-9 * size)) low = 1e-9 * size, high = size;
+      std::string const state = primed_name(dictionary().states[s].name, measured.order);
+      if (double const growth = source_.growth.empty() ? 0 : source_.growth[c]; growth > 0) {
+        double const mean_square = mean_square_of(c) + growth * growth;
+        parameters += fmt::format("parameter {} ~ log_uniform({}, {})  # of the larger of the signal and what stands beside it\n",
+                                  name, rounded(low / std::sqrt(mean_square)), rounded(high / std::sqrt(mean_square)));
+        observed += fmt::format("observe {0} ~ normal({1}, sd = {2}*sqrt({1}^2 + ({3}{4})^2))\n", channel.name, state, name,
+                                rounded(from_si(channel.unit, growth)), in_brackets(channel.unit_text()));
+        continue;
+      }
       parameters += fmt::format("parameter {}{} ~ log_uniform({}, {})\n", name, in_brackets(channel.unit_text()),
                                 rounded(from_si(channel.unit, low)), rounded(from_si(channel.unit, high)));
-      observed += fmt::format("observe {} ~ normal({}, sd = {})\n", channel.name,
-                              primed_name(dictionary().states[s].name, measured.order), name);
+      observed += fmt::format("observe {} ~ normal({}, sd = {})\n", channel.name, state, name);
     }
     return parameters + observed;
+  }
+
+  double mean_square_of(std::size_t channel) const {
+    double squares = 0, count = 0;
+    for (ExperimentData const& each : source_.data)
+      for (double const sample : each.experiment.measured[channel])
+        if (std::isfinite(sample)) squares += sample * sample, ++count;
+    return count > 0 ? squares / count : 0;
   }
 
   FoundSource const& source_;

@@ -281,7 +281,7 @@ class Validator {
                                   .term = inner.name,
                                   .name = inner.name,
                                   .unit = inner.unit_text(),
-                                  .regression = inner.from_si(models_[m].inner[i].start),
+                                  .regression = std::numeric_limits<double>::quiet_NaN(),
                                   .regression_sd = std::numeric_limits<double>::quiet_NaN(),
                                   .value = inner.from_si(fit.point.coefficients(row)),
                                   .sd = inner.from_si(std::sqrt(fit.covariance(row, row))),

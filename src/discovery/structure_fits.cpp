@@ -256,7 +256,7 @@ void StructureFits::refine() {
     else if (!fits_[m].fit.converged)
       fits_[m].failure = "its fit does not converge";
     else if (!std::isfinite(log_prior_of_inner(m)))
-      fits_[m].failure = "a parameter inside its terms leaves the support of its prior";
+      fits_[m].failure = "its fit takes a parameter inside terms to where the prior is zero: is it at a bound?";
   }
 }
 

@@ -79,12 +79,15 @@ TEST_CASE("draws that run away are counted") {
   CHECK(bounded < draws);
   CHECK(contains(finding.at("message"), fmt::format("{} of {} draws", draws - bounded, draws)));
   // The noise of the model that is written may be as large as what the equation leaves.
-  std::string const prior = "parameter noise_displacement [m] ~ log_uniform(";
-  auto const at = answer.source.find(prior);
+  json const& channel = first(answer).at("channels").at(0);
+  bool const grows = !channel.at("noise_grows_beyond").is_null();  // then the noise is a part of sqrt(displacement^2 + beyond^2)
+  auto const at =
+      answer.source.find(grows ? "parameter noise_displacement ~ log_uniform(" : "parameter noise_displacement [m] ~ log_uniform(");
   REQUIRE(at != std::string::npos);
   double const high = std::stod(answer.source.substr(answer.source.find(',', at) + 1));
-  double const residual = first(answer).at("channels").at(0).at("residual");
-  CHECK(high > 2 * residual);
+  double const residual = channel.at("residual"), beyond = grows ? channel.at("noise_grows_beyond").get<double>() : 1;
+  double const signal = channel.at("sd");
+  CHECK(high * (grows ? std::hypot(beyond, signal) : 1) > 2 * residual);
   // With the term all draws stay.
   DiscoveryAnswer const whole = run_validation(file(oscillator + ", y^5"), Made(900, settings));
   CHECK(first(whole).at("terms") == "y', y, y^3, y^5");

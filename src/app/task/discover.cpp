@@ -24,6 +24,7 @@
 #include "discovery/excluded_terms.hpp"
 #include "discovery/found_equation.hpp"
 #include "discovery/found_source.hpp"
+#include "discovery/idle_terms.hpp"
 #include "discovery/preparation/equal_steps.hpp"
 #include "discovery/preparation/held_out_rows.hpp"
 #include "discovery/preparation/inner_search.hpp"
@@ -83,7 +84,8 @@ class Discover {
     CheckedDictionary dictionary;
     std::vector<double> inner;
     regression::Discovery found;
-    StructureSearch search = {};  // holds supports of structures
+    StructureSearch search = {};                    // holds supports of structures
+    std::deque<regression::Support> supports = {};  // of others
   };
 
   Attempt attempt(std::vector<double> const& inner, regression::Method const& method) const {
@@ -138,6 +140,8 @@ class Discover {
     attempts.push_back(any ? attempt(first.order.front().inner, method) : attempts.front());
     if (!any) return first;
     structures = structures_of(attempts.back(), method);
+    for (FoundStructure& each : without_idle_terms(dictionary_, first, attempts.back().supports))
+      structures.push_back(std::move(each));
     for (std::size_t k = 0; k < first.order.size(); ++k)
       if (first.report.structures[k].failure.empty()) structures.push_back(first.order[k]);
     return validate(attempts.back());
@@ -154,6 +158,7 @@ class Discover {
             .data = data_,
             .discovery = attempt.found,
             .inner = attempt.inner,
+            .growth = attempt.search.record.growth,
             .seed = seed_};
   }
 
@@ -234,7 +239,10 @@ class Discover {
     }
     report.equations = equations(discovery);
     if (!what_.candidates && !structures.empty()) structures.resize(1);
-    add_source(source, structures, discovery, report.findings);
+    FoundSource as_simulated = source;
+    as_simulated.noise_sd = simulated_noise(discovery);
+    add_source(as_simulated, structures, discovery, report.findings);
+    add_prior_findings(discovery, report.findings);
     report.findings = merged(report.findings);
     report.tables = discovery_tables(discovery);
     report.settings = {{"selector", what_.selector}};
@@ -251,6 +259,39 @@ class Discover {
       session_.notices << fmt::format("{}: the model that was found is `{}`\n", task_.name,
                                       (session_.result_folder(task_) / "found.sysid").string());
     return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
+  }
+
+  // Per channel of the dictionary, SI; 0 where nothing was simulated.
+  std::vector<double> simulated_noise(DiscoveryReport const& discovery) const {
+    std::vector<double> noise(dictionary_.measured.channels.size());
+    if (!discovery.validation || !discovery.validation->structures.front().failure.empty()) return noise;
+    for (ValidatedChannel const& each : discovery.validation->structures.front().channels)
+      for (std::size_t c = 0; c < noise.size(); ++c)
+        if (Channel const& channel = dictionary_.measured.channels[c]; channel.name == each.channel)
+          noise[c] = channel.to_si(each.residual);
+    return noise;
+  }
+
+  // The fit is by the likelihood alone, so a prior may be far away.
+  void add_prior_findings(DiscoveryReport const& discovery, Findings& findings) const {
+    if (!discovery.validation) return;
+    for (ValidatedCoefficient const& each : discovery.validation->structures.front().coefficients)
+      for (InnerParameter const& inner : dictionary_.inner) {
+        if (!each.inside || inner.quantity.name != each.name) continue;
+        constexpr int draws = 1023;
+        std::vector<double> const prior = sorted_draws(inner, draws);
+        double const value = inner.quantity.to_si(each.value);
+        if (value >= prior.front() && value <= prior.back()) continue;
+        findings.push_back(
+            {FindingCode::prior_contradicted,
+             Severity::warning,
+             {each.name},
+             fmt::format("the record gives {} = {}{}, where none of {} draws of its prior lies ({} to {})", each.name,
+                         significant(each.value, 3), unit_after_number(each.unit), draws,
+                         significant(inner.quantity.from_si(prior.front()), 3),
+                         significant(inner.quantity.from_si(prior.back()), 3)),
+             "check the prior and its unit; if it is right, another term acts. The fit in `found.sysid` weighs the prior"});
+      }
   }
 
   // Of the chosen difference equations, on the parts of the data that were not used.
@@ -291,6 +332,13 @@ class Discover {
     std::string terms = fmt::format("{}", fmt::join(equations, "; "));
     for (DiscoveredEquation const& each : discovery.equations)
       if (each.equation.empty()) terms += fmt::format("{}{}: no equation found", terms.empty() ? "" : "; ", each.target);
+    if (discovery.validation && discovery.validation->structures.front().failure.empty()) {
+      for (ValidatedCoefficient const& each : discovery.validation->structures.front().coefficients)
+        if (each.inside) terms += fmt::format("; {} = {}{}", each.name, significant(each.value, 4), unit_after_number(each.unit));
+    } else {
+      for (DiscoveryReport::Inner const& each : discovery.inner)
+        terms += fmt::format("; {} = {}{}", each.name, significant(each.value, 4), unit_after_number(each.unit));
+    }
     return fmt::format("{}; {}{}{}", terms, discovery.answer, discovery.answer.empty() ? "" : "; ", verdict_of(findings).headline);
   }
 

@@ -97,9 +97,9 @@ std::optional<double> OptionReader::number(ast::Expression const& tree, std::str
   }
   bool const scaled = value->kind == Typed::Kind::known && value->unit.scale != 1;  // 100 [percent] is no count
   if (whole && (scaled || *constant != std::floor(*constant))) {
-    diagnostics_.add(
-        errors::option_kind(tree.span, name, {"a whole number"},
-                            fmt::format("{} = {:.0f}", name, std::round(scaled ? *constant / value->unit.scale : *constant))));
+    double const nearest = std::round(scaled ? *constant / value->unit.scale : *constant);
+    diagnostics_.add(errors::option_kind(tree.span, name, {"a whole number"},
+                                         fmt::format("{} = {:.0f}", name, std::clamp(nearest, least, most))));
     return std::nullopt;
   }
   if (!(*constant >= least && *constant <= most)) {

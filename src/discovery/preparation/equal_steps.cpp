@@ -8,8 +8,9 @@
 namespace sysid {
 namespace {
 
-constexpr double near_steps = 2;   // mean steps to the next sample
-constexpr std::size_t points = 7;  // of a sixth difference
+constexpr double near_steps = 2;      // mean steps to the next sample
+constexpr double least_apart = 1e-3;  // mean steps: closer samples are one
+constexpr std::size_t points = 7;     // of a sixth difference
 
 struct FiniteSamples {
   std::vector<double> time, value;
@@ -22,10 +23,40 @@ FiniteSamples finite_samples(std::span<double const> time, std::span<double cons
   return out;
 }
 
+/// Samples nearer to each other than `least` are one, at their mean time: a spline through both would swing.
+FiniteSamples apart(FiniteSamples const& from, double least) {
+  FiniteSamples out;
+  std::size_t joined = 0;
+  for (std::size_t i = 0; i < from.time.size(); ++i) {
+    if (i > 0 && from.time[i] - from.time[i - 1] < least) {
+      auto const count = static_cast<double>(++joined);
+      out.time.back() += (from.time[i] - out.time.back()) / (count + 1);
+      out.value.back() += (from.value[i] - out.value.back()) / (count + 1);
+      continue;
+    }
+    joined = 0;
+    out.time.push_back(from.time[i]);
+    out.value.push_back(from.value[i]);
+  }
+  return out;
+}
+
 /// The interval of `time` that holds t, which lies within it.
 int interval_of(std::vector<double> const& time, double t) {
   auto const after = std::upper_bound(time.begin(), time.end() - 1, t) - time.begin();
   return static_cast<int>(std::max<std::ptrdiff_t>(after, 1)) - 1;
+}
+
+/// The mean of a held input over [begin, end].
+double held_mean(InputSignal const& input, std::vector<double> const& time, double begin, double end) {
+  double sum = 0;
+  for (int i = interval_of(time, begin); i + 1 < static_cast<int>(time.size()); ++i) {
+    auto const at = static_cast<std::size_t>(i);
+    double const from = std::max(begin, time[at]), to = std::min(end, time[at + 1]);
+    if (from >= end) break;
+    if (to > from) sum += input.sample(i) * (to - from);
+  }
+  return end > begin ? sum / (end - begin) : input.sample(interval_of(time, begin));
 }
 
 double read(InputSignal const& curve, std::vector<double> const& time, double t) {
@@ -55,10 +86,13 @@ Experiment at_equal_steps(Experiment const& experiment) {
   Experiment out = experiment;
   for (std::size_t i = 0; i + 1 < time.size(); ++i) out.time[i] = time.front() + static_cast<double>(i) * step;
   for (std::vector<double>& channel : out.measured)
-    if (!channel.empty()) channel = interpolated(finite_samples(time, channel), out.time, step);
+    if (!channel.empty()) channel = interpolated(apart(finite_samples(time, channel), least_apart * step), out.time, step);
   for (InputSignal& input : out.inputs) {
     std::vector<double> samples;
-    for (double const t : out.time) samples.push_back(read(input, time, t));
+    for (std::size_t i = 0; i < out.time.size(); ++i)
+      samples.push_back(input.rule() == InputRule::zero_order && i + 1 < out.time.size()
+                            ? held_mean(input, time, out.time[i], out.time[i + 1])
+                            : read(input, time, out.time[i]));
     input = InputSignal(input.rule(), out.time, std::move(samples));
   }
   for (std::size_t i = 0; i < out.scored.size(); ++i) {

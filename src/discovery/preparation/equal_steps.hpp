@@ -9,7 +9,8 @@
 namespace sysid {
 
 /// As many rows at equal steps between the first and the last time: channels by cubic splines through what was measured, NaN where
-/// no sample lies within two mean steps; inputs by their own rule. Names and the first row stay.
+/// no sample lies within two mean steps; inputs by their own rule, a held one by its
+/// mean over the step. Samples closer than a thousandth of the mean step are one. Names and the first row stay.
 Experiment at_equal_steps(Experiment const& experiment);
 
 /// The noise of samples at any distinct times: the root mean square of sixth divided differences, each divided by what it is if

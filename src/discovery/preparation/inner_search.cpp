@@ -11,6 +11,7 @@ namespace {
 constexpr int prior_draws = 1023;
 constexpr double finest = 1.0 / 512;  // of a prior's probability: a fit by simulation goes on from there
 constexpr double far_behind = 20;
+constexpr std::size_t most_climbs = 16;
 
 /// Points along each parameter.
 int points_of(std::size_t parameters) { return parameters == 1 ? 41 : parameters == 2 ? 13 : parameters == 3 ? 6 : 4; }
@@ -30,12 +31,13 @@ class InnerSearcher {
     for (std::size_t i = 0; i < grid.size(); ++i)
       if (is_top(grid, i)) tops.push_back(i);
     std::stable_sort(tops.begin(), tops.end(), [&](std::size_t a, std::size_t b) { return grid[a] > grid[b]; });
-    if (tops.size() > static_cast<std::size_t>(most)) tops.resize(static_cast<std::size_t>(most));
+    if (tops.size() > most_climbs) tops.resize(most_climbs);
     for (std::size_t const top : tops) climb(place(top), grid[top]);
+    if (out_.modes.empty()) out_.modes.push_back({values(Place(size(), 0.5)), -std::numeric_limits<double>::infinity()});
     std::stable_sort(out_.modes.begin(), out_.modes.end(),
                      [](auto const& a, auto const& b) { return a.log_evidence > b.log_evidence; });
-    std::erase_if(out_.modes,
-                  [&](auto const& each) { return !(each.log_evidence >= out_.modes.front().log_evidence - far_behind); });
+    std::erase_if(out_.modes, [&](auto const& each) { return each.log_evidence < out_.modes.front().log_evidence - far_behind; });
+    if (out_.modes.size() > static_cast<std::size_t>(most)) out_.modes.resize(static_cast<std::size_t>(most));
     return std::move(out_);
   }
 
@@ -70,15 +72,30 @@ class InnerSearcher {
   }
 
   void climb(Place at, double best) {
-    for (double step = 0.5 / points_; step >= finest && !out_.interrupted;)
-      if (!improve(at, best, step)) step /= 2;
+    for (double step = 0.5 / points_; step >= finest && !out_.interrupted;) {
+      Place const before = at;
+      if (!explore(at, best, step)) {
+        step /= 2;
+        continue;
+      }
+      // On in the direction of all steps together, as long as that is better: ridges are seldom along one parameter.
+      for (bool better = size() > 1; better && !out_.interrupted;) {
+        Place ahead = at;
+        for (std::size_t p = 0; p < size(); ++p) ahead[p] = std::clamp(2 * at[p] - before[p], 0.0, 1.0);
+        double found = evidence(ahead);
+        explore(ahead, found, step);
+        better = found > best;
+        if (better) at = ahead, best = found;
+      }
+    }
     std::vector<double> const found = values(at);
     if (std::none_of(out_.modes.begin(), out_.modes.end(), [&](auto const& each) { return each.values == found; }))
       out_.modes.push_back({found, best});
   }
 
-  /// One step along some parameter to where it is better.
-  bool improve(Place& at, double& best, double step) {
+  /// A step along each parameter to where it is better. Whether there was one.
+  bool explore(Place& at, double& best, double step) {
+    bool any = false;
     for (std::size_t p = 0; p < size(); ++p)
       for (double const side : {-step, step}) {
         Place next = at;
@@ -88,9 +105,10 @@ class InnerSearcher {
         if (!(found > best)) continue;
         at = next;
         best = found;
-        return true;
+        any = true;
+        break;
       }
-    return false;
+    return any;
   }
 
   std::vector<double> values(Place const& at) const {

@@ -17,7 +17,17 @@ namespace {
 constexpr double enough = 1e-4;  // gain of log likelihood
 constexpr int most_start_rounds = 40;
 /// Of what starts differ by: how far one is moved that leads to nothing finite.
-constexpr double nudges[] = {0.02, -0.02, 0.05, -0.05, 0.1, -0.1, 0.2, -0.2};
+constexpr double nudges[] = {0.02, 0.05, 0.1, 0.2};
+
+/// What a state may be moved in proportion to: what its starts differ by; of one segment, which tells nothing, what channels vary
+/// by.
+std::vector<double> sizes_of_starts(SegmentSimulation const& simulation, ShootingPoint const& guess, Eigen::Index state) {
+  double const mean = guess.starts.row(state).mean(), spread = (guess.starts.row(state).array() - mean).matrix().norm();
+  if (spread > 0) return {spread / std::sqrt(static_cast<double>(guess.starts.cols()))};
+  std::vector<double> sizes;
+  for (int c = 0; c < simulation.channels(); ++c) sizes.push_back(simulation.size(c));
+  return sizes;
+}
 
 /// Where a segment diverges from its start, one that lies a little to the side: near zero, noise takes a population or a
 /// concentration below it, where equations of positive quantities run away.
@@ -28,24 +38,31 @@ void nudge_diverging(SegmentSimulation const& simulation, ShootingPoint& point) 
   for (SegmentSlopes const& each : first) lost.push_back(!each.finite());
   ShootingPoint const guess = point;
   std::vector<double> best(static_cast<std::size_t>(count), std::numeric_limits<double>::infinity());
-  for (double const nudge : nudges) {
-    bool const positive = nudge > 0;
-    for (Eigen::Index x = 0; x < states; ++x) {
-      if (std::none_of(lost.begin(), lost.end(), [](bool each) { return each; })) return;
-      double const mean = guess.starts.row(x).mean(), spread = (guess.starts.row(x).array() - mean).matrix().norm();
-      double const size = spread > 0 ? spread / std::sqrt(static_cast<double>(count)) : std::max(std::abs(mean), 1e-300);
-      ShootingPoint trial = guess;
-      trial.starts.row(x).array() += nudge * size;
-      std::vector<SegmentSlopes> const there = simulation.residuals(trial);
-      for (Eigen::Index s = 0; s < count; ++s) {
-        auto const i = static_cast<std::size_t>(s);
-        double const squares = there[i].finite() ? there[i].residual.squaredNorm() : best[i];
-        if (!lost[i] || !(squares < best[i])) continue;
-        best[i] = squares;
-        point.starts.col(s) = trial.starts.col(s);
-      }
+  auto const squares = [&](SegmentSlopes const& each, Eigen::Index s) {
+    double sum = 0;
+    Eigen::Index const rows = simulation.rows_of_channel(static_cast<int>(s));
+    for (int c = 0; c < simulation.channels(); ++c)
+      sum += each.residual.segment(c * rows, rows).squaredNorm() / (simulation.size(c) * simulation.size(c));
+    return each.finite() ? sum : std::numeric_limits<double>::infinity();
+  };
+  auto const attempt = [&](Eigen::Index x, double by) {
+    ShootingPoint trial = guess;
+    trial.starts.row(x).array() += by;
+    std::vector<SegmentSlopes> const there = simulation.residuals(trial);
+    for (Eigen::Index s = 0; s < count; ++s) {
+      auto const i = static_cast<std::size_t>(s);
+      if (!lost[i] || !(squares(there[i], s) < best[i])) continue;
+      best[i] = squares(there[i], s);
+      point.starts.col(s) = trial.starts.col(s);
     }
-    if (positive) continue;  // both sides of one size are compared
+  };
+  for (double const nudge : nudges) {
+    for (Eigen::Index x = 0; x < states; ++x)
+      for (double const size : sizes_of_starts(simulation, guess, x))
+        for (double const side : {nudge, -nudge}) {
+          if (std::none_of(lost.begin(), lost.end(), [](bool each) { return each; })) return;
+          attempt(x, side * size);
+        }
     for (std::size_t s = 0; s < lost.size(); ++s) lost[s] = lost[s] && !std::isfinite(best[s]);
   }
 }

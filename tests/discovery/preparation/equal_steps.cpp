@@ -52,6 +52,21 @@ TEST_CASE("cubics and the rule of inputs are kept; where no sample is near, noth
   CHECK(measured >= 5);
 }
 
+TEST_CASE("a held input is its mean over each step, and samples that nearly coincide are one") {
+  std::vector<double> const time = {0, 0.9, 2.1, 2.1 + 1e-7, 4};
+  Experiment experiment;
+  experiment.time = time;
+  experiment.scored.assign(time.size(), 1);
+  experiment.measured = {{0, 0.9, 2.0, 2.2, 4}};
+  experiment.inputs.emplace_back(InputRule::zero_order, time, std::vector<double>{1, 2, 3, 3, 5});
+  Experiment const equal = at_equal_steps(experiment);
+  CHECK(equal.inputs[0].sample(0) == doctest::Approx(0.9 * 1 + 0.1 * 2).epsilon(1e-12));
+  CHECK(equal.inputs[0].sample(1) == doctest::Approx(2).epsilon(1e-12));
+  CHECK(equal.inputs[0].sample(2) == doctest::Approx(0.1 * 2 + 0.9 * 3).epsilon(1e-6));
+  CHECK(equal.inputs[0].sample(3) == doctest::Approx(3).epsilon(1e-12));
+  for (std::size_t i = 0; i < 5; ++i) CHECK(equal.measured[0][i] == doctest::Approx(equal.time[i]).epsilon(1e-6).scale(1));
+}
+
 TEST_CASE("the noise is estimated as large as it is, whatever the steps") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     std::vector<double> const time = random_times(seed, 400, 40);

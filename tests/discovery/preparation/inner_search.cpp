@@ -121,6 +121,61 @@ TEST_CASE("by the regression alone, of a difference equation, where the record i
   CHECK(found.out.find("parameters inside terms") != std::string::npos);
 }
 
+TEST_CASE("a record that no value explains ends with the findings of any other") {
+  std::string csv = "t,x\n";
+  for (int i = 0; i < 60; ++i) csv += fmt::format("{},1\n", i);
+  TemporaryFolder folder;
+  write_file(folder.path() / "made.csv", csv);
+  RunOptions run;
+  run.output = folder.path() / "results";
+  RunResult const result = run_text(folder.path() / "made.sysid",
+                                    "dictionary made { state x = x\n parameter K ~ uniform(0.1, 1)\n target = x'\n terms = x, "
+                                    "x/(K + x) }\ndata record { file \"made.csv\"; time t [s]; measure x = x }\n"
+                                    "found = discover made from record with spike_slab, seed = 1\n",
+                                    run);
+  CHECK(result.exit == 1);
+  CHECK(result.out.find("record_at_rest") != std::string::npos);
+}
+
+TEST_CASE("a value that the prior does not expect is said, and a constant in the prior is in what is written") {
+  Found const found(grazing(1, 0.01),
+                    "constant middle = 2.5\nstate x = x, y = y\nparameter K ~ normal(middle, sd = 0.05)\ntarget = x', y'\n"
+                    "terms = x, x^2, y, x*y/(K + x)\n",
+                    columns, "");
+  bool said = false;
+  for (json const& each : found.summary.at("findings")) said = said || each.at("code") == "prior_contradicted";
+  CHECK(said);
+  CHECK(found.source.find("constant  middle = 2.5") != std::string::npos);
+}
+
+TEST_CASE("three parameters in two terms are found from priors of decades") {
+  Stream input({11, Purpose::input, 0, 0}), noise({11, Purpose::noise, 0, 0});
+  std::string csv = "t,u,x\n";
+  double x = 0.3, u = 0.4;
+  for (int i = 0; i < 600; ++i) {
+    if (i % 15 == 0) u = 4 * input.uniform();
+    csv += fmt::format("{:.6g},{:.9g},{:.9g}\n", 0.1 * i, u, x + 0.006 * noise.normal());
+    auto const rate = [&](double at) { return 2 * u * u / (1 + u * u) - 1.2 * at / (0.5 + at); };
+    for (int k = 0; k < 20; ++k) {
+      double const h = 0.005, a = rate(x), b = rate(x + h / 2 * a), c = rate(x + h / 2 * b), d = rate(x + h * c);
+      x += h / 6 * (a + 2 * b + 2 * c + d);
+    }
+  }
+  Found const found(csv,
+                    "input u\nstate x = x\nparameter K ~ log_uniform(0.05, 20)\nparameter n ~ uniform(1, 4)\n"
+                    "parameter Kx ~ log_uniform(0.05, 20)\ntarget = x'\nterms = x, x^2, u, u^2, 1, u^n/(K^n + u^n), x/(Kx + x)\n",
+                    "time t [s]; input u = u hold zero_order; measure x = x\n", "");
+  CHECK(found.first().at("terms") == "u^n/(K^n + u^n), x/(Kx + x)");
+  double const truth[] = {1, 2, 0.5};
+  int k = 0;
+  for (char const* name : {"K", "n", "Kx"}) {
+    json const each = found.coefficient("", name);
+    REQUIRE(!each.is_null());
+    CAPTURE(name);
+    CHECK(std::abs(each.at("value").get<double>() - truth[k++]) < 3.5 * each.at("sd").get<double>());
+  }
+}
+
 TEST_CASE("one that no term which is kept reads stands in no model") {
   Stream noise({5, Purpose::noise, 0, 0});
   std::string csv = "t,x\n";
