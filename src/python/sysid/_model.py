@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _engine, _progress, _records
 from ._error import Error, ModelWarning
-from ._results import Check, Folder, Result
+from ._results import Check, Folder, Result, keep_apart, placed, stamp, take_along
 
 Array = NDArray[np.float64]
 
@@ -83,25 +83,22 @@ class Model:
         task: Optional[str] = None,
         threads: int = 0,
     ) -> None:
-        self._state = {"path": os.fspath(path), "text": text, "data": data, "task": task, "threads": threads}
-        self._folder: Optional[Folder] = None
+        self._state = {"path": os.fspath(path), "task": task, "threads": threads, "from": os.getcwd()}
         self._prepared: Optional[int] = None
-        self._made: Optional[_engine.Density] = None
-        self._results: Optional[Folder] = None
-        self._open()
+        self._folder: Optional[Folder] = None
+        self._begin(_engine.File(self.path, text, {}), {})
+        if data is not None:
+            self._folder = Folder()
+            records = _records.write(data, self._file.data, str(self._folder.path))
+            self._begin(_engine.File(self.path, self.text, records), records)
         if self._file.warnings:
             warnings.warn(self._file.warnings, ModelWarning, stacklevel=3)
 
-    def _open(self) -> None:
-        state = self._state
-        records: dict[str, str] = {}
-        if state["data"] is not None:
-            blocks = _engine.File(state["path"], state["text"], {}).data
-            self._folder = Folder()
-            records = _records.write(state["data"], blocks, str(self._folder.path))
-        self._records = records
-        self._file = _engine.File(state["path"], state["text"], records)
-        self._process = os.getpid()
+    def _begin(self, file: _engine.File, records: dict[str, str]) -> None:
+        self._file, self._records, self._process = file, records, os.getpid()
+        self._made: Optional[_engine.Density] = None
+        self._results: dict[str, Result] = {}
+        self._runs: dict[str, Folder] = {}  # where each task ran last, though there may be no result
 
     @property
     def _density(self) -> _engine.Density:
@@ -111,18 +108,27 @@ class Model:
             self._made = None
         if self._made is None:
             self._process = os.getpid()
-            self._made = _engine.Density(self._file, self._state["task"] or "", self._state["threads"])
+            made = _engine.Density(self._file, self._state["task"] or "", self._state["threads"])
             if self._prepared is not None:
-                self._made.prepare(self._prepared)
+                made.prepare(self._prepared)
+            self._made = made
         return self._made
 
     def __getstate__(self) -> dict:
-        return {"state": self._state, "prepared": self._prepared}
+        # What it was made of, whatever has become of the file and of the arrays.
+        return {
+            "state": self._state,
+            "text": self.text,
+            "records": _records.contents(self._records),
+            "prepared": self._prepared,
+        }
 
     def __setstate__(self, stored: dict) -> None:
-        self._state, self._prepared = stored["state"], stored["prepared"]
-        self._folder, self._made, self._results = None, None, None
-        self._open()
+        self._state = {**stored["state"], "path": placed(stored["state"]["path"], stored["state"]["from"]), "from": os.getcwd()}
+        self._prepared = stored["prepared"]
+        self._folder = Folder() if stored["records"] else None
+        records = _records.write_contents(stored["records"], self._folder.path) if self._folder else {}
+        self._begin(_engine.File(self.path, stored["text"], records), records)
 
     # ---- what it is
 
@@ -140,6 +146,11 @@ class Model:
     def tasks(self) -> list[tuple[str, str]]:
         """Names and verbs of the tasks of the file, in order: ``[("posterior", "fit")]``."""
         return self._file.tasks
+
+    @property
+    def results(self) -> dict[str, Result]:
+        """The last result of each task that has been run, by the task's name."""
+        return dict(self._results)
 
     @property
     def parameters(self) -> list[Parameter]:
@@ -284,17 +295,20 @@ class Model:
         Draws, tables and findings are those of ``sysid fit``, byte for byte for a seed. Options, of all tasks:
 
         seed: of all random numbers, in place of the one in the file.
-        output: the folder of results; by default a temporary one, which the tasks of a model share.
-        force: replaces results that are in `output`; resume: goes on from a checkpoint there.
+        output: the folder of results; by default a temporary one of this result alone.
+        force: replaces results that are in `output`. resume: goes on from a checkpoint there, or from where this task of the model
+        has stopped.
         figures: also draws figures. progress: a line on standard error; by default at a terminal and in a notebook.
 
         Ctrl-C keeps the draws so far: the result then has ``interrupted``, and ``fit(resume=True)`` goes on to the bytes of an
-        uninterrupted fit. Raises KeyboardInterrupt where there are no draws yet.
+        uninterrupted fit. Raises KeyboardInterrupt where there are no draws yet, and where it was pressed too late to stop the
+        fit, whose result then is in `results`.
         """
         return self._run("fit", task or self._state["task"], **options)
 
     def predict(self, task: Optional[str] = None, **options: Any) -> Result:
-        """Runs a prediction of the file, the first by default, from the draws of a fit before it. Options as in `fit`."""
+        """Runs a prediction of the file, the first by default, from the draws of the fit before it. Options as in `fit`; with
+        `output` the fit's draws lie there, too."""
         return self._run("predict", task, **options)
 
     def select(self, task: Optional[str] = None, **options: Any) -> Result:
@@ -323,22 +337,42 @@ class Model:
         if name not in names:
             known = ", ".join(f"`{each}`" for each in names) or "none"
             raise Error(f"sysid: error: this file has no {verb} task{f' `{task}`' if task else ''}\nhelp: its {verb} tasks: {known}")
-        if output is None and self._results is None:
-            self._results = Folder()
-        run = self._results if output is None else Folder(output)
+        if output is None:
+            run = self._folder_of_its_own(name, resume)
+        else:
+            run = Folder(output)
+            if force or resume:
+                keep_apart(run.path / name)
+        before = stamp(run.path / name)
         asked = _engine.Asked(
             output=str(run.path),
             seed=seed,
             threads=self._state["threads"],
-            force=force or (output is None and not resume),
+            force=force,
             resume=resume,
             figures=figures,
             checkpoint_interval=checkpoint_interval,
         )
-        exit, text, notices = _engine.run(self._file, [name], asked, _progress.line_for(progress))
-        if exit == 75 and not (run.path / name / "summary.json").exists():
+        exit, text, notices, requested = _engine.run(self._file, [name], asked, _progress.line_for(progress))
+        self._runs[name] = run
+        if exit == 75 and stamp(run.path / name) in (None, before):
             raise KeyboardInterrupt
-        return Result(self._file, self._records, self._folder, run, name, exit, text, notices)
+        result = Result(self._file, self._records, self._folder, run, name, exit, text, notices, self._state["from"])
+        self._results[name] = result
+        if requested and exit != 75:
+            raise KeyboardInterrupt(f"`{name}` had ended: its result is in model.results[{name!r}]")
+        return result
+
+    def _folder_of_its_own(self, name: str, resume: bool) -> Folder:
+        """For results that nothing replaces, with what the task may read of earlier ones: draws, or its own checkpoint."""
+        run = Folder()
+        for earlier, verb in self.tasks:
+            if earlier == name:
+                if resume and name in self._runs:
+                    take_along(self._runs[name], name, run, changes=True)
+            elif earlier in self._results and verb != "predict":
+                take_along(self._results[earlier]._run, earlier, run)
+        return run
 
     # ---- how it looks
 

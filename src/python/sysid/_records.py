@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 from typing import Any, Sequence
 
 import numpy as np
@@ -81,4 +82,17 @@ def write(data: Any, blocks: Sequence[tuple[str, str, list[str]]], folder: str) 
         path = os.path.join(folder, f"{name}.csv")
         _write_table(table, name, columns[name], path)
         records[name] = path
+    return records
+
+
+def contents(records: dict[str, str]) -> dict[str, bytes]:
+    """Of the tables, by the names of the data blocks."""
+    return {name: pathlib.Path(path).read_bytes() for name, path in records.items()}
+
+
+def write_contents(tables: dict[str, bytes], folder: pathlib.Path) -> dict[str, str]:
+    """Writes them into a folder; returns their paths."""
+    records = {name: str(folder / f"{name}.csv") for name in tables}
+    for name, path in records.items():
+        pathlib.Path(path).write_bytes(tables[name])
     return records
