@@ -55,6 +55,8 @@ class Simulation:
 
 def _one_or_many(given: ArrayLike, dimension: int) -> tuple[Array, bool]:
     """An array [W x P], and whether one vector [P] was given."""
+    if np.asarray(given).dtype.kind in "cmM":
+        raise TypeError(f"expected real numbers, not {np.asarray(given).dtype}")
     array = np.asarray(given, dtype=np.float64)
     if array.ndim == 1:
         if array.shape[0] != dimension:
@@ -257,7 +259,11 @@ class Model:
         return out[0] if one else out
 
     def unconstrain(self, values: ArrayLike) -> Array:
-        """Unconstrained coordinates [W x P] of values [W x P] in declared units; not finite outside the prior's support."""
+        """Unconstrained coordinates [W x P] of values [W x P] in declared units; not finite outside the prior's support.
+
+        Coordinates of unbounded priors are SI values, so their sizes may differ by many powers of ten: methods that are sensitive
+        to scale, such as L-BFGS-B, want coordinates divided by the square roots of the diagonal of ``modes[0].covariance``.
+        """
         density = self._density
         batch, one = _one_or_many(values, density.dimension)
         out = density.unconstrain(batch)
@@ -396,7 +402,7 @@ def load(path: Union[str, os.PathLike], data: Any = None, task: Optional[str] = 
     """Reads and checks a file of the language.
 
     path: of the .sysid file. data: in place of the tables that the data blocks name, a mapping or frame of columns; see
-    docs/python.md. task: the fit whose density is wanted; by default the first. threads: 0 is one for each processor; results do
+    docs/python.md; they are copied. Without it, tables are read when they are first needed. task: the fit whose density is wanted; by default the first. threads: 0 is one for each processor; results do
     not depend on it. Raises `Error` with the located message where something is wrong with the text or the data.
     """
     return Model(os.fspath(path), None, data, task, threads)
