@@ -43,12 +43,12 @@ class Interrupts(unittest.TestCase):
     def test_all_threads_hear_it(self):
         out, error = self.printed(
             """
-            theta = np.repeat(model.sample_prior(20000, seed=1), 6, axis=0)
-            values = model.constrain(theta[:20000])
+            theta = model.sample_prior(20000, seed=1)
+            values = model.constrain(theta[:4000])
             calls = {
                 "log_density": lambda: model.log_density(theta),
-                "gradient": lambda: model.gradient(theta[:40000]),
-                "residuals": lambda: model.residuals(theta[:40000]),
+                "gradient": lambda: model.gradient(theta[:8000]),
+                "residuals": lambda: model.residuals(theta[:8000]),
                 "simulate": lambda: model.simulate(values).values["displacement"],
             }
             for name, call in calls.items():
@@ -97,7 +97,7 @@ class Interrupts(unittest.TestCase):
     def test_a_fit_in_one_thread_and_a_density_in_the_main_thread(self):
         out, error = self.printed(
             """
-            theta = np.repeat(model.sample_prior(20000, seed=1), 20, axis=0)
+            theta = np.repeat(model.sample_prior(20000, seed=1), 5, axis=0)
             expected = model.log_density(theta)
             found = []
 
