@@ -52,11 +52,13 @@ class Interrupts(unittest.TestCase):
                 "simulate": lambda: model.simulate(values).values["displacement"],
             }
             for name, call in calls.items():
+                call()  # reads the data
                 start = time.monotonic()
                 expected = call()
                 duration = time.monotonic() - start
                 found = {}
-                threads = [threading.Thread(target=lambda i=i: found.__setitem__(i, outcome(lambda: [call() for _ in range(5)]))) for i in range(3)]
+                work = lambda i: found.__setitem__(i, outcome(lambda: [call() for _ in range(5)]))
+                threads = [threading.Thread(target=work, args=(i,)) for i in range(3)]
                 told = 0
                 try:
                     for thread in threads:

@@ -173,6 +173,23 @@ class Results(Desk):
         with self.assertRaises(sysid.Error):
             model.fit(output="results")
 
+    def test_options_that_are_none(self):
+        model = sysid.load("decay.sysid")
+        for call in (model.fit, model.prepare, model.check, lambda seed: model.sample_prior(1, seed)):
+            for seed in (-1, 2**64):
+                with self.assertRaisesRegex(ValueError, "seed is a whole number from 0 to 18446744073709551615"):
+                    call(seed=seed)
+            with self.assertRaisesRegex(TypeError, "seed is a whole number, not 1.5"):
+                call(seed=1.5)
+        with self.assertRaisesRegex(ValueError, "threads is a whole number from 0"):
+            sysid.load("decay.sysid", threads=-1)
+        with self.assertRaisesRegex(TypeError, "threads is a whole number, not 1.5"):
+            sysid.load("decay.sysid", threads=1.5)
+        with self.assertRaisesRegex(ValueError, "checkpoint_interval is a number of seconds"):
+            model.fit(checkpoint_interval=-1)
+        with self.assertRaisesRegex(TypeError, "at least one result"):
+            sysid.compare()
+
     def test_progress(self):
         with contextlib.redirect_stderr(io.StringIO()) as said:
             sysid.load("decay.sysid").fit(progress=True)

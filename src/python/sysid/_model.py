@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import html
+import operator
 import os
 import warnings
 from dataclasses import dataclass
@@ -65,6 +66,20 @@ def _one_or_many(given: ArrayLike, dimension: int) -> tuple[Array, bool]:
     return array, False
 
 
+def _whole(value: Any, what: str, most: int) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what} is a whole number, not {value!r}") from None
+    if not 0 <= number <= most:
+        raise ValueError(f"{what} is a whole number from 0 to {most}, not {number}")
+    return number
+
+
+def _seed(value: Any) -> int:
+    return _whole(value, "seed", 2**64 - 1)
+
+
 class Model:
     """A file of the language with its data: made by `load` or `loads`.
 
@@ -85,6 +100,7 @@ class Model:
         task: Optional[str] = None,
         threads: int = 0,
     ) -> None:
+        threads = _whole(threads, "threads", 4096)
         self._state = {"path": os.fspath(path), "task": task, "threads": threads, "from": os.getcwd()}
         self._prepared: Optional[int] = None
         self._folder: Optional[Folder] = None
@@ -204,8 +220,8 @@ class Model:
         file states. Modes are good starting points of chains and optimisers. KeyboardInterrupt where Ctrl-C is pressed.
         Returns the model.
         """
-        self._density.prepare(seed)
-        self._prepared = seed
+        self._density.prepare(_seed(seed))
+        self._prepared = _seed(seed)
         return self
 
     def log_density(self, theta: ArrayLike, declared: bool = False, part: str = "both") -> Union[Array, float]:
@@ -271,7 +287,7 @@ class Model:
 
     def sample_prior(self, count: int, seed: int = 0) -> Array:
         """Draws of the prior, unconstrained coordinates [count x P]."""
-        return self._density.sample_prior(count, seed)
+        return self._density.sample_prior(count, _seed(seed))
 
     def simulate(self, values: ArrayLike, experiment: int = 0, seed: int = 0) -> Simulation:
         """What parameter vectors predict along the rows of an experiment of the fit.
@@ -282,7 +298,7 @@ class Model:
         if not 0 <= experiment < density.experiments:
             raise IndexError(f"the fit has experiments 0 to {density.experiments - 1}, not {experiment}")
         batch, one = _one_or_many(values, density.dimension)
-        made = density.simulate(batch, experiment, seed)
+        made = density.simulate(batch, experiment, _seed(seed))
         if one:
             for each in (made["values"], made["noisy"]):
                 for name in each:
@@ -293,6 +309,7 @@ class Model:
 
     def check(self, seed: Optional[int] = None) -> Check:
         """Reports what the data can determine, before any sampling, as ``sysid check`` does. seed: of the draws of the prior."""
+        seed = None if seed is None else _seed(seed)
         return Check(*_engine.check(self._file, _engine.Asked(output="results", seed=seed, threads=self._state["threads"])))
 
     def fit(self, task: Optional[str] = None, **options: Any) -> Result:
@@ -338,6 +355,9 @@ class Model:
         progress: Optional[bool] = None,
         checkpoint_interval: float = 30,
     ) -> Result:
+        seed = None if seed is None else _seed(seed)
+        if not checkpoint_interval >= 0:
+            raise ValueError(f"checkpoint_interval is a number of seconds, at least 0, not {checkpoint_interval}")
         names = [name for name, of in self.tasks if of == verb]
         name = task or (names[0] if names else "")
         if name not in names:

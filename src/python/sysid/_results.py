@@ -294,5 +294,7 @@ def compare(*results: Union[Result, str, os.PathLike]) -> Comparison:
 
     results: what tasks have returned, or folders of tasks or of whole runs. Raises `Error` where fits are not of the same samples.
     """
+    if not results:
+        raise TypeError("expected at least one result or folder to compare")
     folders = [str(each.folder) if isinstance(each, Result) else os.fspath(each) for each in results]
     return Comparison(*_engine.compare(folders))
