@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/numeric/random.hpp"
-#include "core/system/interrupt.hpp"
 #include "diagnostics/tolerance/tolerance.hpp"
 #include "python/arrays.hpp"
 #include "python/interrupts.hpp"
@@ -22,9 +21,15 @@ constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 template <class Work>
 auto computed(OpenDensity const& of, Work&& work) {
   py::gil_scoped_release const released;
-  Interrupts const interrupts;
-  auto result = guarded(of.file()->source(), std::forward<Work>(work));
-  if (Interrupts::take()) throw Interrupted();
+  return interruptible(of.file()->source(), std::forward<Work>(work));
+}
+
+/// The same of work that fills a ledger, which counts where the work was not given up.
+template <class Work>
+auto counted(OpenDensity& of, Work&& work) {
+  Ledger ledger;
+  auto result = computed(of, [&] { return work(ledger); });
+  of.add(ledger);
   return result;
 }
 
@@ -54,15 +59,11 @@ LaneArray columns(ConstLanes all, std::vector<int> const& lanes) {
   return some;
 }
 
-std::vector<double> log_density(OpenDensity& of, ConstLanes theta, Part part, bool jacobian) {
+std::vector<double> log_density(OpenDensity const& of, ConstLanes theta, Part part, bool jacobian, Ledger& ledger) {
   Target const& target = of.target();
   std::vector<double> prior(static_cast<std::size_t>(theta.width())), likelihood(prior);
   if (part != Part::likelihood) target.log_prior(theta, prior, jacobian);
-  if (part != Part::prior) {
-    Ledger ledger;
-    target.log_likelihood(theta, likelihood, ledger);
-    of.add(ledger);
-  }
+  if (part != Part::prior) target.log_likelihood(theta, likelihood, ledger);
   for (std::size_t w = 0; w < prior.size(); ++w) {
     prior[w] += likelihood[w];
     if (std::isnan(prior[w])) prior[w] = minus_infinity;
@@ -72,13 +73,13 @@ std::vector<double> log_density(OpenDensity& of, ConstLanes theta, Part part, bo
 
 Array log_density_of(OpenDensity& of, Array const& values, bool declared, std::string const& part) {
   LaneArray const given = lanes_of(values, of.target().dimension());
-  return array_of(computed(of, [&] {
+  return array_of(counted(of, [&](Ledger& ledger) {
     LaneArray theta = given;
     if (declared) of.target().unconstrain(given, theta);
     std::vector<int> const usable = usable_lanes(theta);
-    if (static_cast<int>(usable.size()) == theta.width()) return log_density(of, theta, part_of(part), !declared);
+    if (static_cast<int>(usable.size()) == theta.width()) return log_density(of, theta, part_of(part), !declared, ledger);
     std::vector<double> all(static_cast<std::size_t>(theta.width()), minus_infinity);
-    std::vector<double> const some = log_density(of, columns(theta, usable), part_of(part), !declared);
+    std::vector<double> const some = log_density(of, columns(theta, usable), part_of(part), !declared, ledger);
     for (std::size_t i = 0; i < usable.size(); ++i) all[static_cast<std::size_t>(usable[i])] = some[i];
     return all;
   }));
@@ -91,14 +92,12 @@ struct ValueAndGradient {
 
 py::tuple value_and_gradient(OpenDensity& of, Array const& theta_array) {
   LaneArray const theta = lanes_of(theta_array, of.target().dimension());
-  ValueAndGradient const found = computed(of, [&] {
+  ValueAndGradient const found = counted(of, [&](Ledger& ledger) {
     Target const& target = of.target();
     std::vector<double> value(static_cast<std::size_t>(theta.width())), prior(value);
     LaneArray gradient(theta.rows(), theta.width()), of_prior(theta.rows(), theta.width());
-    Ledger ledger;
     target.log_likelihood_gradient(theta, value, gradient, ledger);
     target.log_prior_gradient(theta, prior, of_prior);
-    of.add(ledger);
     for (int w = 0; w < theta.width(); ++w) {
       auto const lane = static_cast<std::size_t>(w);
       value[lane] += prior[lane];
@@ -112,11 +111,9 @@ py::tuple value_and_gradient(OpenDensity& of, Array const& theta_array) {
 
 Array residuals(OpenDensity& of, Array const& theta_array) {
   LaneArray const theta = lanes_of(theta_array, of.target().dimension());
-  return array_of(computed(of, [&] {
+  return array_of(counted(of, [&](Ledger& ledger) {
     LaneArray out(of.target().residual_count(), theta.width());
-    Ledger ledger;
     of.target().residuals(theta, out, ledger);
-    of.add(ledger);
     return out;
   }));
 }
@@ -124,11 +121,9 @@ Array residuals(OpenDensity& of, Array const& theta_array) {
 py::tuple residuals_with_jacobian(OpenDensity& of, Array const& theta_array) {
   LaneArray const theta = lanes_of(theta_array, of.target().dimension());
   int const rows = of.target().residual_count();
-  auto const found = computed(of, [&] {
+  auto const found = counted(of, [&](Ledger& ledger) {
     LaneArray out(rows, theta.width()), jacobian(rows * theta.rows(), theta.width());
-    Ledger ledger;
     of.target().residuals_with_jacobian(theta, out, jacobian, ledger);
-    of.add(ledger);
     return std::pair(std::move(out), std::move(jacobian));
   });
   return py::make_tuple(array_of(found.first), array_of(found.second).reshape({theta.width(), rows, theta.rows()}));

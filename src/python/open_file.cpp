@@ -7,6 +7,7 @@
 
 #include "check/checked/task_kinds.hpp"
 #include "core/system/files.hpp"
+#include "python/interrupts.hpp"
 #include "syntax/parse.hpp"
 
 namespace sysid::python {
@@ -49,6 +50,9 @@ int fit_task(CheckedFile const& file, std::string const& name) {
 OpenFile::OpenFile(std::string const& path, std::optional<std::string> const& text,
                    std::map<std::string, std::string> const& records)
     : source_(path, "") {
+  // Outside a call's time, a request for other calls would stop this one.
+  Interrupts interrupts;
+  interrupts.stop_if_requested();
   guarded(source_, [&] { source_ = Source(path, text ? *text : read_file(path, most_text_bytes + 1)); });
   guarded(source_, [&] {
     Diagnostics diagnostics;
@@ -57,12 +61,13 @@ OpenFile::OpenFile(std::string const& path, std::optional<std::string> const& te
     if (!diagnostics.all().empty()) warnings_ = Raised(diagnostics, source_).what();
     point(*file_, records);
   });
+  interrupts.stop_if_requested();
 }
 
 OpenDensity::OpenDensity(std::shared_ptr<OpenFile const> file, std::string const& task, int threads)
     : file_(std::move(file)), session_(file_->source(), file_->file(), options_, silent_, out_, notices_) {
   options_.execution.threads = threads;
-  guarded(file_->source(), [&] { density_ = std::make_unique<FitDensity>(session_, fit_task(file_->file(), task)); });
+  density_ = interruptible(file_->source(), [&] { return std::make_unique<FitDensity>(session_, fit_task(file_->file(), task)); });
 }
 
 Ledger OpenDensity::ledger() const {

@@ -9,7 +9,6 @@
 #include "app/comparison/compare.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/run/pipeline.hpp"
-#include "core/system/interrupt.hpp"
 #include "exchange/export_netcdf.hpp"
 #include "python/arrays.hpp"
 #include "python/interrupts.hpp"
@@ -67,33 +66,34 @@ struct Asked {
   }
 };
 
-/// The exit code of the command line, what it printed, and its notices.
+/// The exit code of the command line, what it printed, its notices, and whether Ctrl-C has come.
 py::tuple run(OpenFile const& file, std::vector<std::string> const& names, Asked const& asked, py::object const& progress) {
   std::ostringstream out, notices;
   ExitCode exit = ExitCode::success;
+  bool requested = false;
   {
     SilentProgress silent;
     std::optional<TellsPython> telling;
     if (!progress.is_none()) telling.emplace(progress);
     Progress& told = telling ? static_cast<Progress&>(*telling) : silent;
     py::gil_scoped_release const released;
-    Interrupts const interrupts;
+    Interrupts interrupts;
+    interrupts.stop_if_requested();
     RunOptions const options = asked.options();
     exit = guarded(file.source(), [&] {
       Session session(file.source(), file.file(), options, told, out, notices);
       return run_tasks(session, [&](Task const& task) { return std::find(names.begin(), names.end(), task.name) != names.end(); });
     });
-    Interrupts::take();
+    requested = interrupts.requested();
   }
-  return py::make_tuple(static_cast<int>(exit), out.str(), notices.str());
+  return py::make_tuple(static_cast<int>(exit), out.str(), notices.str(), requested);
 }
 
 /// The page as text, and as JSON with the messages about the text.
 py::tuple check(OpenFile const& file, Asked const& asked) {
   py::gil_scoped_release const released;
-  Interrupts const interrupts;
   RunOptions const options = asked.options();
-  auto const [text, json] = guarded(file.source(), [&] {
+  auto const [text, json] = interruptible(file.source(), [&] {
     SilentProgress silent;
     std::ostringstream out, notices;
     Session session(file.source(), file.file(), options, silent, out, notices);
@@ -102,7 +102,6 @@ py::tuple check(OpenFile const& file, Asked const& asked) {
     if (result.diagnostics.has_errors()) throw Raised(result.diagnostics, file.source());
     return std::pair(check_text(result.page), check_json(result.page, render_json(result.diagnostics, file.source())));
   });
-  if (Interrupts::take()) throw Interrupted();
   py::gil_scoped_acquire const locked;
   return py::make_tuple(text, json);
 }
@@ -130,12 +129,13 @@ py::list groups_of(InferenceData const& data) {
   return groups;
 }
 
-/// draws: as `sysid export --draws` has it. The groups of a fit's results in `folder`, the attributes of all, and the bytes of the file that `sysid export` writes.
+/// draws: as `sysid export --draws` has it. The groups of a fit's results in `folder`, the attributes of all, and the bytes of the
+/// file that `sysid export` writes.
 py::tuple inference_data(OpenFile const& file, std::string const& folder, Asked const& asked, int draws) {
   RunOptions options = asked.options();
   InferenceData const data = [&] {
     py::gil_scoped_release const released;
-    return guarded(file.source(), [&] {
+    return interruptible(file.source(), [&] {
       SilentProgress silent;
       std::ostringstream out, notices;
       ResultsFolder const found = find_results(folder);

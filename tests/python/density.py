@@ -178,6 +178,55 @@ class Data(unittest.TestCase):
         whole, rest = (sysid.loads(LINE, data={"u": U, "d": each}) for each in (D, holes))
         self.assertEqual(rest.residual_count, whole.residual_count - 1)
 
+    def test_columns_with_masks_and_missing_values(self):
+        import pandas
+
+        holes = D.copy()
+        holes[3] = np.nan
+        expected = sysid.loads(LINE, data={"u": U, "d": holes}).log_density(np.zeros(2))
+        absent = np.arange(20) == 3
+        given = [
+            {"u": U, "d": np.ma.masked_array(D, mask=absent)},
+            {"u": U, "d": [None if gone else float(each) for each, gone in zip(D, absent)]},
+            pandas.DataFrame({"u": U, "d": pandas.array(np.where(absent, None, D), dtype="Float64")}),
+        ]
+        for data in given:
+            model = sysid.loads(LINE, data=data)
+            self.assertEqual(model.residual_count, 20)
+            self.assertEqual(model.log_density(np.zeros(2)), expected)
+
+    def test_numbers_that_would_lose_what_they_say(self):
+        for column in (D + 1j, D.astype("timedelta64[ms]"), D.astype("datetime64[ms]"), D.astype(complex).astype(object)):
+            with self.assertRaisesRegex(TypeError, "column `d` of the data for `bench` holds .*, not numbers"):
+                sysid.loads(LINE, data={"u": U, "d": column})
+        with self.assertRaisesRegex(TypeError, "real numbers, not complex128"):
+            sysid.loads(LINE, data={"u": U, "d": D}).log_density(np.zeros(2) + 0j)
+        with self.assertRaisesRegex(TypeError, "mapping from names to columns.*not ndarray"):
+            sysid.loads(LINE, data=np.zeros((20, 2)))
+
+    def test_a_pickle_is_of_what_was_loaded(self):
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        theta = np.ones((3, 2))
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            pathlib.Path("line.sysid").write_text(LINE)
+            columns = {"u": U.copy(), "d": D.copy()}
+            model = sysid.load("line.sysid", data=columns)
+            expected = model.log_density(theta)
+            columns["d"][:] = 0
+            pathlib.Path("line.sysid").write_text(LINE.replace("sd = 10)", "sd = 1)"))
+            np.testing.assert_array_equal(pickle.loads(pickle.dumps(model)).log_density(theta), expected)
+            kept = pickle.dumps(model)
+            pathlib.Path("nowhere.csv").write_text("u,d\n" + "".join(f"{u!r},{d!r}\n" for u, d in zip(U.tolist(), D.tolist())))
+            of_files = sysid.load("line.sysid")
+            files, expected_of_files = pickle.dumps(of_files), of_files.log_density(theta)
+            os.mkdir("inner")
+            os.chdir("inner")
+            np.testing.assert_array_equal(pickle.loads(kept).log_density(theta), expected)
+            np.testing.assert_array_equal(pickle.loads(files).log_density(theta), expected_of_files)
+            os.chdir(before)
+
     def test_what_is_wrong_with_data(self):
         with self.assertRaisesRegex(sysid.Error, "no column `d`.*\n.*reads `u`, `d`; there are `u`"):
             sysid.loads(LINE, data={"u": U})

@@ -173,6 +173,23 @@ class Results(Desk):
         with self.assertRaises(sysid.Error):
             model.fit(output="results")
 
+    def test_options_that_are_none(self):
+        model = sysid.load("decay.sysid")
+        for call in (model.fit, model.prepare, model.check, lambda seed: model.sample_prior(1, seed)):
+            for seed in (-1, 2**64):
+                with self.assertRaisesRegex(ValueError, "seed is a whole number from 0 to 18446744073709551615"):
+                    call(seed=seed)
+            with self.assertRaisesRegex(TypeError, "seed is a whole number, not 1.5"):
+                call(seed=1.5)
+        with self.assertRaisesRegex(ValueError, "threads is a whole number from 0"):
+            sysid.load("decay.sysid", threads=-1)
+        with self.assertRaisesRegex(TypeError, "threads is a whole number, not 1.5"):
+            sysid.load("decay.sysid", threads=1.5)
+        with self.assertRaisesRegex(ValueError, "checkpoint_interval is a number of seconds"):
+            model.fit(checkpoint_interval=-1)
+        with self.assertRaisesRegex(TypeError, "at least one result"):
+            sysid.compare()
+
     def test_progress(self):
         with contextlib.redirect_stderr(io.StringIO()) as said:
             sysid.load("decay.sysid").fit(progress=True)
@@ -180,6 +197,69 @@ class Results(Desk):
         with contextlib.redirect_stderr(io.StringIO()) as said:
             sysid.load("decay.sysid").fit(progress=False)
         self.assertEqual(said.getvalue(), "")
+
+
+class OfItsOwn(Desk):
+    """A result is of its own run, whatever is run afterwards."""
+
+    def test_a_later_fit_changes_no_earlier_result(self):
+        model = sysid.load("decay.sysid")
+        for options in ({}, {"output": "results", "force": True}):
+            first = model.fit(seed=7, **options)
+            rate, said, files = first.parameters["rate"]["mean"], first.text, files_of(first.folder)
+            second = model.fit(seed=8, **options)
+            self.assertNotEqual(second.parameters["rate"]["mean"], rate)
+            self.assertEqual((first.parameters["rate"]["mean"], first.text, files_of(first.folder)), (rate, said, files))
+            self.assertEqual(int(first.posterior.attrs["seed"]), 7)
+            self.assertEqual(int(pickle.loads(pickle.dumps(first)).posterior.attrs["seed"]), 7)
+            self.assertEqual(model.results["posterior"], second)
+        self.assertEqual(second.folder, pathlib.Path("results/posterior"))
+
+    def test_a_prediction_is_from_the_draws_of_the_last_fit(self):
+        model = sysid.load("decay.sysid")
+        model.fit(seed=7)
+        early = model.predict()
+        kept = files_of(early.folder)
+        model.fit(seed=8)
+        late = model.predict()
+        self.assertNotEqual(files_of(late.folder)["predict.csv"], kept["predict.csv"])
+        self.assertEqual(files_of(early.folder), kept)
+        other = sysid.load("decay.sysid")
+        other.fit(seed=8, output="elsewhere")
+        self.assertEqual(files_of(other.predict().folder)["predict.csv"], files_of(late.folder)["predict.csv"])
+
+    def test_an_interrupted_fit_gives_no_numbers_of_an_earlier_one(self):
+        program = textwrap.dedent(
+            """
+            import os, signal, sysid, sysid._progress
+
+            class Tell:
+                armed = False
+                def begin(self, what, total):
+                    if self.armed: os.kill(os.getpid(), signal.SIGINT)
+                def expect(self, total): pass
+                def advance(self, done, note): pass
+                def end(self, finished): pass
+
+            sysid._progress.line_for = lambda wanted: Tell()
+            model = sysid.load("decay.sysid")
+            for options in ({}, {"output": "results", "force": True}):
+                Tell.armed = False
+                first = model.fit(seed=7, **options)
+                rate = first.parameters["rate"]["mean"]
+                Tell.armed = True
+                try:
+                    second = model.fit(seed=8, **options)
+                    print(second.interrupted, second.summary["seed"], second.parameters["rate"]["mean"] != rate)
+                except KeyboardInterrupt:
+                    print("interrupted")
+                print(first.parameters["rate"]["mean"] == rate)
+                Tell.armed = False
+                print(model.fit(seed=8, resume=True, **{**options, "force": False}).summary["seed"])
+            """
+        )
+        said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+        self.assertEqual(said.stdout, "interrupted\nTrue\n8\n" * 2, said.stderr)
 
 
 class OtherTasks(Desk):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import html
+import operator
 import os
 import warnings
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _engine, _progress, _records
 from ._error import Error, ModelWarning
-from ._results import Check, Folder, Result
+from ._results import Check, Folder, Result, keep_apart, placed, stamp, take_along
 
 Array = NDArray[np.float64]
 
@@ -55,12 +56,28 @@ class Simulation:
 
 def _one_or_many(given: ArrayLike, dimension: int) -> tuple[Array, bool]:
     """An array [W x P], and whether one vector [P] was given."""
+    if np.asarray(given).dtype.kind in "cmM":
+        raise TypeError(f"expected real numbers, not {np.asarray(given).dtype}")
     array = np.asarray(given, dtype=np.float64)
     if array.ndim == 1:
         if array.shape[0] != dimension:
             raise ValueError(f"expected a vector of {dimension} parameters, or an array [W x {dimension}], not {array.shape}")
         return array[np.newaxis, :], True
     return array, False
+
+
+def _whole(value: Any, what: str, most: int) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what} is a whole number, not {value!r}") from None
+    if not 0 <= number <= most:
+        raise ValueError(f"{what} is a whole number from 0 to {most}, not {number}")
+    return number
+
+
+def _seed(value: Any) -> int:
+    return _whole(value, "seed", 2**64 - 1)
 
 
 class Model:
@@ -83,25 +100,23 @@ class Model:
         task: Optional[str] = None,
         threads: int = 0,
     ) -> None:
-        self._state = {"path": os.fspath(path), "text": text, "data": data, "task": task, "threads": threads}
-        self._folder: Optional[Folder] = None
+        threads = _whole(threads, "threads", 4096)
+        self._state = {"path": os.fspath(path), "task": task, "threads": threads, "from": os.getcwd()}
         self._prepared: Optional[int] = None
-        self._made: Optional[_engine.Density] = None
-        self._results: Optional[Folder] = None
-        self._open()
+        self._folder: Optional[Folder] = None
+        self._begin(_engine.File(self.path, text, {}), {})
+        if data is not None:
+            self._folder = Folder()
+            records = _records.write(data, self._file.data, str(self._folder.path))
+            self._begin(_engine.File(self.path, self.text, records), records)
         if self._file.warnings:
             warnings.warn(self._file.warnings, ModelWarning, stacklevel=3)
 
-    def _open(self) -> None:
-        state = self._state
-        records: dict[str, str] = {}
-        if state["data"] is not None:
-            blocks = _engine.File(state["path"], state["text"], {}).data
-            self._folder = Folder()
-            records = _records.write(state["data"], blocks, str(self._folder.path))
-        self._records = records
-        self._file = _engine.File(state["path"], state["text"], records)
-        self._process = os.getpid()
+    def _begin(self, file: _engine.File, records: dict[str, str]) -> None:
+        self._file, self._records, self._process = file, records, os.getpid()
+        self._made: Optional[_engine.Density] = None
+        self._results: dict[str, Result] = {}
+        self._runs: dict[str, Folder] = {}  # where each task ran last, though there may be no result
 
     @property
     def _density(self) -> _engine.Density:
@@ -111,18 +126,27 @@ class Model:
             self._made = None
         if self._made is None:
             self._process = os.getpid()
-            self._made = _engine.Density(self._file, self._state["task"] or "", self._state["threads"])
+            made = _engine.Density(self._file, self._state["task"] or "", self._state["threads"])
             if self._prepared is not None:
-                self._made.prepare(self._prepared)
+                made.prepare(self._prepared)
+            self._made = made
         return self._made
 
     def __getstate__(self) -> dict:
-        return {"state": self._state, "prepared": self._prepared}
+        # What it was made of, whatever has become of the file and of the arrays.
+        return {
+            "state": self._state,
+            "text": self.text,
+            "records": _records.contents(self._records),
+            "prepared": self._prepared,
+        }
 
     def __setstate__(self, stored: dict) -> None:
-        self._state, self._prepared = stored["state"], stored["prepared"]
-        self._folder, self._made, self._results = None, None, None
-        self._open()
+        self._state = {**stored["state"], "path": placed(stored["state"]["path"], stored["state"]["from"]), "from": os.getcwd()}
+        self._prepared = stored["prepared"]
+        self._folder = Folder() if stored["records"] else None
+        records = _records.write_contents(stored["records"], self._folder.path) if self._folder else {}
+        self._begin(_engine.File(self.path, stored["text"], records), records)
 
     # ---- what it is
 
@@ -140,6 +164,11 @@ class Model:
     def tasks(self) -> list[tuple[str, str]]:
         """Names and verbs of the tasks of the file, in order: ``[("posterior", "fit")]``."""
         return self._file.tasks
+
+    @property
+    def results(self) -> dict[str, Result]:
+        """The last result of each task that has been run, by the task's name."""
+        return dict(self._results)
 
     @property
     def parameters(self) -> list[Parameter]:
@@ -191,8 +220,8 @@ class Model:
         file states. Modes are good starting points of chains and optimisers. KeyboardInterrupt where Ctrl-C is pressed.
         Returns the model.
         """
-        self._density.prepare(seed)
-        self._prepared = seed
+        self._density.prepare(_seed(seed))
+        self._prepared = _seed(seed)
         return self
 
     def log_density(self, theta: ArrayLike, declared: bool = False, part: str = "both") -> Union[Array, float]:
@@ -246,7 +275,11 @@ class Model:
         return out[0] if one else out
 
     def unconstrain(self, values: ArrayLike) -> Array:
-        """Unconstrained coordinates [W x P] of values [W x P] in declared units; not finite outside the prior's support."""
+        """Unconstrained coordinates [W x P] of values [W x P] in declared units; not finite outside the prior's support.
+
+        Coordinates of unbounded priors are SI values, so their sizes may differ by many powers of ten: methods that are sensitive
+        to scale, such as L-BFGS-B, want coordinates divided by the square roots of the diagonal of ``modes[0].covariance``.
+        """
         density = self._density
         batch, one = _one_or_many(values, density.dimension)
         out = density.unconstrain(batch)
@@ -254,7 +287,7 @@ class Model:
 
     def sample_prior(self, count: int, seed: int = 0) -> Array:
         """Draws of the prior, unconstrained coordinates [count x P]."""
-        return self._density.sample_prior(count, seed)
+        return self._density.sample_prior(count, _seed(seed))
 
     def simulate(self, values: ArrayLike, experiment: int = 0, seed: int = 0) -> Simulation:
         """What parameter vectors predict along the rows of an experiment of the fit.
@@ -265,7 +298,7 @@ class Model:
         if not 0 <= experiment < density.experiments:
             raise IndexError(f"the fit has experiments 0 to {density.experiments - 1}, not {experiment}")
         batch, one = _one_or_many(values, density.dimension)
-        made = density.simulate(batch, experiment, seed)
+        made = density.simulate(batch, experiment, _seed(seed))
         if one:
             for each in (made["values"], made["noisy"]):
                 for name in each:
@@ -276,6 +309,7 @@ class Model:
 
     def check(self, seed: Optional[int] = None) -> Check:
         """Reports what the data can determine, before any sampling, as ``sysid check`` does. seed: of the draws of the prior."""
+        seed = None if seed is None else _seed(seed)
         return Check(*_engine.check(self._file, _engine.Asked(output="results", seed=seed, threads=self._state["threads"])))
 
     def fit(self, task: Optional[str] = None, **options: Any) -> Result:
@@ -284,17 +318,20 @@ class Model:
         Draws, tables and findings are those of ``sysid fit``, byte for byte for a seed. Options, of all tasks:
 
         seed: of all random numbers, in place of the one in the file.
-        output: the folder of results; by default a temporary one, which the tasks of a model share.
-        force: replaces results that are in `output`; resume: goes on from a checkpoint there.
+        output: the folder of results; by default a temporary one of this result alone.
+        force: replaces results that are in `output`. resume: goes on from a checkpoint there, or from where this task of the model
+        has stopped.
         figures: also draws figures. progress: a line on standard error; by default at a terminal and in a notebook.
 
         Ctrl-C keeps the draws so far: the result then has ``interrupted``, and ``fit(resume=True)`` goes on to the bytes of an
-        uninterrupted fit. Raises KeyboardInterrupt where there are no draws yet.
+        uninterrupted fit. Raises KeyboardInterrupt where there are no draws yet, and where it was pressed too late to stop the
+        fit, whose result then is in `results`.
         """
         return self._run("fit", task or self._state["task"], **options)
 
     def predict(self, task: Optional[str] = None, **options: Any) -> Result:
-        """Runs a prediction of the file, the first by default, from the draws of a fit before it. Options as in `fit`."""
+        """Runs a prediction of the file, the first by default, from the draws of the fit before it. Options as in `fit`; with
+        `output` the fit's draws lie there, too."""
         return self._run("predict", task, **options)
 
     def select(self, task: Optional[str] = None, **options: Any) -> Result:
@@ -318,27 +355,50 @@ class Model:
         progress: Optional[bool] = None,
         checkpoint_interval: float = 30,
     ) -> Result:
+        seed = None if seed is None else _seed(seed)
+        if not checkpoint_interval >= 0:
+            raise ValueError(f"checkpoint_interval is a number of seconds, at least 0, not {checkpoint_interval}")
         names = [name for name, of in self.tasks if of == verb]
         name = task or (names[0] if names else "")
         if name not in names:
             known = ", ".join(f"`{each}`" for each in names) or "none"
             raise Error(f"sysid: error: this file has no {verb} task{f' `{task}`' if task else ''}\nhelp: its {verb} tasks: {known}")
-        if output is None and self._results is None:
-            self._results = Folder()
-        run = self._results if output is None else Folder(output)
+        if output is None:
+            run = self._folder_of_its_own(name, resume)
+        else:
+            run = Folder(output)
+            if force or resume:
+                keep_apart(run.path / name)
+        before = stamp(run.path / name)
         asked = _engine.Asked(
             output=str(run.path),
             seed=seed,
             threads=self._state["threads"],
-            force=force or (output is None and not resume),
+            force=force,
             resume=resume,
             figures=figures,
             checkpoint_interval=checkpoint_interval,
         )
-        exit, text, notices = _engine.run(self._file, [name], asked, _progress.line_for(progress))
-        if exit == 75 and not (run.path / name / "summary.json").exists():
+        exit, text, notices, requested = _engine.run(self._file, [name], asked, _progress.line_for(progress))
+        self._runs[name] = run
+        if exit == 75 and stamp(run.path / name) in (None, before):
             raise KeyboardInterrupt
-        return Result(self._file, self._records, self._folder, run, name, exit, text, notices)
+        result = Result(self._file, self._records, self._folder, run, name, exit, text, notices, self._state["from"])
+        self._results[name] = result
+        if requested and exit != 75:
+            raise KeyboardInterrupt(f"`{name}` had ended: its result is in model.results[{name!r}]")
+        return result
+
+    def _folder_of_its_own(self, name: str, resume: bool) -> Folder:
+        """For results that nothing replaces, with what the task may read of earlier ones: draws, or its own checkpoint."""
+        run = Folder()
+        for earlier, verb in self.tasks:
+            if earlier == name:
+                if resume and name in self._runs:
+                    take_along(self._runs[name], name, run, changes=True)
+            elif earlier in self._results and verb != "predict":
+                take_along(self._results[earlier]._run, earlier, run)
+        return run
 
     # ---- how it looks
 
@@ -362,7 +422,7 @@ def load(path: Union[str, os.PathLike], data: Any = None, task: Optional[str] = 
     """Reads and checks a file of the language.
 
     path: of the .sysid file. data: in place of the tables that the data blocks name, a mapping or frame of columns; see
-    docs/python.md. task: the fit whose density is wanted; by default the first. threads: 0 is one for each processor; results do
+    docs/python.md; they are copied. Without it, tables are read when they are first needed. task: the fit whose density is wanted; by default the first. threads: 0 is one for each processor; results do
     not depend on it. Raises `Error` with the located message where something is wrong with the text or the data.
     """
     return Model(os.fspath(path), None, data, task, threads)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import numbers
 import os
+import pathlib
 from typing import Any, Sequence
 
 import numpy as np
@@ -19,11 +21,26 @@ def _holds_columns(data: Any) -> bool:
     return isinstance(data, dict) or hasattr(data, "columns") or hasattr(data, "data_vars")
 
 
-def _column(data: Any, name: str) -> np.ndarray:
-    return np.asarray(data[name])
+def _floats(given: Any, told: str) -> np.ndarray:
+    """A column as numbers, NaN for what is missing. TypeError where numbers would not say all that it holds, as of complex ones."""
+    masked = np.ma.isMaskedArray(given)
+    array = np.asarray(given.data if masked else given)
+    if array.dtype == object:  # numbers among None or pandas.NA
+        missing = [each is None or type(each).__name__ == "NAType" for each in array.flat]
+        strange = [each for each, absent in zip(array.flat, missing) if not absent and not isinstance(each, numbers.Real)]
+        if strange:
+            raise TypeError(f"{told} holds {type(strange[0]).__name__}, not numbers")
+        values = [np.nan if absent else float(each) for each, absent in zip(array.flat, missing)]
+        array = np.array(values).reshape(array.shape)
+    if array.dtype.kind not in "biuf":
+        help = ": divide durations by the unit of the data block first" if array.dtype.kind in "mM" else ""
+        raise TypeError(f"{told} holds {array.dtype}, not numbers{help}")
+    return np.where(np.ma.getmaskarray(given), np.nan, array) if masked else array.astype(np.float64)
 
 
 def _names(data: Any) -> list[str]:
+    if not any(hasattr(data, name) for name in ("data_vars", "keys", "columns")):
+        raise TypeError(f"data are a mapping from names to columns, a pandas frame or an xarray data set, not {type(data).__name__}")
     if hasattr(data, "data_vars"):  # xarray: coordinates are columns, too
         return [str(name) for name in data.variables]
     return [str(name) for name in (data.keys() if hasattr(data, "keys") else data.columns)]
@@ -44,12 +61,11 @@ def _write_table(data: Any, block: str, columns: Sequence[str], path: str) -> No
         )
     arrays = []
     for name in columns:
-        array = _column(data, name)
+        told = f"column `{name}` of the data for `{block}`"
+        array = _floats(data[name], told)
         if array.ndim != 1:
-            raise ValueError(f"column `{name}` of the data for `{block}` has shape {array.shape}; columns have one axis")
-        if not np.issubdtype(array.dtype, np.number) and array.dtype != bool:
-            raise TypeError(f"column `{name}` of the data for `{block}` holds {array.dtype}, not numbers")
-        arrays.append(array.astype(np.float64))
+            raise ValueError(f"{told} has shape {array.shape}; columns have one axis")
+        arrays.append(array)
     lengths = {len(array) for array in arrays}
     if len(lengths) > 1:
         raise ValueError(f"the columns of the data for `{block}` differ in length: {sorted(lengths)}")
@@ -81,4 +97,17 @@ def write(data: Any, blocks: Sequence[tuple[str, str, list[str]]], folder: str) 
         path = os.path.join(folder, f"{name}.csv")
         _write_table(table, name, columns[name], path)
         records[name] = path
+    return records
+
+
+def contents(records: dict[str, str]) -> dict[str, bytes]:
+    """Of the tables, by the names of the data blocks."""
+    return {name: pathlib.Path(path).read_bytes() for name, path in records.items()}
+
+
+def write_contents(tables: dict[str, bytes], folder: pathlib.Path) -> dict[str, str]:
+    """Writes them into a folder; returns their paths."""
+    records = {name: str(folder / f"{name}.csv") for name in tables}
+    for name, path in records.items():
+        pathlib.Path(path).write_bytes(tables[name])
     return records

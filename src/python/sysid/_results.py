@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 import numpy as np
 
-from . import _engine
+from . import _engine, _records
 
 if TYPE_CHECKING:
     import pandas
@@ -24,6 +24,7 @@ class Folder:
     """A folder for results: the user's, or a temporary one that lives as long as something refers to it."""
 
     def __init__(self, path: Optional[Union[str, os.PathLike]] = None) -> None:
+        self.temporary = path is None
         self.path = pathlib.Path(path if path is not None else tempfile.mkdtemp(prefix="sysid-"))
         if path is None:
             weakref.finalize(self, _remove, str(self.path), os.getpid())
@@ -34,21 +35,51 @@ def _remove(path: str, process: int) -> None:
         shutil.rmtree(path, ignore_errors=True)
 
 
+def take_along(source: Folder, task: str, target: Folder, changes: bool = False) -> None:
+    """Results of a task into another folder. changes: whether they will change there."""
+    if not (source.path / task).is_dir():
+        return
+    try:
+        # Nothing changes files in a temporary folder that a result is in.
+        copy = os.link if source.temporary and not changes else shutil.copy2
+        shutil.copytree(source.path / task, target.path / task, copy_function=copy)
+    except (shutil.Error, OSError):  # a file system without links
+        shutil.copytree(source.path / task, target.path / task, dirs_exist_ok=True)
+
+
+def stamp(folder: pathlib.Path) -> Optional[tuple]:
+    """Which summary lies in a folder of results; None: none."""
+    try:
+        about = os.stat(folder / "summary.json")
+    except OSError:
+        return None
+    return about.st_ino, about.st_mtime_ns, about.st_size
+
+
+def placed(path: str, folder: str) -> str:
+    """A path that was relative to a working directory, as it is to be written now."""
+    return path if folder == os.getcwd() else os.path.join(folder, path)
+
+
 class Result:
     """What a task has left. Files lie in `folder`, as the command line writes them.
 
     The groups of a fit are xarray data sets with the names of ArviZ's InferenceData, made when they are first asked for:
     ``posterior``, ``sample_stats``, ``log_likelihood``, ``posterior_predictive``, ``observed_data``, ``constant_data``, ``prior``,
-    ``prior_predictive``, and ``predictions`` where a prediction lies beside it; of an interrupted fit the first two. A result can
-    be pickled, with its files.
+    ``prior_predictive``, and ``predictions`` where a prediction lies beside it; of an interrupted fit the first two. A result
+    stays what it is when tasks are run again, and can be pickled, with its files.
     """
 
     def __init__(
-        self, file: _engine.File, records: dict[str, str], kept: Any, run: Folder, task: str, exit: int, text: str, notices: str
+        self, file: _engine.File, records: dict[str, str], kept: Any, run: Folder, task: str, exit: int, text: str, notices: str, origin: str
     ) -> None:
-        """records: tables in the place of those that the file names, which exist as long as `kept` does."""
+        """records: tables in the place of those that the file names, which exist as long as `kept` does. origin: the working
+        directory that the file's path is relative to."""
+        self._origin = origin
         self._file, self._records, self._kept, self._run = file, records, kept, run
         self.task = task  #: its name
+        if not run.temporary:
+            _alive.add(self)
         self.text = text  #: the summary that the command line prints
         self.notices = notices  #: one line each: what was chosen, what was written
         self.interrupted = exit == 75  #: whether Ctrl-C has ended it; what it holds are the draws so far
@@ -154,7 +185,8 @@ class Result:
         return {
             "path": self._file.path,
             "text": self._file.text,
-            "records": {name: pathlib.Path(path).read_bytes() for name, path in self._records.items()},
+            "from": self._origin,
+            "records": _records.contents(self._records),
             "results": results,
             "shown": {name: getattr(self, name) for name in ("task", "text", "notices", "interrupted")},
         }
@@ -164,11 +196,27 @@ class Result:
         for name, content in stored["results"].items():
             (self._run.path / name).parent.mkdir(parents=True, exist_ok=True)
             (self._run.path / name).write_bytes(content)
-        self._records = {name: str(self._kept.path / f"{name}.csv") for name in stored["records"]}
-        for name, path in self._records.items():
-            pathlib.Path(path).write_bytes(stored["records"][name])
+        self._records = _records.write_contents(stored["records"], self._kept.path)
         self.__dict__.update(stored["shown"])
-        self._file = _engine.File(stored["path"], stored["text"], self._records)
+        self._file = _engine.File(placed(stored["path"], stored["from"]), stored["text"], self._records)
+        self._origin = os.getcwd()
+
+    def _keep(self) -> None:
+        """Copies its files, which are about to be replaced."""
+        apart = Folder()
+        take_along(self._run, self.task, apart, changes=True)
+        self._run = apart
+
+
+#: Results of the user's folders.
+_alive: "weakref.WeakSet[Result]" = weakref.WeakSet()
+
+
+def keep_apart(folder: pathlib.Path) -> None:
+    """What there is of a folder of results, before a task replaces it."""
+    for result in list(_alive):
+        if result.folder.resolve() == folder.resolve():
+            result._keep()
 
 
 #: Names of ArviZ's groups that a fit may have.
@@ -246,5 +294,7 @@ def compare(*results: Union[Result, str, os.PathLike]) -> Comparison:
 
     results: what tasks have returned, or folders of tasks or of whole runs. Raises `Error` where fits are not of the same samples.
     """
+    if not results:
+        raise TypeError("expected at least one result or folder to compare")
     folders = [str(each.folder) if isinstance(each, Result) else os.fspath(each) for each in results]
     return Comparison(*_engine.compare(folders))
