@@ -80,7 +80,7 @@ TEST_CASE("the half saturation of a predator is found with the form, and known a
     REQUIRE(!inside.is_null());
     CHECK(inside.at("inside_terms") == true);
     double const value = inside.at("value"), sd = inside.at("sd");
-    CAPTURE(value);
+    MESSAGE("half saturation ", value, " with an sd of ", sd);
     CHECK(sd < 0.01);
     CHECK(std::abs(value - 0.6) < 3 * sd);
     double const saturated = found.coefficient("x'", "x*y/(K + x)").at("value");
