@@ -174,6 +174,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
       "app/preflight"}},
     {"app/task",
      {"core",
+      "result",
       "data",
       "gaussian_process",
       "model",
