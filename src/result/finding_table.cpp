@@ -26,6 +26,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::linearisation_matters, "linearisation_matters", error_or_warning},
     {FindingCode::likelihood_too_noisy, "likelihood_too_noisy", error_or_warning},
     {FindingCode::particles_degenerate, "particles_degenerate", warning_or_note},
+    {FindingCode::noise_in_lines, "noise_in_lines", note},
     {FindingCode::step_not_settled, "step_not_settled", any},
     {FindingCode::stiff_prior, "stiff_prior", warning},
     {FindingCode::slower_solver, "slower_solver", note},

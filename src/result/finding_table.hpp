@@ -25,6 +25,7 @@ enum class FindingCode {
   linearisation_matters,
   likelihood_too_noisy,
   particles_degenerate,
+  noise_in_lines,
   step_not_settled,
   stiff_prior,
   slower_solver,

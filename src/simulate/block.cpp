@@ -58,11 +58,31 @@ void Block::step(int sample) {
   if (runs_loops())
     return call(observe_loop_ != nullptr ? observe_loop_ : record_loop_,
                 {.from = sample, .to = sample + 1, .look_from = sample + 1, .step_to = sample + 1});
-  if (!program_.source.memories.empty()) {
-    file_.load_row(schedule_.carry_row(sample), program_.carry.uniforms.kernel.outputs);
-    run(*program_.carry.linked, executor_, file_.file);
-  }
+  carry(sample);
   stepper_->step(sample);
+}
+
+void Block::step(int sample, int substep) {
+  int const width = program_.step.uniforms.kernel.outputs;
+  double const* const row = schedule_.step_row(sample, substep);
+  // The machine code finds the row of a sample by its number.
+  if (runs_loops() && program_.source.memories.empty() && schedule_.solver().substeps > 1)
+    return call(observe_loop_ != nullptr ? observe_loop_ : record_loop_,
+                {.steps = row - static_cast<std::ptrdiff_t>(sample) * width,
+                 .from = sample,
+                 .to = sample + 1,
+                 .look_from = sample + 1,
+                 .step_to = sample + 1,
+                 .substeps = 1});
+  if (substep == 0) carry(sample);
+  file_.load_row(row, width);
+  run(*program_.step.linked, executor_, file_.file);
+}
+
+void Block::carry(int sample) {
+  if (program_.source.memories.empty()) return;
+  file_.load_row(schedule_.carry_row(sample), program_.carry.uniforms.kernel.outputs);
+  run(*program_.carry.linked, executor_, file_.file);
 }
 
 void Block::observe(int sample) {
@@ -119,8 +139,10 @@ void Block::call(native::Function function, native::Call call) const {
   call.rows = records ? &record : rows;
   call.summed = summed;
   call.carry = schedule_.carry_row(0);
-  call.steps = backwards ? schedule_.reverse_step_row(0, 0) : schedule_.step_row(0, 0);
-  call.substeps = schedule_.solver().substeps;
+  if (call.steps == nullptr) {
+    call.steps = backwards ? schedule_.reverse_step_row(0, 0) : schedule_.step_row(0, 0);
+    call.substeps = schedule_.solver().substeps;
+  }
   function(&call);
 }
 

@@ -29,6 +29,8 @@ class Block {
   void start();
   /// From `sample` to the next one.
   void step(int sample);
+  /// Of the fixed steps from `sample` to the next one, one alone; in their order, from 0 on.
+  void step(int sample, int substep);
   /// Adds samples [from, to) to the accumulators of the channels they are summed in, and steps from each that is before `step_to`
   /// to the next one.
   void advance(int from, int to, int step_to);
@@ -95,10 +97,12 @@ class Block {
   ConstLanes rows(int first, int count) const { return file_.rows(first, count).columns(0, lanes_); }
   bool fixed_step() const { return schedule_.solver().fixed_step(); }
   bool all_live_and_finite() const;
+  void carry(int sample);
   void observe(int sample);
   void reverse_interpreted(int sample, bool step, double const* tape);
   void record_interpreted(int from, int to, Lanes out);
   void correct_recorded(int sample);
+  /// What the call leaves open becomes that of the schedule.
   void call(native::Function function, native::Call call) const;
   SimulationProgram const& program_;
   Schedule const& schedule_;

@@ -51,12 +51,21 @@ void ParticleLanes::start(ConstLanes shared, ConstLanes own) {
   }
 }
 
-void ParticleLanes::step(int sample) {
+template <class Step>
+void ParticleLanes::move(Step const& step) {
   for (int first = 0; first < count_; first += width_) {
     block_.take_states(of_block(states_, first));
-    block_.step(sample);
+    step();
     take_back(first);
   }
+}
+
+void ParticleLanes::step(int sample) {
+  move([&] { block_.step(sample); });
+}
+
+void ParticleLanes::step(int sample, int substep) {
+  move([&] { block_.step(sample, substep); });
 }
 
 ConstLanes ParticleLanes::record(int sample) {

@@ -19,6 +19,8 @@ class ParticleLanes {
   void start(ConstLanes shared, ConstLanes own);
   /// From `sample` to the next one. A solver that remembers earlier steps begins anew.
   void step(int sample);
+  /// Of the fixed steps from `sample` to the next one, one alone.
+  void step(int sample, int substep);
   /// The records of a sample [records x count]; until the next call.
   ConstLanes record(int sample);
   /// [states x count]; may be changed between calls.
@@ -29,6 +31,8 @@ class ParticleLanes {
  private:
   Lanes of_block(LaneArray& all, int first) const { return all.view().columns(first, width_); }
   void take_back(int first);
+  template <class Step>
+  void move(Step const& step);
 
   Simulator const& simulator_;
   int count_;

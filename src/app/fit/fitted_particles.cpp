@@ -10,6 +10,7 @@
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/scores.hpp"
 #include "inference/backend/backend.hpp"
@@ -231,9 +232,24 @@ std::optional<Finding> FittedParticles::check_estimates(ConstLanes draws) const 
                       : "")};
 }
 
+std::optional<Finding> FittedParticles::check_lines() const {
+  std::vector<std::string> white;
+  for (std::size_t d = 0; d < model_.disturbances.size(); ++d)
+    if (particle_model_->noises[d].white) white.push_back(model_.disturbances[d].name);
+  if (white.empty() || (solver_->fixed_step() && !solver_->row().exact)) return std::nullopt;
+  return Finding{
+      FindingCode::noise_in_lines, Severity::note, white,
+      fmt::format("with `solver = {}` the white noise {} is one straight line between two samples: motion that dies off within a "
+                  "sampling interval gets too little of its variance",
+                  solver_->method, listed(white)),
+      "where the motion may be that fast, use `solver = rk4(substeps = 4)`, in whose steps noise is drawn anew, or "
+      "`filter = unscented`"};
+}
+
 Findings FittedParticles::check(std::vector<LaneArray> const& parameters, ConstLanes draws) const {
   Findings findings;
   if (auto noisy = check_estimates(draws)) findings.push_back(std::move(*noisy));
+  if (auto lines = check_lines()) findings.push_back(std::move(*lines));
   for (std::size_t e = 0; e < data_.size(); ++e) {
     FilterOutcome const& outcome = innovations(parameters)[e].outcome;
     double const effective = outcome.least_effective * need_.particles;

@@ -52,6 +52,7 @@ class FittedParticles {
   Experiment const& experiment(int e) const { return data_[static_cast<std::size_t>(e)].experiment; }
   StreamKey key_of(int e) const;
   std::optional<Finding> check_estimates(ConstLanes draws) const;
+  std::optional<Finding> check_lines() const;
   /// At these parameters, found once.
   std::vector<ParticleInnovations> const& innovations(std::vector<LaneArray> const& parameters) const;
 

@@ -18,9 +18,20 @@ namespace {
 std::size_t numbers_of_start(ParticleModel const& model, int particles) {
   return static_cast<std::size_t>(particles) * static_cast<std::size_t>(model.starts);
 }
-/// Of the interval that begins with it, and one for the choice among the particles.
+/// Of the step that begins with it, and one for the choice among the particles.
 std::size_t numbers_of_sample(ParticleModel const& model, int particles) {
   return static_cast<std::size_t>(particles) * static_cast<std::size_t>(model.numbers) + 1;
+}
+/// Of each later step of a sampling interval: white noise alone is drawn anew.
+std::size_t numbers_of_step(ParticleModel const& model, int particles) {
+  int numbers = 0;
+  for (ParticleNoise const& noise : model.noises) numbers += noise.white ? noise.numbers() : 0;
+  return static_cast<std::size_t>(particles) * static_cast<std::size_t>(numbers);
+}
+/// Lines of white noise in a sampling interval.
+int steps_between(ParticleModel const& model, Simulator const& simulator, int particles) {
+  SolverSettings const& solver = simulator.schedule().solver();
+  return solver.fixed_step() && numbers_of_step(model, particles) > 0 ? solver.substeps : 1;
 }
 
 /// Particles are resampled where their weights are worth less than this part of them.
@@ -34,6 +45,8 @@ class ParticleRun {
         schedule_(simulator.schedule()),
         particles_(simulator, particles),
         order_(particles),
+        steps_(steps_between(model, simulator, particles)),
+        means_(static_cast<int>(model.noises.size()), particles),
         weights_(static_cast<std::size_t>(particles), 1.0 / particles),
         density_(weights_.size()),
         ancestors_(weights_.size()) {}
@@ -44,8 +57,15 @@ class ParticleRun {
     int const end = schedule_.last_summed();
     for (int sample = 0; sample < to; ++sample) {
       if (simulator_.stopped()) return failed(sample);
-      if (sample > 0) particles_.step(sample - 1);
-      std::span<double const> const numbers = normals.take(numbers_of_sample(model_, particles_.count()));
+      if (sample > 0) {
+        move(particles_, sample - 1, normals, view.moved ? &means_ : nullptr);
+        if (view.moved) view.moved({sample - 1, means_});
+      }
+      std::span<double const> numbers = normals.take(numbers_of_sample(model_, particles_.count()));
+      if (view.ahead > 1) {
+        kept_.assign(numbers.begin(), numbers.end());
+        numbers = kept_;
+      }
       set_noises(particles_.states(), sample, numbers, true);
       bool const weighed = is_weighed(sample);
       ConstLanes const densities = weighed ? particles_.record(sample) : ConstLanes();
@@ -101,7 +121,7 @@ class ParticleRun {
     for (Left& each : left_) {
       Lanes const states = free_->states();
       copy(each.states, states);
-      if (sample > 0) free_->step(sample - 1);
+      if (sample > 0) move(*free_, sample - 1, normals, nullptr);
       std::span<double const> const numbers = normals.take(numbers_of_sample(model_, particles_.count()));
       if (sample > 0) set_noises(states, sample, numbers, true);
       bool const is_start = each.sample < 0;
@@ -120,27 +140,75 @@ class ParticleRun {
     return outcome;
   }
 
-  /// Disturbances of the interval that begins with a sample: those that a channel reads there, or the others.
+  /// From a sample to the next one, the noises of the first step being set. means [noises x N], if wanted.
+  void move(ParticleLanes& particles, int sample, ParticleNormals& normals, LaneArray* means) const {
+    Lanes const states = particles.states();
+    double const step = length_of_step(sample);
+    if (means != nullptr) {
+      for (int d = 0; d < means->rows(); ++d) std::ranges::fill(means->row(d), 0.0);
+      add_means(states, step, *means);
+    }
+    if (steps_ == 1) return particles.step(sample);
+    for (int substep = 0; substep < steps_; ++substep) {
+      if (substep > 0) {
+        draw_white(states, step, normals.take(numbers_of_step(model_, particles.count())));
+        if (means != nullptr) add_means(states, step, *means);
+      }
+      particles.step(sample, substep);
+    }
+  }
+
+  double length_of_step(int sample) const {
+    int const from = sample + 1 < schedule_.samples() ? sample : sample - 1;
+    return from < 0 ? 1 : (schedule_.time(from + 1) - schedule_.time(from)) / steps_;
+  }
+
+  /// What the noises add to their means over a sampling interval in a step whose begin the states are.
+  void add_means(ConstLanes states, double step, LaneArray& means) const {
+    for (std::size_t d = 0; d < model_.noises.size(); ++d) {
+      ParticleNoise const& noise = model_.noises[d];
+      std::span<double> const mean = means.row(static_cast<int>(d));
+      for (std::size_t w = 0; w < weights_.size(); ++w) {
+        auto const lane = static_cast<int>(w);
+        mean[w] += noise.white ? (states(noise.state, lane) + 0.5 * step * states(noise.state + 1, lane)) / steps_
+                               : states(noise.state, lane);
+      }
+    }
+  }
+
+  /// Disturbances of the step that begins with a sample: those that a channel reads there, or the others.
   void set_noises(Lanes states, int sample, std::span<double const> numbers, bool observed) const {
     auto const count = weights_.size();
-    int const from = sample + 1 < schedule_.samples() ? sample : sample - 1;
-    double const step = from < 0 ? 1 : schedule_.time(from + 1) - schedule_.time(from);
+    double const step = length_of_step(sample);
     std::size_t first = 0;
     for (ParticleNoise const& noise : model_.noises) {
       double const* const xi = numbers.data() + first;
       first += count * static_cast<std::size_t>(noise.numbers());
       if (noise.observed != observed) continue;
-      double* const value = states.row(noise.state).data();
-      if (!noise.white) {
-        std::copy_n(xi, count, value);
-        continue;
-      }
-      double* const rate = states.row(noise.state + 1).data();
-      double const *const slope = xi + count, size = 1 / std::sqrt(step);
-      for (std::size_t w = 0; w < count; ++w) {
-        value[w] = size * (xi[w] - std::numbers::sqrt3 * slope[w]);
-        rate[w] = 2 * std::numbers::sqrt3 * size / step * slope[w];
-      }
+      if (noise.white)
+        set_line(states, noise, step, xi);
+      else
+        std::copy_n(xi, count, states.row(noise.state).data());
+    }
+  }
+
+  void draw_white(Lanes states, double step, std::span<double const> numbers) const {
+    std::size_t first = 0;
+    for (ParticleNoise const& noise : model_.noises) {
+      if (!noise.white) continue;
+      set_line(states, noise, step, numbers.data() + first);
+      first += weights_.size() * static_cast<std::size_t>(noise.numbers());
+    }
+  }
+
+  void set_line(Lanes states, ParticleNoise const& noise, double step, double const* xi) const {
+    std::size_t const count = weights_.size();
+    double* const value = states.row(noise.state).data();
+    double* const rate = states.row(noise.state + 1).data();
+    double const *const slope = xi + count, size = 1 / std::sqrt(step);
+    for (std::size_t w = 0; w < count; ++w) {
+      value[w] = size * (xi[w] - std::numbers::sqrt3 * slope[w]);
+      rate[w] = 2 * std::numbers::sqrt3 * size / step * slope[w];
     }
   }
 
@@ -190,6 +258,9 @@ class ParticleRun {
   Schedule const& schedule_;
   ParticleLanes particles_;
   ParticleOrder order_;
+  int steps_;                              // lines of white noise in a sampling interval
+  LaneArray means_;                        // [noises x N] of the last interval
+  std::vector<double> kept_;               // numbers of the sample, where others are taken before they are used
   std::vector<double> weights_, density_;  // weights: their sum is 1
   std::vector<int> ancestors_;
   double effective_ = 1;
@@ -205,7 +276,9 @@ ParticleFilter::ParticleFilter(ParticleModel const& model, Simulator const& simu
 
 std::size_t ParticleFilter::numbers() const {
   auto const samples = static_cast<std::size_t>(simulator_.schedule().last_summed());
-  return numbers_of_start(model_, particles_) + samples * numbers_of_sample(model_, particles_);
+  auto const later = static_cast<std::size_t>(steps_between(model_, simulator_, particles_) - 1);
+  return numbers_of_start(model_, particles_) +
+         samples * (numbers_of_sample(model_, particles_) + later * numbers_of_step(model_, particles_));
 }
 
 std::vector<double> ParticleFilter::draw(ParticleNormals& normals) const {
@@ -216,7 +289,11 @@ std::vector<double> ParticleFilter::draw(ParticleNormals& normals) const {
     drawn.insert(drawn.end(), some.begin(), some.end());
   };
   add(numbers_of_start(model_, particles_));
-  for (int sample = 0; sample < simulator_.schedule().last_summed(); ++sample) add(numbers_of_sample(model_, particles_));
+  int const steps = steps_between(model_, simulator_, particles_);
+  for (int sample = 0; sample < simulator_.schedule().last_summed(); ++sample) {
+    add(numbers_of_sample(model_, particles_));
+    for (int step = 1; step < steps; ++step) add(numbers_of_step(model_, particles_));
+  }
   return drawn;
 }
 

@@ -35,12 +35,19 @@ struct PredictedParticles {
   ConstLanes densities;  // of the channels, logarithms; means nothing where the channel is not weighed
 };
 
+/// The means of disturbances over a sampling interval, in the order of the model's noises: of intensity 1.
+struct IntervalMeans {
+  int sample;         // at which the interval begins
+  ConstLanes values;  // [noises x N]; the particles are those of `predicted` at the next sample
+};
+
 /// Who looks at a run; what is not given is not called. It goes on to the end of the record, weighed or not.
 struct ParticleView {
   /// What `predicted` sees of a sample is known from those so many rows before it and earlier; beyond 1 without densities.
   int ahead = 1;
   std::function<void(PredictedParticles const&)> predicted;
-  SeeParticles weighed;  // at each sample, also where nothing was to be weighed
+  std::function<void(IntervalMeans const&)> moved;  // before that
+  SeeParticles weighed;                             // at each sample, also where nothing was to be weighed
   /// After that, where particles are chosen anew: particle w becomes what ancestors[w] was, all of equal weight. weights: before.
   std::function<void(std::span<int const> ancestors, std::span<double const> weights)> resampled;
 };

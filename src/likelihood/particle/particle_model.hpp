@@ -10,13 +10,14 @@
 
 namespace sysid {
 
-/// One disturbance. Of a sampling interval of length h it is, q its intensity and xi standard normal numbers,
+/// One disturbance, q its intensity and xi standard normal numbers. White noise is a straight line in each step of the solver, of
+/// length h; where the solver chooses its steps itself, in each sampling interval:
 ///
 ///   white:  sqrt(q/h) (xi_1 + sqrt(3) (2 s/h - 1) xi_2), s in [0, h]        Foster, Lyons, Oberhauser 2020, sec. 2
-///   held, and in discrete time:  sqrt(q) xi_1
+///   held, and in discrete time:  sqrt(q) xi_1, the same in the whole sampling interval
 ///
-/// The line has the joint distribution of white noise in its integral over the interval and in the integral of that: velocity and
-/// displacement of a free mass are exact.
+/// The line has the joint distribution of white noise in its integral over h and in the integral of that: velocity and displacement
+/// of a free mass are exact.
 struct ParticleNoise {
   int state = 0;          // the row of its value; of a white one the row of its rate follows
   bool white = false;     // in continuous time
@@ -30,7 +31,7 @@ struct ParticleModel {
   int starts = 0;  // random initial states: parameters from `first_start` on are their standard normal numbers
   int first_start = 0;
   std::vector<ParticleNoise> noises;
-  int numbers = 0;  // that a particle takes for a sampling interval
+  int numbers = 0;  // that a particle takes for a step
   /// Records: per channel the log density of its sample, of the declared unit.
   std::shared_ptr<SimulationProgram const> densities;
 };

@@ -85,6 +85,7 @@ class ParticleTrajectory::Recorder {
 
   ParticleView view() {
     ParticleView made;
+    if (picks_ > 0) made.moved = [this](IntervalMeans const& means) { add_averages(means); };
     made.predicted = [this](PredictedParticles const& particles) { predicted(particles); };
     made.weighed = [this](WeighedParticles const& particles) { weighed(particles); };
     made.resampled = [this](std::span<int const> ancestors, std::span<double const> weights) {
@@ -117,7 +118,6 @@ class ParticleTrajectory::Recorder {
 
   void predicted(PredictedParticles const& particles) {
     int const sample = particles.sample;
-    if (picks_ > 0 && sample > 0) add_averages(sample - 1, particles.states);
     Lanes const own = lanes_.states();
     for (int s = 0; s < own.rows(); ++s) std::copy_n(particles.states.row(s).begin(), own.width(), own.row(s).begin());
     records_ = lanes_.record(sample);
@@ -220,24 +220,17 @@ class ParticleTrajectory::Recorder {
     ancestry_.forget(particles.sample, particles.weights);
   }
 
-  /// Of the interval that begins with `sample`: as its noises are at its end.
-  void add_averages(int sample, ConstLanes states) {
+  void add_averages(IntervalMeans const& means) {
     LaneArray values(static_cast<int>(of_.smoothed_.size()), of_.particles_);
-    Schedule const& schedule = of_.densities_.schedule();
-    double const step = schedule.time(sample + 1) - schedule.time(sample);
     bool any = false;
     for (std::size_t q = 0; q < of_.smoothed_.size(); ++q) {
       Smoothed const& shown = of_.smoothed_[q];
       if (shown.kind != Smoothed::Kind::average) continue;
-      ParticleNoise const& noise = of_.model_->noises[static_cast<std::size_t>(shown.index)];
       double const size = sizes_[static_cast<std::size_t>(shown.index)];
-      if (noise.observed) continue;  // drawn anew for the next interval before anybody looks
       any = true;
-      for (int w = 0; w < of_.particles_; ++w)
-        values(static_cast<int>(q), w) =
-            size * (states(noise.state, w) - (noise.white ? 0.5 * step * states(noise.state + 1, w) : 0));
+      for (int w = 0; w < of_.particles_; ++w) values(static_cast<int>(q), w) = size * means.values(shown.index, w);
     }
-    if (any) ancestry_.add(averages, sample, std::move(values));
+    if (any) ancestry_.add(averages, means.sample, std::move(values));
   }
 
   void emit(int kind, int sample, ConstLanes values, std::span<int const> origin, std::span<double const> weights) {

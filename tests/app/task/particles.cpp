@@ -209,3 +209,11 @@ TEST_CASE("too few particles are a finding, and the states of a random walk lie 
   CHECK(among_findings(summary, "likelihood_too_noisy"));
   CHECK(among_findings(summary, "particles_degenerate"));
 }
+
+TEST_CASE("a solver that does not draw white noise anew in its steps says so") {
+  std::string const fit = " = fit relaxing to d with mh(samples = 40, burn_in = 20), filter = particle, particles = 64, seed = 1";
+  CaseRun const run(relaxing + "steps" + fit + ", substeps = 2\nlines" + fit + ", solver = exponential\n",
+                    {{"d.csv", relaxation(1, 0.5, 3, 20, false)}});
+  CHECK_FALSE(among_findings(run.summary("steps"), "noise_in_lines"));
+  CHECK(among_findings(run.summary("lines"), "noise_in_lines"));
+}

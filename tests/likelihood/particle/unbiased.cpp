@@ -181,6 +181,40 @@ model relaxation {
   CHECK(found.relative_sd < 1);
 }
 
+TEST_CASE("particles: white noise is drawn anew in each step of the solver, which a fast force needs") {
+  Model model = parsed_model(R"(
+model gust {
+  input e
+  state w
+  initial w = 0
+  parameter s ~ log_uniform(0.1, 10)
+  parameter size ~ log_uniform(0.1, 10)
+  constant lifetime = 0.05
+  w' = -w/lifetime + e
+  observe force ~ normal(w, sd = 0.3)
+}
+)");
+  disturb(model, "size");
+  random_start(model, 0, "s");
+  Experiment experiment;
+  experiment.name = "record";
+  experiment.measured = {{2.5, -2.8, 2.2, 1.6, -3.2, 0.4, -1.9, 2.6, -2.3, 0.9}};  // far out, where the variance counts most
+  for (std::size_t i = 0; i < experiment.measured[0].size(); ++i) experiment.time.push_back(0.2 * static_cast<double>(i));
+  experiment.scored.assign(experiment.time.size(), 1);
+  double const s = 1.5, size = s * std::sqrt(2 / 0.05);
+  Linear system{Eigen::MatrixXd{{-1 / 0.05}}, Eigen::VectorXd::Zero(1), Eigen::MatrixXd{{size * size}}, Eigen::VectorXd{{0.0}},
+                Eigen::MatrixXd{{s * s}}};
+  double const sure = joint_density(joint(system, experiment.time), experiment, Eigen::MatrixXd{{1}}, {0.3});
+  // The force dies off within a quarter of a sampling interval. One line for the whole interval has 0.9 of its variance: the
+  // likelihood of this record would be half of what it is.
+  SolverSettings solver;
+  solver.substeps = 8;
+  Bias const found = bias(*particle_target(model, {experiment}, 256, solver), {s, size}, sure, 10000, 15);
+  MESSAGE("z " << found.z << ", sd of an estimate " << found.relative_sd << " of the likelihood");
+  CHECK(std::fabs(found.z) < 3);
+  CHECK(found.relative_sd < 1);
+}
+
 namespace {
 
 std::string autoregression(std::string const& noise) {
