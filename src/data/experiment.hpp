@@ -33,9 +33,11 @@ class InputSignal {
   /// otherwise.
   InputSignal(InputRule rule, std::vector<double> time, std::vector<double> samples);
 
-  /// A straight line of its own on each interval, from begin[i] to end[i], [N] each; what the samples are is its begin. Its rule is
-  /// zero_order, whose curves jump at samples as this one does.
-  static InputSignal lines(std::vector<double> time, std::vector<double> begin, std::vector<double> const& end);
+  /// Straight lines on each interval, one on each of its `pieces` equal parts, from begin[i pieces + k] to end[i pieces + k],
+  /// [N x pieces] each; what the samples are is the first begin. Its rule is zero_order, whose curves jump at samples as this one
+  /// does. With several pieces there are no `coefficients`.
+  static InputSignal lines(std::vector<double> time, std::vector<double> const& begin, std::vector<double> const& end,
+                           int pieces = 1);
 
   InputRule rule() const { return record_->rule; }
   /// Degree of the polynomials.
@@ -48,8 +50,9 @@ class InputSignal {
   double sample(int row) const { return record_->samples[static_cast<std::size_t>(first_ + row)]; }
   /// c_0 ... c_degree of interval i in [0, rows() - 2].
   std::span<double const> coefficients(int interval) const;
-  /// Value at s in [0, 1] of interval i in [0, rows() - 2]; at s = 1 the limit from the left.
-  double value(int interval, double s) const;
+  /// Value at s in [0, 1] of interval i in [0, rows() - 2]; at s = 1 the limit from the left, and so where the curve jumps within
+  /// the interval, if `from_left`.
+  double value(int interval, double s, bool from_left = false) const;
   /// Time derivative there; under zero_order it does not exist (the checker refuses its use) and reads 0.
   double rate(int interval, double s) const;
 
@@ -67,9 +70,11 @@ class InputSignal {
   struct Record {
     InputRule rule;
     int degree;
+    int pieces = 1;                                   // polynomials in an interval, each over its own [0, 1]
     bool ends_at_samples = true;                      // an interval ends in the next sample
-    std::vector<double> time, samples, coefficients;  // [N], [N], [N - 1 x degree + 1]
+    std::vector<double> time, samples, coefficients;  // [N], [N], [N - 1 x pieces x degree + 1]
   };
+  std::span<double const> piece(int interval, int piece) const;
 
   std::shared_ptr<Record const> record_;
   int first_ = 0;

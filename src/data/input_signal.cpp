@@ -34,27 +34,44 @@ InputSignal::InputSignal(InputRule rule, std::vector<double> time, std::vector<d
   record_ = std::move(record);
 }
 
-InputSignal InputSignal::lines(std::vector<double> time, std::vector<double> begin, std::vector<double> const& end) {
-  InputSignal result(InputRule::zero_order, std::move(time), std::move(begin));
+InputSignal InputSignal::lines(std::vector<double> time, std::vector<double> const& begin, std::vector<double> const& end,
+                               int pieces) {
+  auto const each = static_cast<std::size_t>(pieces);
+  std::vector<double> samples;
+  for (std::size_t i = 0; i < time.size(); ++i) samples.push_back(begin[i * each]);
+  InputSignal result(InputRule::zero_order, std::move(time), std::move(samples));
   Record record = *result.record_;
   record.degree = 1;
+  record.pieces = pieces;
   record.ends_at_samples = false;
   record.coefficients.clear();
-  for (std::size_t i = 0; i + 1 < record.samples.size(); ++i)
-    record.coefficients.insert(record.coefficients.end(), {record.samples[i], end[i] - record.samples[i]});
+  for (std::size_t k = 0; k + each < begin.size(); ++k)
+    record.coefficients.insert(record.coefficients.end(), {begin[k], end[k] - begin[k]});
   result.record_ = std::make_shared<Record const>(std::move(record));
   return result;
 }
 
-std::span<double const> InputSignal::coefficients(int interval) const {
+std::span<double const> InputSignal::piece(int interval, int piece) const {
   auto const count = static_cast<std::size_t>(record_->degree + 1);
-  return std::span(record_->coefficients).subspan(static_cast<std::size_t>(first_ + interval) * count, count);
+  return std::span(record_->coefficients)
+      .subspan(static_cast<std::size_t>((first_ + interval) * record_->pieces + piece) * count, count);
 }
 
-double InputSignal::value(int interval, double s) const {
+std::span<double const> InputSignal::coefficients(int interval) const {
+  if (record_->pieces > 1) throw InternalError("an interval of several pieces has no polynomial");
+  return piece(interval, 0);
+}
+
+double InputSignal::value(int interval, double s, bool from_left) const {
   // The next sample itself, not the sum of the coefficients, which is off in the last bit.
   if (s == 1 && record_->degree > 0 && record_->ends_at_samples) return sample(interval + 1);
-  std::span<double const> const c = coefficients(interval);
+  int which = 0;
+  if (int const pieces = record_->pieces; pieces > 1) {
+    double const at = s * pieces;
+    which = std::clamp(static_cast<int>(from_left ? std::ceil(at) - 1 : std::floor(at)), 0, pieces - 1);
+    s = at - which;
+  }
+  std::span<double const> const c = piece(interval, which);
   double result = c.back();
   for (std::size_t p = c.size() - 1; p-- > 0;) result = result * s + c[p];
   return result;

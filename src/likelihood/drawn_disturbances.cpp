@@ -7,7 +7,7 @@
 
 namespace sysid {
 
-DrawnDisturbances draw_disturbances(Model model, ConstLanes parameters, Experiment experiment, StreamKey key) {
+DrawnDisturbances draw_disturbances(Model model, ConstLanes parameters, Experiment experiment, StreamKey key, int pieces) {
   constexpr std::uint64_t starts = 1u << 20;
   Graph& graph = model.graph;
   auto const value = [&](NodeId id) {
@@ -29,14 +29,16 @@ DrawnDisturbances draw_disturbances(Model model, ConstLanes parameters, Experime
     double const intensity = value(disturbance.intensity);
     Stream stream(key.with_step(d));
     std::vector<double> begin, end;
-    for (std::size_t i = 0; i < experiment.time.size(); ++i) {
-      bool const white = continuous && !disturbance.held && i + 1 < experiment.time.size();
-      double const sd = std::sqrt(white ? intensity / (experiment.time[i + 1] - experiment.time[i]) : intensity);
-      double const mean = sd * stream.normal(), slope = white ? sd * std::sqrt(3.0) * stream.normal() : 0;
-      begin.push_back(mean - slope);
-      end.push_back(mean + slope);
-    }
-    experiment.inputs.push_back(continuous ? InputSignal::lines(experiment.time, std::move(begin), end)
+    int const lines = continuous && !disturbance.held ? pieces : 1;
+    for (std::size_t i = 0; i < experiment.time.size(); ++i)
+      for (int k = 0; k < lines; ++k) {
+        bool const white = continuous && !disturbance.held && i + 1 < experiment.time.size();
+        double const sd = std::sqrt(white ? intensity * lines / (experiment.time[i + 1] - experiment.time[i]) : intensity);
+        double const mean = sd * stream.normal(), slope = white ? sd * std::sqrt(3.0) * stream.normal() : 0;
+        begin.push_back(mean - slope);
+        end.push_back(mean + slope);
+      }
+    experiment.inputs.push_back(continuous ? InputSignal::lines(experiment.time, begin, end, lines)
                                            : InputSignal(InputRule::zero_order, experiment.time, std::move(begin)));
     Quantity input = disturbance;
     input.name += " (drawn)";

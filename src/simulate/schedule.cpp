@@ -115,7 +115,7 @@ double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const
   double const interval = time(sample + 1) - time(sample);
   switch (leaf.kind) {
     case LeafKind::input:
-      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].value(sample, s);
+      return experiment_.inputs[static_cast<std::size_t>(leaf.index)].value(sample, s, place == 1);
     case LeafKind::input_rate:
       return experiment_.inputs[static_cast<std::size_t>(leaf.index)].rate(sample, s);
     case LeafKind::time:

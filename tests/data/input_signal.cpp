@@ -258,3 +258,14 @@ TEST_CASE("a whole sample of delay moves the samples, and a view keeps its rows"
     CHECK(late.sample(2) == doctest::Approx(8).epsilon(1e-12));
   }
 }
+
+TEST_CASE("input signals: lines on pieces of an interval jump between the pieces") {
+  InputSignal const signal = InputSignal::lines({0, 2, 3}, {1, 5, 7, 9, 0, 0}, {2, 6, 8, 10, 0, 0}, 2);
+  CHECK(signal.sample(1) == 7);
+  CHECK(signal.value(0, 0) == 1);
+  CHECK(signal.value(0, 0.25) == 1.5);
+  CHECK(signal.value(0, 0.5) == 5);
+  CHECK(signal.value(0, 0.5, true) == 2);
+  CHECK(signal.value(0, 1) == 6);
+  CHECK(signal.view(1, 2).value(0, 0.75) == 9.5);
+}

@@ -254,7 +254,8 @@ class SizesApart {
     for (std::size_t e = 0; e < made.size(); ++e) {
       LaneArray parameters(static_cast<int>(model_.parameters.size()), 1);
       space_.select(values, static_cast<int>(e), parameters);
-      DrawnDisturbances drawn = draw_disturbances(model_, parameters, along_[e], {1, Purpose::disturbance, e, 0});
+      DrawnDisturbances drawn = draw_disturbances(model_, parameters, along_[e], {1, Purpose::disturbance, e, 0},
+                                                  solver.fixed_step() ? solver.substeps : 1);
       auto const compiled = compile(std::move(drawn.model), preflight_.compiled->free_start, preflight_.what.solver.method);
       Trajectory const trajectory(compiled, drawn.experiment, solver, start_rows(preflight_.what.start),
                                   preflight_.session.abandonable());

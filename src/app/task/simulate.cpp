@@ -221,7 +221,8 @@ class Simulate {
   }
 
   void draw_what_is_random() {
-    DrawnDisturbances drawn = draw_disturbances(model(), parameters_, experiment_, {seed_, Purpose::disturbance, series_, 0});
+    DrawnDisturbances drawn = draw_disturbances(model(), parameters_, experiment_, {seed_, Purpose::disturbance, series_, 0},
+                                                what_.solver.fixed_step() ? what_.solver.substeps : 1);
     experiment_ = std::move(drawn.experiment);
     compiled_ = compile(std::move(drawn.model), false, what_.solver.method);
   }
