@@ -161,30 +161,38 @@ std::shared_ptr<CompiledModel const> compile(Model model, bool free_start, std::
   return compiled;
 }
 
-std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compiled, Graph grown,
-                                                      std::span<NodeId const> per_channel) {
+namespace {
+
+/// The model with a graph that has more expressions; add: what of them is summed and recorded.
+template <class Add>
+std::shared_ptr<SimulationProgram const> compile_grown(CompiledModel const& compiled, Graph grown, Add const& add) {
   Model model = compiled.model;
   model.graph = std::move(grown);
   Folded folded(model, keeps_unknowns(compiled));
   ModelSource const of = source_of(folded, compiled);
   SimulationSource source = of.dynamics;
-  for (NodeId const expression : per_channel) source.channels.push_back(of.channel(source.channels.size(), {folded(expression)}));
+  add(folded, of, source);
   return finish(folded, std::move(source));
+}
+
+}  // namespace
+
+std::shared_ptr<SimulationProgram const> compile_sums(CompiledModel const& compiled, Graph grown,
+                                                      std::span<NodeId const> per_channel) {
+  return compile_grown(compiled, std::move(grown), [&](Folded& folded, ModelSource const& of, SimulationSource& source) {
+    for (NodeId const expression : per_channel) source.channels.push_back(of.channel(source.channels.size(), {folded(expression)}));
+  });
 }
 
 std::shared_ptr<SimulationProgram const> compile_records(CompiledModel const& compiled, Graph grown,
                                                          std::span<NodeId const> per_channel) {
-  Model model = compiled.model;
-  model.graph = std::move(grown);
-  Folded folded(model, keeps_unknowns(compiled));
-  ModelSource const of = source_of(folded, compiled);
-  SimulationSource source = of.dynamics;
-  for (std::size_t c = 0; c < per_channel.size(); ++c) {
-    source.channels.push_back(of.channel(c, {}));
-    source.records.push_back(folded(per_channel[c]));
-    source.recorded_at.push_back(of.recorded_with(c));
-  }
-  return finish(folded, std::move(source));
+  return compile_grown(compiled, std::move(grown), [&](Folded& folded, ModelSource const& of, SimulationSource& source) {
+    for (std::size_t c = 0; c < per_channel.size(); ++c) {
+      source.channels.push_back(of.channel(c, {}));
+      source.records.push_back(folded(per_channel[c]));
+      source.recorded_at.push_back(of.recorded_with(c));
+    }
+  });
 }
 
 std::shared_ptr<SimulationProgram const> compile_densities(CompiledModel const& compiled, bool ahead) {

@@ -5,12 +5,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "inference/chain/mh.hpp"
 #include "inference/chain/tempering.hpp"
 #include "inference/nuts/nuts.hpp"
 #include "inference/targets.hpp"
+#include "replications.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -195,8 +195,7 @@ using Run = FitResult (*)(Target const&, Settings const&, RunContext&);
 
 /// The largest chi-square over the parameters of ranks in five bins: of 4 degrees of freedom.
 double worst_chi_square(Problem const& problem, Settings const& settings, Run run) {
-  char const* const asked = std::getenv("SYSID_REPLICATIONS");
-  int const count = asked != nullptr ? std::atoi(asked) : problem.replications;
+  int const count = replications(problem.replications);
   constexpr std::size_t bins = 5;
   std::vector<std::vector<int>> ranks(static_cast<std::size_t>(problem.dimension), std::vector<int>(bins));
   for (int r = 0; r < count; ++r) {

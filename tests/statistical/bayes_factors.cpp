@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "core/numeric/random.hpp"
 #include "core/numeric/statistics.hpp"
@@ -13,6 +12,7 @@
 #include "inference/evidence/component.hpp"
 #include "likelihood/model_target.hpp"
 #include "load/load.hpp"
+#include "replications.hpp"
 #include "search/laplace.hpp"
 #include "search/search.hpp"
 
@@ -156,8 +156,7 @@ with_quadratic = fit quadratic to bench.train with mh(samples = 25000, burn_in =
 
 // SYSID_REPLICATIONS=20 takes walks twenty times as long.
 TEST_CASE("log Bayes factors of the 5 % Duffing record equal those by stepping stones within 0.2, and within their errors") {
-  char const* const asked = std::getenv("SYSID_REPLICATIONS");
-  int const steps = 100 * (asked == nullptr ? 1 : std::max(1, std::atoi(asked)));
+  int const steps = 100 * replications(1);
   auto const folder = std::filesystem::path(SYSID_SOURCE_DIR) / "models/duffing";
   std::string text = read_file(folder / "duffing_5pct.sysid");
   for (char const* each : {"truth = ", "forecast = ", "redrawn  = "}) text = with(text, each, "# " + std::string(each));

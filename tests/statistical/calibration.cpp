@@ -3,13 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 
 #include "calibrating.hpp"
 #include "core/text/number.hpp"
 #include "fits.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "replications.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 
@@ -17,11 +17,6 @@ using namespace sysid;
 using nlohmann::json;
 
 namespace {
-
-int replications(int unless_asked) {
-  char const* const asked = std::getenv("SYSID_REPLICATIONS");
-  return asked != nullptr ? std::atoi(asked) : unless_asked;
-}
 
 /// A model with its data block, and the record whose inputs, rows and missing samples are used.
 struct CalibrationCase {

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 
 #include "inference/chain/mh.hpp"
@@ -11,6 +10,7 @@
 #include "inference/nuts/nuts.hpp"
 #include "inference/targets.hpp"
 #include "load/load.hpp"
+#include "replications.hpp"
 #include "search/hierarchy/standardised.hpp"
 
 namespace sysid::testing::hierarchy {
@@ -97,8 +97,7 @@ FitResult fit(std::string const& prior, std::vector<double> const& data, bool lo
 /// The largest chi-square over the parameters of ranks in five bins: of 4 degrees of freedom.
 double worst_chi_square(std::string const& prior, bool logarithmic, Settings const& settings, Run run) {
   constexpr std::size_t bins = 5;
-  char const* const asked = std::getenv("SYSID_REPLICATIONS");
-  int const count = asked != nullptr ? std::atoi(asked) : 10;
+  int const count = replications(10);
   ParameterSpace const space = space_of(prior);
   std::vector<std::vector<int>> ranks(static_cast<std::size_t>(space.dimension()), std::vector<int>(bins));
   for (int r = 0; r < count; ++r) {

@@ -6,33 +6,17 @@
 
 #include <cmath>
 
+#include "app/disturbed/shaken_record.hpp"
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
 
 using namespace sysid;
+using namespace sysid::testing;
 using json = nlohmann::json;
 
 namespace {
 
 bool contains(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
-
-/// m y'' + c y' + k y = x + w: a force of sd 1 held over 10 ms, and one of `unmeasured` times that.
-std::string oscillator_record(std::uint64_t seed, double unmeasured) {
-  Stream stream({seed, Purpose::test});
-  constexpr int fine = 50, samples = 400;
-  double const rate = 100, step = 1 / rate / fine, m = 1, c = 1, k = 400;
-  double y = 0, v = 0;
-  std::string text = "t,x,y\n";
-  for (int i = 0; i < samples; ++i) {
-    double const x = stream.normal(), w = unmeasured * stream.normal();
-    text += fmt::format("{},{},{}\n", i / rate, x, y + 2e-5 * stream.normal());
-    for (int j = 0; j < fine; ++j) {
-      v += step * (x + w - c * v - k * y) / m;
-      y += step * v;
-    }
-  }
-  return text;
-}
 
 std::string const plain = R"(
 model shaken {
@@ -73,7 +57,7 @@ struct Pair {
 }  // namespace
 
 TEST_CASE("a record with an unmeasured force prefers the disturbance, and the answer says what it changes") {
-  Pair pair(oscillator_record(5, 0.05));
+  Pair pair(shaken_record(5, 0.05, 400));
   pair.run();
   std::string const said = pair.out.str();
   INFO(said);
@@ -101,14 +85,14 @@ TEST_CASE("a record with an unmeasured force prefers the disturbance, and the an
 }
 
 TEST_CASE("a record without an unmeasured force does not prefer the disturbance") {
-  Pair pair(oscillator_record(6, 0));
+  Pair pair(shaken_record(6, 0, 400));
   pair.run();
   INFO(pair.out.str());
   CHECK_FALSE(contains(pair.out.str(), "prefers the model with the disturbance"));
 }
 
 TEST_CASE("a fit whose model can have no disturbance is fitted without one where others can") {
-  Pair pair(oscillator_record(5, 0.05));
+  Pair pair(shaken_record(5, 0.05, 400));
   pair.run(plain + R"(
 model heavy {
   input x [N]
@@ -159,7 +143,7 @@ model rig {
 data bench { file "b.csv"; time t [s]; input x = x [N] hold zero_order; measure d = y [m] }
 post = fit rig to bench with map, seed = 1
 )";
-  Pair pair(oscillator_record(5, 0.05));
+  Pair pair(shaken_record(5, 0.05, 400));
   pair.run(text);
   std::string const said = pair.out.str();
   INFO(said);
@@ -173,7 +157,7 @@ post = fit rig to bench with map, seed = 1
 }
 
 TEST_CASE("a fit that would write over the results of another task is left as it is") {
-  Pair pair(oscillator_record(5, 0.05));
+  Pair pair(shaken_record(5, 0.05, 400));
   std::string const both = plain + "post_with_disturbance = fit shaken to bench with map, seed = 2\n";
   pair.run(both);
   CHECK(contains(pair.notices.str(), "post: fitted without a disturbance only: `post_with_disturbance` would be the name"));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <numbers>
 
@@ -14,6 +13,7 @@
 #include "core/numeric/random.hpp"
 #include "core/numeric/statistics.hpp"
 #include "criteria/leave_out.hpp"
+#include "replications.hpp"
 #include "report/file/number_table.hpp"
 #include "report/page/comparison.hpp"
 
@@ -165,13 +165,12 @@ Deviation deviation_from_refits(Case const& of, std::uint64_t seed) {
 
 // SYSID_REPLICATIONS=20 takes so many of each kind of record.
 TEST_CASE("leave-future-out equals refits of the shorter records within its error, on two kinds of record") {
-  char const* const asked = std::getenv("SYSID_REPLICATIONS");
-  int const replications = asked == nullptr ? 1 : std::atoi(asked);
+  int const records = replications(1);
   for (auto* const kind : {&autoregression, &decay}) {
     CAPTURE(kind == &decay);
     std::vector<double> deviations;
     int blocks = 0;
-    for (int r = 1; r <= replications; ++r) {
+    for (int r = 1; r <= records; ++r) {
       CAPTURE(r);
       auto const seed = static_cast<std::uint64_t>(10 * r);
       Deviation const each = deviation_from_refits(kind(seed), seed);
@@ -179,10 +178,9 @@ TEST_CASE("leave-future-out equals refits of the shorter records within its erro
       blocks += each.blocks;
     }
     double const size = std::sqrt(squared_deviations(deviations, 0) / static_cast<double>(deviations.size()));
-    MESSAGE("leave-future-out against refits, in their common error: rms ", size, " of ", replications, " with ", blocks,
-            " blocks");
-    CHECK(blocks >= (replications < 10 ? 0.4 : 0.8) * 5 * replications);
-    if (replications >= 10) CHECK(size < 1.6);
+    MESSAGE("leave-future-out against refits, in their common error: rms ", size, " of ", records, " with ", blocks, " blocks");
+    CHECK(blocks >= (records < 10 ? 0.4 : 0.8) * 5 * records);
+    if (records >= 10) CHECK(size < 1.6);
   }
 }
 

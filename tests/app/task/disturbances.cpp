@@ -6,11 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/disturbed/shaken_record.hpp"
 #include "app/running.hpp"
 #include "app/tables.hpp"
 #include "core/numeric/random.hpp"
 
 using namespace sysid;
+using namespace sysid::testing;
 using json = nlohmann::json;
 
 namespace {
@@ -47,24 +49,6 @@ model well {
 }
 data d { file "d.csv"; time t [s]; measure m = m }
 )";
-
-/// m y'' + c y' + k y = x + w: a force of sd 1 held over 10 ms, one in twenty of its size unmeasured.
-std::string sampled_oscillator(std::uint64_t seed, double unmeasured) {
-  Stream stream({seed, Purpose::test});
-  constexpr int fine = 50, samples = 600;
-  double const rate = 100, step = 1 / rate / fine, m = 1, c = 1, k = 400;
-  double y = 0, v = 0;
-  std::string text = "t,x,y\n";
-  for (int i = 0; i < samples; ++i) {
-    double const x = stream.normal(), w = unmeasured * stream.normal();
-    text += fmt::format("{},{},{}\n", i / rate, x, y + 2e-5 * stream.normal());
-    for (int j = 0; j < fine; ++j) {
-      v += step * (x + w - c * v - k * y) / m;
-      y += step * v;
-    }
-  }
-  return text;
-}
 
 std::string const shaken = R"(
 model shaken {
@@ -155,7 +139,7 @@ TEST_CASE("a fit says where the linearisation of its filter decides the result, 
 }
 
 TEST_CASE("an unmeasured force is estimated, and without it the parameters are surer than they may be") {
-  std::string const data = sampled_oscillator(5, 0.05);
+  std::string const data = shaken_record(5, 0.05, 600);
   std::string const task = "post = fit shaken to bench.train with map, seed = 1\n";
   CaseRun const with_force(shaken + task, {{"b.csv", data}});
   json const summary = with_force.summary("post");
@@ -181,7 +165,7 @@ TEST_CASE("free predictions know the rows before them and widen; one step ahead 
       "first = predict post on bench.test with draws(100), prediction = steps(1), seed = 1\n"
       "third = predict post on bench.test with draws(100), prediction = steps(3), seed = 1\n"
       "all = predict post on bench.test with draws(100), prediction = steps(300), seed = 1\n";
-  CaseRun const run(text, {{"b.csv", sampled_oscillator(5, 0.05)}});
+  CaseRun const run(text, {{"b.csv", shaken_record(5, 0.05, 600)}});
   auto const score = [&](std::string const& task, std::string const& name) {
     return run.summary(task).at("fit").at(name).get<double>();
   };
@@ -220,7 +204,7 @@ TEST_CASE("a prediction has the errors that inputs have in its own data, not tho
       "exact = predict post on bench.test with draws(50), seed = 1\n"
       "open = predict post on noisy.test with draws(50), seed = 1\n"
       "step = predict post on noisy.test with draws(50), prediction = one_step, seed = 1\n";
-  CaseRun const run(text, {{"b.csv", sampled_oscillator(5, 0)}});
+  CaseRun const run(text, {{"b.csv", shaken_record(5, 0, 600)}});
   CHECK_FALSE(run.summary("exact").at("settings").contains("prediction"));
   CHECK(run.summary("open").at("settings").at("prediction").get<std::string>().starts_with("free_run: "));
   CHECK(run.summary("step").at("settings").at("prediction").get<std::string>().starts_with("one_step: "));
@@ -230,7 +214,7 @@ TEST_CASE("a simulation draws its disturbances") {
   std::string const text = with(shaken, "observe d [m] ~ normal(y, sd = 2e-5)", "observe d [m] ~ normal(y, sd = 1e-9)") +
                            "made = simulate shaken with values(m = 1, c = 1, k = 400, q = 1e-4), input x = sine(amplitude = 0, "
                            "frequency = 1 [Hz]), samples = 4000, rate = 100 [Hz], substeps = 4, seed = 4, file = \"made.csv\"\n";
-  CaseRun const run(text, {{"b.csv", sampled_oscillator(5, 0)}});
+  CaseRun const run(text, {{"b.csv", shaken_record(5, 0, 600)}});
   // The stationary sd of the displacement of a white force: sqrt(q/(2 c k)).
   std::istringstream lines(run.file("made/made.csv"));
   double sum = 0, count = 0;

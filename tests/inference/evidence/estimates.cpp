@@ -7,17 +7,13 @@
 
 #include "inference/evidence/evidence.hpp"
 #include "inference/evidence/known.hpp"
+#include "replications.hpp"
 #include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
 
 namespace {
-
-int replications(int few) {
-  char const* const asked = std::getenv("SYSID_REPLICATIONS");
-  return asked != nullptr ? std::atoi(asked) : few;
-}
 
 std::vector<Mode> modes_of(Target const& target) {
   Bench bench;
