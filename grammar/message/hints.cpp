@@ -34,7 +34,7 @@ bool begins_with_verb(Gap const& gap) {
 
 constexpr std::array<Situation, 35> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
-     "in a dictionary a parameter is unknown or has a value, but no prior: `parameter m [kg]`, `parameter m [kg] = 1`"},
+     "a parameter has a prior or a value: `parameter m [kg] ~ log_uniform(0.1, 10)`, `parameter m [kg] = 1`"},
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
      "a prior is written `parameter name ~ uniform(lower, upper)`"},
     {[](Gap const& g) { return g.wanted.starts_with("a distribution") && g.begins_with("parameter"); },

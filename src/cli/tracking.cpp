@@ -98,7 +98,7 @@ Work declare_track(CLI::App& verb) {
       ->delimiter(',')
       ->type_name("NAMES");
   verb.add_option("--drift", options->drift,
-                  "sd of a parameter's change, as a fraction of its value, in 1000 rows or a time (0.05/day)")
+                  "sd of the change of a parameter in 1000 rows, as a fraction of its value; or in a time, such as 0.05/day")
       ->type_name("DRIFT")
       ->check([&track](std::string const& text) { return read_drift(text, track.drift); })
       ->default_str("0.01");

@@ -98,11 +98,9 @@ Findings leave_out_noise(Model const& model, Prediction& prediction) {
   });
   if (gone.empty()) return {};
   std::string const quoted = fmt::format("`{}`", fmt::join(gone, "`, `"));
-  return {
-      {FindingCode::reads_noise, Severity::note, std::move(gone),
-       fmt::format("left out of the bands, because a selection by distance does not estimate the noise on which they depend: {}",
-                   quoted),
-       ""}};
+  return {{FindingCode::reads_noise, Severity::note, std::move(gone),
+           fmt::format("left out, because they depend on the noise, which a selection by distance does not estimate: {}", quoted),
+           ""}};
 }
 
 Findings band_findings(Prediction const& prediction, int failed, int failed_elsewhere, bool several) {

@@ -256,7 +256,7 @@ Findings forecast_findings(CheckedDictionary const& dictionary, std::vector<Diff
       continue;
     lost(
         fmt::format("the rms error of a free run of `{}` on {} is {} % of the standard deviation of its samples; the errors of the "
-                    "equation and of its coefficients explain {} %",
+                    "equation and of its coefficients explain an error of only {} %",
                     target, held_out, percent(*each.free_run, each.sd), percent(*each.expected, each.sd)),
         "the equation predicts the next sample, but not the motion: look for missing terms or lags; where the samples are noisy "
         "and "

@@ -341,8 +341,9 @@ class ModelText {
       std::string const state = primed_name(dictionary().states[s].name, measured.order);
       if (double const growth = source_.growth.empty() ? 0 : source_.growth[c]; growth > 0) {
         double const mean_square = mean_square_of(c) + growth * growth;
-        parameters += fmt::format("parameter {} ~ log_uniform({}, {})  # of the larger of the signal and what stands beside it\n",
-                                  name, rounded(low / std::sqrt(mean_square)), rounded(high / std::sqrt(mean_square)));
+        parameters += fmt::format(
+            "parameter {} ~ log_uniform({}, {})  # relative to the larger of the signal and the constant beside it in `observe`\n",
+            name, rounded(low / std::sqrt(mean_square)), rounded(high / std::sqrt(mean_square)));
         observed += fmt::format("observe {0} ~ normal({1}, sd = {2}*sqrt({1}^2 + ({3}{4})^2))\n", channel.name, state, name,
                                 rounded(from_si(channel.unit, growth)), in_brackets(channel.unit_text()));
         continue;

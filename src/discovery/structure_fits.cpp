@@ -256,7 +256,8 @@ void StructureFits::refine() {
     else if (!fits_[m].fit.converged)
       fits_[m].failure = "its fit does not converge";
     else if (!std::isfinite(log_prior_of_inner(m)))
-      fits_[m].failure = "its fit takes a parameter inside terms to where the prior is zero: is it at a bound?";
+      fits_[m].failure =
+          "its fit moves a parameter inside a term to a value where its prior is zero: check the bounds of this prior";
   }
 }
 

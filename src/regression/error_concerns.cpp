@@ -31,9 +31,9 @@ Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::Vecto
   } else if (coloured && errors.size() < short_of_average * runs) {
     Concern concern{.kind = Concern::Kind::short_runs, .value = static_cast<double>(errors.size()) / runs};
     concern.clause = fmt::format(
-        "missing samples leave {:.1f} rows in sequence on average: the moving average of the noise may have come out too short, "
+        "missing samples leave {:.1f} rows in sequence on average: the estimated moving average of the noise may be too short, "
         "with "
-        "a lag too many in its place",
+        "an unnecessary lagged term in its place",
         concern.value);
     concerns.push_back(std::move(concern));
   }

@@ -21,7 +21,7 @@ Form const form_rows[] = {
     {"measured", "each derivative is measured in its own channel", {}, &no_refusal, &measured::project},
 };
 
-Form const samples{"samples", "terms of samples before, the noise a moving average", difference::settings(), &no_refusal,
+Form const samples{"samples", "terms of earlier samples; the noise is a moving average", difference::settings(), &no_refusal,
                    &difference::project};
 
 }  // namespace

@@ -18,8 +18,8 @@ namespace {
 SelectorRow const selector_rows[] = {
     {"spike_slab", "posterior probabilities of terms and of sets of terms", "inclusion probability", spike_slab::settings(),
      &no_refusal, &spike_slab::choose},
-    {"reversible_jump", "chains over sets of terms by birth, death and exchange of terms, with errors", "inclusion probability",
-     reversible_jump::settings(), &reversible_jump::refuse, &reversible_jump::choose},
+    {"reversible_jump", "chains over sets of terms by birth, death and exchange of terms, with Monte Carlo errors",
+     "inclusion probability", reversible_jump::settings(), &reversible_jump::refuse, &reversible_jump::choose},
     {"ard", "a prior precision for each coefficient, chosen such that the evidence is largest", "contribution", ard::settings(),
      &no_refusal, &ard::choose},
     {"threshold", "removes the term with the smallest contribution, repeatedly", "contribution", threshold::settings(), &no_refusal,

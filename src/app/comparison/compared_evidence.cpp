@@ -178,8 +178,8 @@ std::vector<std::string> prior_width_notes(std::vector<std::string> const& model
                                    range.all ? "one prior or all priors are" : "one prior is");
     if (!range.by.empty()) note += fmt::format("; the prior of `{}` changes it most", range.by);
     if (!range.unknown.empty())
-      note += fmt::format("; the draws do not show what the {} of {} {}", plural("prior", range.unknown.size()),
-                          quoted(range.unknown), range.unknown.size() == 1 ? "does" : "do");
+      note += fmt::format("; the draws do not show what effect the {} of {} {}", plural("prior", range.unknown.size()),
+                          quoted(range.unknown), range.unknown.size() == 1 ? "has" : "have");
     notes.push_back(std::move(note));
   }
   return notes;

@@ -178,7 +178,8 @@ std::string text_with_disturbance(DisturbedEquation const& equation, Disturbance
                                                           declared(equation.name + "_rms", size.unit), parameter, size.step);
   std::string const about =
       fmt::format("what acts in this equation and was not measured; its prior spans 1e-4 to 10 times the rms of {}{}",
-                  equation.discrete ? "what it determines" : "what moves it", equation.white() ? ", in means over a sample" : "");
+                  equation.discrete ? "the state that it determines" : "its term with the highest derivative",
+                  equation.white() ? ", compared as means over a sampling interval" : "");
   std::string const right = equation.right.empty()  ? equation.name
                             : equation.right_closed ? fmt::format("{} + {}", equation.right, equation.name)
                                                     : fmt::format("({}) + {}", equation.right, equation.name);

@@ -142,13 +142,14 @@ std::vector<DisturbanceSize> disturbance_sizes(Session& like, Task const& fit, s
       size.size = std::max(size.size, rms[d] / unit.scale);
     }
     if (!(size.size > 0) || !std::isfinite(size.size))
-      throw UserError(
-          {Severity::error,
-           "",
-           fmt::format("how large a disturbance may be is not known: the fit `{}` does not move this equation", fit.name),
-           Label{equation.place, {}},
-           {},
-           "declare it yourself, with a prior of its intensity: `disturbance w ~ white(intensity = q)`"});
+      throw UserError({Severity::error,
+                       "",
+                       fmt::format("the size of a disturbance cannot be estimated: in the fit `{}` the term of this equation with "
+                                   "the highest derivative is zero or not finite",
+                                   fit.name),
+                       Label{equation.place, {}},
+                       {},
+                       "declare it yourself, with a prior of its intensity: `disturbance w ~ white(intensity = q)`"});
     sizes.push_back(std::move(size));
   }
   return sizes;

@@ -61,9 +61,9 @@ std::string sizes(OrderedJson const& with, std::vector<DisturbedEquation> const&
       std::string const part = name.substr(0, name.size() - quantity.size());
       if (auto const value = estimate(with, name))
         text += fmt::format("{}{}: {}{} {}\n", part, each.name, with_sd(*value), unit_after_number(value->unit),
-                            each.discrete   ? "rms from sample to sample"
+                            each.discrete   ? "rms of its samples"
                             : !each.white() ? "rms"
-                            : by_rms        ? "rms in a sampling interval"
+                            : by_rms        ? "rms of its mean over a sampling interval"
                                             : "intensity");
       break;
     }
@@ -81,7 +81,8 @@ std::string changes(OrderedJson const& without, OrderedJson const& with) {
                     known ? fmt::format("{:+.1f}", (after->mean - before->mean) / after->sd) : "-",
                     known && before->sd > 0 ? significant(after->sd / before->sd, 2) : "-"});
   }
-  return "what the disturbance changes; shift: of the mean, in sds of the fit with it\n\n" + align_columns(rows, 2);
+  return "what the disturbance changes; shift: change of the mean, in sds of the fit with the disturbance\n\n" +
+         align_columns(rows, 2);
 }
 
 }  // namespace

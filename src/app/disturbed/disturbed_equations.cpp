@@ -26,14 +26,14 @@ void require_open(Model const& model, Task const& fit) {
                   "fit it as it is, and a model without the disturbance beside it; `sysid compare` compares both");
   if (!model.processes.empty())
     throw refused(model.processes.front().span,
-                  fmt::format("{} has a Gaussian process, with which no disturbance can stand in one model", name),
+                  fmt::format("{} has a Gaussian process, which cannot be combined with a disturbance", name),
                   "give the function a range, `within = (low, high)`, which makes it a finite sum");
   if (!model.unknowns.empty() || model.implicit)
     throw refused(model.unknowns.empty() ? fit.span : model.unknowns.front().span,
                   fmt::format("{} has equations that cannot be solved for the highest derivatives, which no filter takes", name),
                   "write the model with ordinary differential equations");
   if (model.dynamics == Dynamics::none)
-    throw refused(fit.span, fmt::format("the rows of {} are independent: nothing could carry a disturbance on", name),
+    throw refused(fit.span, fmt::format("{} has no states: a disturbance in one row would not affect later rows", name),
                   "a disturbance acts on states");
   for (Channel const& channel : model.channels)
     if (!channel.noise.row->gaussian || channel.noise.lower || channel.noise.upper)

@@ -19,12 +19,13 @@ namespace {
 void require_free_name(CheckedFile const& file, Task const& fit) {
   for (Task const& other : file.tasks)
     if (other.name == changed_name(fit.name))
-      throw UserError({Severity::error,
-                       "",
-                       fmt::format("`{}` would be the name of this fit with a disturbance, and another task has it", other.name),
-                       Label{other.span, {}},
-                       {},
-                       "give that task another name"});
+      throw UserError(
+          {Severity::error,
+           "",
+           fmt::format("this fit with a disturbance would have the name `{}`, but another task has this name already", other.name),
+           Label{other.span, {}},
+           {},
+           "give that task another name"});
 }
 
 /// Those whose model can have a disturbance; the others are named in a notice. UserError where there is none.

@@ -138,8 +138,8 @@ std::unique_ptr<Target> FittedParticles::with_solver(std::shared_ptr<ParameterSp
 
 std::string FittedParticles::chosen() const {
   std::string const number = fmt::format(
-      "{} particles: the log likelihood has an sd of {:.2g} between estimates at the mode, and up to {:.2g} at three in "
-      "four places around it",
+      "{} particles: the log likelihood has an sd of {:.2g} between estimates at the mode, and at most {:.2g} at three quarters "
+      "of the places around it",
       need_.particles, need_.sd, around_);
   return what_.particles_because.empty() ? number
                                          : fmt::format("filter = particle, because {}; {}", what_.particles_because, number);
@@ -226,10 +226,10 @@ std::optional<Finding> FittedParticles::check_estimates(ConstLanes draws) const 
                   need_.particles, large_sd, many, draws.width(), largest, parameter.name, draws(farthest, worst),
                   unit_after_number(parameter.unit)),
       fmt::format("use more particles, `particles = {}` or more, or a prior without such places{}", 4 * need_.particles,
-                  all_normal
-                      ? "; where the noise of a sensor is small against what a disturbance moves within a sampling interval, "
-                        "`filter = unscented` is the better filter"
-                      : "")};
+                  all_normal ? "; if the noise of a sensor is small compared with the motion that a disturbance causes within a "
+                               "sampling interval, "
+                               "`filter = unscented` is the better filter"
+                             : "")};
 }
 
 std::optional<Finding> FittedParticles::check_lines() const {
@@ -237,13 +237,13 @@ std::optional<Finding> FittedParticles::check_lines() const {
   for (std::size_t d = 0; d < model_.disturbances.size(); ++d)
     if (particle_model_->noises[d].white) white.push_back(model_.disturbances[d].name);
   if (white.empty() || (solver_->fixed_step() && !solver_->row().exact)) return std::nullopt;
-  return Finding{
-      FindingCode::noise_in_lines, Severity::note, white,
-      fmt::format("with `solver = {}` the white noise {} is one straight line between two samples: motion that dies off within a "
-                  "sampling interval gets too little of its variance",
-                  solver_->method, listed(white)),
-      "where the motion may be that fast, use `solver = rk4(substeps = 4)`, in whose steps noise is drawn anew, or "
-      "`filter = unscented`"};
+  return Finding{FindingCode::noise_in_lines, Severity::note, white,
+                 fmt::format("with `solver = {}` the white noise {} is a straight line between two samples: the variance of motion "
+                             "that decays within a "
+                             "sampling interval is underestimated",
+                             solver_->method, listed(white)),
+                 "where the motion may be that fast, use `solver = rk4(substeps = 4)`, which draws new noise in each step, or "
+                 "`filter = unscented`"};
 }
 
 Findings FittedParticles::check(std::vector<LaneArray> const& parameters, ConstLanes draws) const {
@@ -259,7 +259,7 @@ Findings FittedParticles::check(std::vector<LaneArray> const& parameters, ConstL
         {FindingCode::particles_degenerate,
          effective < hardly_any ? Severity::warning : Severity::note,
          {along.name},
-         fmt::format("at row {}{} the sample leaves {:.1f} of {} particles with weight: the states that are left there "
+         fmt::format("at row {}{} only {:.1f} of {} particles are effective after the sample: the different states that remain "
                      "are few",
                      along.first_row + outcome.least_effective_at, data_.size() > 1 ? " of " + along.name : "", effective,
                      need_.particles),

@@ -137,7 +137,7 @@ class SizesApart {
     if (!sizes.noise.empty()) {
       std::vector<std::string> names;
       for (int const k : sizes.noise) names.push_back(name(k));
-      text += to < 0                  ? fmt::format(", and {} at none", listed(names))
+      text += to < 0                  ? fmt::format(", and {} at no size of {}", listed(names), info.name)
               : to == sizes_tried - 1 ? fmt::format(", and {} beside it at any size", listed(names))
                                       : fmt::format(", and {} where {} is below {}", listed(names), info.name, about(to));
     }

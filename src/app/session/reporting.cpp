@@ -215,7 +215,7 @@ std::optional<Diagnostic> otherwise(Session const& session, Task const& task, st
     return result_error("E6208", fmt::format("the results in `{}` were computed with another {}", folder.string(), what),
                         std::move(help));
   };
-  if (summary.value("verb", "") != verb) return refuse("verb");
+  if (summary.value("verb", "") != verb) return refuse("command");
   if (summary.at("versions").value("model_sha256", "") != task_digest(session, task))
     return refuse("text of " + task_row(task).name(session, task));
   std::vector<ExperimentUse> const experiments = task_row(task).experiments(task);

@@ -83,7 +83,7 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
   auto const stored = read(path_);
   if (!stored) return nullptr;
   if (stored->at("who") != who())
-    throw refused("E6208", path_, "belongs to another text, data, seed or verb",
+    throw refused("E6208", path_, "belongs to a run with another text of the file, other data, another seed or another command",
                   "restore the files of that run, or start again with --force");
   return std::make_shared<json const>(stored->at("content"));
 }

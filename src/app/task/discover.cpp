@@ -287,7 +287,7 @@ class Discover {
                          significant(each.value, 3), unit_after_number(each.unit), draws,
                          significant(inner.quantity.from_si(prior.front()), 3),
                          significant(inner.quantity.from_si(prior.back()), 3)),
-             "check the prior and its unit; if it is right, another term acts. The fit in `found.sysid` weighs the prior"});
+             "check the prior and its unit; if they are right, a term is missing. The fit in `found.sysid` includes the prior"});
       }
   }
 

@@ -225,7 +225,7 @@ std::optional<InnerParameter> DictionaryChecker::inner_parameter(ParameterInfo c
   if (use->lower) out.lower = number(*use->lower);
   if (use->upper) out.upper = number(*use->upper);
   if (all) return out;
-  diagnostics_.add(errors::inner_prior(prior.span, name.text, "reads other parameters"));
+  diagnostics_.add(errors::inner_prior(prior.span, name.text, "depends on other parameters"));
   return std::nullopt;
 }
 

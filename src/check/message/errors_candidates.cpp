@@ -111,10 +111,11 @@ Diagnostic distance_lacks_channel(Span span, std::string const& channel) {
 
 Diagnostic distances_of_two_kinds(Span span, std::string const& one, Unit const& unit, std::string const& other,
                                   Unit const& other_unit) {
-  return about(
-      {one, other, "rmse"},
-      error("E6513", span, fmt::format("`rmse` cannot add `{}` {} and `{}` {}", one, measure(unit), other, measure(other_unit)),
-            "use `nmse`, which has no unit, or give one of them weight 0: `weights(" + other + " = 0)`"));
+  return about({one, other, "rmse"},
+               error("E6513", span,
+                     fmt::format("`rmse` cannot add `{}`, which is {}, and `{}`, which is {}", one, measure(unit), other,
+                                 measure(other_unit)),
+                     "use `nmse`, which has no unit, or give one of them weight 0: `weights(" + other + " = 0)`"));
 }
 
 Diagnostic expressions_of_two_units(Span second, Unit const& unit, Span first, Unit const& first_unit) {

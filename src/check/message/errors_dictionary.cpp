@@ -70,32 +70,33 @@ Diagnostic coefficient_of_two_targets(Span target, std::string const& parameter)
 }
 
 Diagnostic coefficient_inside(Span term, std::string const& text) {
-  return about(
-      {text},
-      error("E6605", term, fmt::format("`{}` is not linear in a parameter that has no value", text),
-            "a term has at most one parameter without a value, as a factor: `k*y`; give the others a prior, over which they "
-            "are looked for inside the term, or a value"));
+  return about({text}, error("E6605", term, fmt::format("`{}` is not linear in a parameter that has no value", text),
+                             "a term has at most one parameter without a value, as a factor: `k*y`; give every other parameter a "
+                             "value, or a prior: it is then "
+                             "estimated inside the term"));
 }
 
 Diagnostic inner_prior(Span prior, std::string const& parameter, std::string const& why) {
-  return about({parameter}, error("E6617", prior, fmt::format("the prior of `{}` {}", parameter, why),
-                                  "a parameter inside terms is searched for over its prior: give it a proper one with numbers, as "
-                                  "`uniform(0, 1)` or `log_uniform(0.01, 10)`"));
+  return about(
+      {parameter},
+      error("E6617", prior, fmt::format("the prior of `{}` {}", parameter, why),
+            "a parameter inside terms is searched for over its prior: give it a proper prior whose arguments are numbers, such as "
+            "`uniform(0, 1)` or `log_uniform(0.01, 10)`"));
 }
 
 Diagnostic inner_scales(Span term, std::string const& text, std::string const& parameter, std::string const& declared) {
   return about({text, parameter},
-               error("E6617", term, fmt::format("`{}` only scales `{}`, whose coefficient is looked for", parameter, text),
+               error("E6617", term, fmt::format("`{}` only scales `{}`, which already has an unknown coefficient", parameter, text),
                      fmt::format("declare `parameter {}` without a prior, or leave it out of the term", declared)));
 }
 
 Diagnostic inner_in_target(Span target, std::string const& text, std::string const& parameter, std::string const& declared) {
-  return about(
-      {text, parameter},
-      error("E6617", target, fmt::format("`{}` has a prior and stands in the target `{}`", parameter, text),
-            fmt::format("parameters with priors stand inside terms; in a target declare `parameter {}` without a prior, as a "
-                        "factor, or with a value",
-                        declared)));
+  return about({text, parameter},
+               error("E6617", target, fmt::format("`{}` has a prior and stands in the target `{}`", parameter, text),
+                     fmt::format("a parameter with a prior can be used only inside terms; for the target declare `parameter {}` "
+                                 "without a prior and use it as a "
+                                 "factor, or give it a value",
+                                 declared)));
 }
 
 Diagnostic state_without_channel(Span state, std::string const& name) {

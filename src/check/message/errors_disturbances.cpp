@@ -90,10 +90,10 @@ Diagnostic rate_of_disturbance(ast::Reference const& reference) {
 }
 
 Diagnostic white_noise_observed(Span reader, Subject const& what, Span declaration, std::string const& disturbance) {
-  Diagnostic diagnostic =
-      error("E3306", reader, fmt::format("{} depends on white noise, which has no finite variance", what.words),
-            fmt::format("give `{}` a memory, `ornstein_uhlenbeck(sd = s, time = T)`, or use what it reaches only through a state",
-                        disturbance));
+  Diagnostic diagnostic = error("E3306", reader, fmt::format("{} depends on white noise, which has no finite variance", what.words),
+                                fmt::format("give `{}` a memory, `ornstein_uhlenbeck(sd = s, time = T)`, or use a quantity that it "
+                                            "affects only through a state, such as a velocity in place of an acceleration",
+                                            disturbance));
   diagnostic.secondary.push_back({declaration, "white noise"});
   Names names = what.names;
   names.push_back(disturbance);
@@ -175,21 +175,22 @@ Diagnostic noise_of_filter(Span channel, std::string const& name, std::string co
 }
 
 Diagnostic steps_ahead_of_known(Span option, std::string const& model) {
-  return about({model},
-               error("E3320", option, fmt::format("the states of `{}` are known: no sample corrects them on the way", model),
-                     "remove the option, or declare what was not measured: `disturbance w ~ white(intensity = q)`"));
+  return about({model}, error("E3320", option,
+                              fmt::format("model `{}` has no random states: the samples do not correct its prediction", model),
+                              "remove the option, or declare what was not measured: `disturbance w ~ white(intensity = q)`"));
 }
 
 Diagnostic steps_ahead_of_several(Span option) {
-  return error("E3320", option, "several models at once are not predicted a number of rows ahead",
+  return error("E3320", option, "a prediction a given number of rows ahead is possible with one model only",
                "predict with each fit alone, or write `prediction = one_step` or `free_run`");
 }
 
 Diagnostic likelihood_by_particles(Span place, Subject const& what, std::string const& help) {
   Names names = what.names;
   names.insert(names.end(), {"filter", "particle"});
-  return about(names, error("E3319", place,
-                            fmt::format("{}: particles give estimates of the likelihood, which are random", what.words), help));
+  return about(names,
+               error("E3319", place,
+                     fmt::format("{}, but `filter = particle` gives only random estimates of the likelihood", what.words), help));
 }
 
 Diagnostic particles_of_other_filter(Span option, std::string const& filter) {

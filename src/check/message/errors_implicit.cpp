@@ -23,7 +23,7 @@ constexpr std::string_view other_solvers = "remove the option, or use `rk4`, `do
 Diagnostic solver_of_linear_equations(Span option, std::string const& solver, std::optional<Span> const& part, bool varies) {
   Diagnostic result{Severity::error,
                     "E3020",
-                    varies ? fmt::format("`{}` needs coefficients of the states that do not change in time", solver)
+                    varies ? fmt::format("`{}` needs linear equations whose coefficients are constant in time", solver)
                            : fmt::format("`{}` needs equations that are linear in the states", solver),
                     Label{option, {}},
                     {},

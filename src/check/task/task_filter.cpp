@@ -76,7 +76,8 @@ void TaskChecker::filter(ast::Option const& option, FilterRule& rule) {
 void TaskChecker::report_needless_filter(FilterRule filter) {
   if (particles_ && filter != FilterRule::particle && !diagnostics_.has_errors(before_))
     diagnostics_.add(errors::particles_of_other_filter(*particles_, std::string(filter_name(filter))));
-  if (filter_ && !filter_needed_ && !diagnostics_.has_errors(before_)) diagnostics_.add(errors::filter_of_nothing(*filter_, tree_.subject.text));
+  if (filter_ && !filter_needed_ && !diagnostics_.has_errors(before_))
+    diagnostics_.add(errors::filter_of_nothing(*filter_, tree_.subject.text));
 }
 
 std::vector<double> TaskChecker::input_errors(std::vector<ExperimentUse> const& experiments, Model const& model) {
@@ -219,9 +220,9 @@ void TaskChecker::refuse_particles(FitTask const& task, Model const& fitted) {
         place_of_option(task.backend), {fmt::format("`{}` needs the likelihood itself", backend->name), {task.backend}},
         "sample with `mh`" + otherwise));
   if (task.start.kind == StartRule::Kind::estimated)
-    diagnostics_.add(errors::likelihood_by_particles(
-        place_of_option("start"), {"a start that is estimated from rows follows a likelihood", {"start"}},
-        "give the initial values a prior, `initial y ~ normal(0, sd = s)`" + otherwise));
+    diagnostics_.add(
+        errors::likelihood_by_particles(place_of_option("start"), {"`start = estimated` needs the likelihood itself", {"start"}},
+                                        "give the initial values a prior, `initial y ~ normal(0, sd = s)`" + otherwise));
 }
 
 void TaskChecker::suit_forecast(std::vector<FitTask const*> const& fits, PredictTask const& task) {
@@ -234,8 +235,8 @@ void TaskChecker::suit_forecast(std::vector<FitTask const*> const& fits, Predict
           "predict with each fit by itself"));
     if (task.start.kind == StartRule::Kind::estimated)
       return diagnostics_.add(errors::likelihood_by_particles(
-          place_of_option("start"), {"a start that is estimated from rows follows a likelihood", {"start"}},
-          "remove the option: the rows before those that are predicted tell the states"));
+          place_of_option("start"), {"`start = estimated` needs the likelihood itself", {"start"}},
+          "remove the option: the states are then estimated from the rows before the predicted ones"));
   }
 }
 

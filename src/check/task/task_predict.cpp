@@ -210,7 +210,7 @@ void TaskChecker::average(std::vector<FitTask const*> const& fits, std::vector<s
 
 void TaskChecker::suit_average(std::vector<FitTask const*> const& fits, PredictTask const& task) {
   auto const name = [&](std::size_t k) -> ast::Name const& { return k == 0 ? tree_.subject : tree_.others[k - 1]; };
-  std::string const others = "`weights = equal` needs nothing of the fits";
+  std::string const others = "or write `weights = equal`, which needs neither evidences nor scores";
   for (std::size_t k = 0; k < fits.size() && task.weights != AverageWeights::equal; ++k) {
     BackendSettings const* const backend = row_named(backends_.fitting, fits[k]->backend);
     bool const by_evidence = task.weights == AverageWeights::evidence, optimum = backend != nullptr && backend->optimum;

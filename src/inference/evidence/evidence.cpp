@@ -173,7 +173,7 @@ bool temper(Target const& target, EvidenceTask const& task, std::uint64_t most, 
   evidence.effective = first.effective + second.effective;
   evidence.reason.clear();
   bool const laplace_passes = evidence.laplace && evidence.doubt.empty();
-  evidence.doubt = first.unmoved || second.unmoved ? "particles could not be moved at some powers"
+  evidence.doubt = first.unmoved || second.unmoved ? "tempered SMC could not move its particles at some powers of the likelihood"
                                                    : doubt_of_tempering(evidence, laplace_passes);
   return true;
 }

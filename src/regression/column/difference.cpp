@@ -17,7 +17,7 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"moving_average", SettingKind::integer, "-1", -1, 50, "",
-     "order of the moving average that the noise is; 0: white; -1: chosen by the record, at most 6"},
+     "order of the moving average that describes the noise; 0: white noise; -1: chosen from the record, at most 6"},
 };
 
 constexpr int most_chosen = 6;

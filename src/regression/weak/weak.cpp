@@ -17,7 +17,8 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"half_width", SettingKind::integer, "0", 0, 1e6, "",
-     "half-width of a window in samples; 0: a third of the fastest period, at least 10, or less, where too few windows are left"},
+     "half-width of a window in samples; 0: a third of the fastest period, at least 10; shorter if otherwise too few windows are "
+     "left"},
     {"step", SettingKind::integer, "0", 0, 1e6, "", "samples between windows; 0: a sixth of the half-width"},
     {"power", SettingKind::integer, "8", 4, 24, "", "exponent p of the test function (1 - s^2)^p"},
     {"reweightings", SettingKind::integer, "3", 0, 20, "",
