@@ -47,8 +47,8 @@ class Display(unittest.TestCase):
         self.assertNotIn("figures/posterior.svg", fit.files)
         self.assertIn("posterior", fit.figures)
         figure = fit.figures["posterior"]
-        xml.dom.minidom.parseString(figure._repr_svg_().encode())
-        self.assertTrue(figure.svg.startswith("<svg"))
+        xml.dom.minidom.parseString(figure.svg.encode())
+        self.assertTrue(figure._repr_html_().startswith("<img alt='posterior' width='480' style='max-width:100%' src='data:image/svg+xml;base64,"))
         self.assertLess(len(figure.svg), 100_000)
         with self.assertRaisesRegex(KeyError, "no figure 'posterio'; there are .*posterior"):
             fit.figures["posterio"]
@@ -59,6 +59,18 @@ class Display(unittest.TestCase):
         self.assertRegex(forecast, r"displacement on bench.test</td><td>0.00945</td>")
         self.assertIn("<td style='text-align:left'>posterior</td>", well_formed(sysid.compare(fit)._repr_html_()))
         self.assertIn("<td>0.091 to 0.58 %</td>", well_formed(model.check(seed=1)._repr_html_()))
+
+    def test_an_optimum_with_warnings(self):
+        model = sysid.load("models/duffing/duffing.sysid")
+        text = model.text.replace("+ k3*y^3", "").replace("  parameter k3   [N/m^3] ~ log_uniform(5e8, 5e10)\n", "")
+        text = text[: text.index("truth")] + "first = fit duffing to bench.train with map, seed = 1\n"
+        fit = sysid.loads(text, "models/duffing").fit()
+        shown = well_formed(fit._repr_html_())
+        self.assertIn("!</b> use with care: 1 warning", shown)
+        self.assertIn("<li>warning <code>residuals_not_white</code>", shown)
+        self.assertIn("<th>optimum</th><th>sd</th></tr>", shown)
+        self.assertRegex(shown, r"<td style='text-align:left'>N/m</td><td>11\d\d\d</td><td>\d\d</td></tr>")
+        self.assertIn("<td>1 warning</td>", sysid.compare(fit)._repr_html_())
 
     def test_a_discovery(self):
         text = """dictionary decaying {

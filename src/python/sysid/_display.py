@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import html
 import math
 import pathlib
@@ -47,10 +48,12 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> 
     return f"<table><thead><tr>{cells('th', head)}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def verdict(passes: bool, text: str) -> str:
+def verdict(passes: bool, text: str, found: Sequence[Mapping[str, Any]]) -> str:
     if not text:
         return ""
     mark, colour = ("✓", "#2e7d32") if passes else ("✗", "#c62828")
+    if passes and any(each["severity"] == "warning" for each in found):
+        mark, colour = "!", "#b26a00"
     return f"<p><b style='color:{colour}'>{mark}</b> {_escaped(text)}</p>"
 
 
@@ -73,15 +76,15 @@ def _parameters(parameters: Mapping[str, Mapping[str, Any]]) -> str:
     if not parameters:
         return ""
     columns = [("r-hat", "rhat", 3), ("ESS", "ess_bulk", 0)]
-    columns = [each for each in columns if any(each[1] in row for row in parameters.values())]
-    interval = any("q5" in row for row in parameters.values())
-    head = ["", "unit", "mean" if interval else "value", "sd", *(["90 % interval"] if interval else []), *(each[0] for each in columns)]
+    columns = [each for each in columns if any(row.get(each[1]) is not None for row in parameters.values())]
+    interval = any(row.get("q5") is not None for row in parameters.values())
+    head = ["", "unit", "mean" if interval else "optimum", "sd", *(["90 % interval"] if interval else []), *(each[0] for each in columns)]
     rows = []
     for name, of in parameters.items():
         sd = of.get("sd")
         row = [_escaped(name), _escaped(of.get("unit") or ""), beside(of.get("mean"), sd), significant(sd, 2)]
         if interval:
-            row.append(f"{beside(of.get('q5'), sd)} to {beside(of.get('q95'), sd)}" if "q5" in of else "")
+            row.append(f"{beside(of.get('q5'), sd)} to {beside(of.get('q95'), sd)}" if of.get("q5") is not None else "")
         rows.append(row + ["" if of.get(key) is None else f"{of[key]:.{decimals}f}" for _, key, decimals in columns])
     return table(head, rows, left=2)
 
@@ -135,8 +138,9 @@ def result(summary: Mapping[str, Any], text: str, interrupted: bool) -> str:
     parts = [f"<p><b>{_escaped(summary.get('task', ''))}</b>: {_escaped(summary.get('what', ''))}</p>"]
     if interrupted:
         parts.append("<p>interrupted: these are the draws so far</p>")
-    parts.append(verdict(of.get("pass", True), of.get("text", "")))
-    parts.append(findings(summary.get("findings", [])))
+    found = summary.get("findings", [])
+    parts.append(verdict(of.get("pass", True), of.get("text", ""), found))
+    parts.append(findings(found))
     parts.append(_models(summary.get("models", {})))
     parts.append(_equations(summary.get("discovery", {})))
     parts.append(_parameters(summary.get("parameters", {})))
@@ -167,6 +171,13 @@ def check(content: Mapping[str, Any], text: str) -> str:
     return "".join(parts)
 
 
+def _checks(fit: Mapping[str, Any]) -> str:
+    if not fit.get("pass"):
+        return "fail"
+    warnings = fit.get("warnings") or 0
+    return f"{warnings} warning{'s' if warnings > 1 else ''}" if warnings else "pass"
+
+
 def comparison(content: Mapping[str, Any], text: str) -> str:
     parts = [f"<p><b>comparison</b> on {_escaped(content.get('data', ''))}</p>"]
     fits = content.get("fits", [])
@@ -177,7 +188,7 @@ def comparison(content: Mapping[str, Any], text: str) -> str:
                 _escaped(each.get("model") or ""),
                 significant(each.get("log_evidence"), 6),
                 "" if each.get("probability") is None else f"{each['probability']:.3f}",
-                "pass" if each.get("pass") else "fail",
+                _checks(each),
             ]
             for each in fits
         ]
@@ -216,11 +227,14 @@ class Figure:
 
     def __init__(self, path: pathlib.Path) -> None:
         self.name = path.stem
-        text = path.read_text(encoding="utf-8")
-        self.svg = text[text.index("<svg") :]  #: the picture, as text; without XML's first line, which nbconvert refuses
+        self.svg = path.read_text(encoding="utf-8")  #: the picture, as text
 
-    def _repr_svg_(self) -> str:
-        return self.svg
+    def _repr_html_(self) -> str:
+        # As an image: names in it stay its own, and nbconvert 6.5 shows nothing of an SVG in the page itself.
+        picture = base64.b64encode(self.svg.encode()).decode()
+        size = re.search(r'viewBox="0 0 (\d+) (\d+)"', self.svg)
+        width = f" width='{size[1]}'" if size else ""
+        return f"<img alt='{_escaped(self.name)}'{width} style='max-width:100%' src='data:image/svg+xml;base64,{picture}'>"
 
     def save(self, path: Any) -> None:
         """Writes the picture, an SVG."""
