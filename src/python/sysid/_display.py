@@ -18,6 +18,11 @@ def _escaped(value: Any) -> str:
     return html.escape(str(value))
 
 
+def _marked(text: str) -> str:
+    """A message, whose `names` stand between back ticks."""
+    return re.sub("`([^`]+)`", r"<code>\1</code>", _escaped(text))
+
+
 def significant(value: "float | None", digits: int = 3) -> str:
     if value is None:
         return ""
@@ -54,14 +59,14 @@ def verdict(passes: bool, text: str, found: Sequence[Mapping[str, Any]]) -> str:
     mark, colour = ("✓", "#2e7d32") if passes else ("✗", "#c62828")
     if passes and any(each["severity"] == "warning" for each in found):
         mark, colour = "!", "#b26a00"
-    return f"<p><b style='color:{colour}'>{mark}</b> {_escaped(text)}</p>"
+    return f"<p><b style='color:{colour}'>{mark}</b> {_marked(text)}</p>"
 
 
 def findings(found: Sequence[Mapping[str, Any]]) -> str:
     rows = []
     for each in found:
-        help = f"<br><i>{_escaped(in_python(each['help']))}</i>" if each.get("help") else ""
-        rows.append(f"<li>{_escaped(each['severity'])} <code>{_escaped(each['code'])}</code>: {_escaped(each['message'])}{help}</li>")
+        help = f"<br><i>{_marked(in_python(each['help']))}</i>" if each.get("help") else ""
+        rows.append(f"<li>{_escaped(each['severity'])} <code>{_escaped(each['code'])}</code>: {_marked(each['message'])}{help}</li>")
     return f"<ul>{''.join(rows)}</ul>" if rows else ""
 
 
@@ -105,7 +110,7 @@ def _models(models: Mapping[str, Mapping[str, Any]]) -> str:
         return ""
     best = sorted(models.items(), key=lambda each: -(each[1].get("probability") or 0))
     rows = [
-        [_escaped(name), f"{of['probability']:.3f}" if of.get("probability", 0) >= 5e-4 else "&lt; 0.001", significant(of.get("log_evidence"), 6)]
+        [_escaped(name), f"{of['probability']:.3f}" if of.get("probability", 0) >= 5e-4 else "&lt; 0.001", "" if of.get("log_evidence") is None else f"{of['log_evidence']:.2f}"]
         for name, of in best
     ]
     evidence = any(row[2] for row in rows)
@@ -186,7 +191,7 @@ def comparison(content: Mapping[str, Any], text: str) -> str:
             [
                 _escaped(each["name"]),
                 _escaped(each.get("model") or ""),
-                significant(each.get("log_evidence"), 6),
+                "" if each.get("log_evidence") is None else f"{each['log_evidence']:.2f}",
                 "" if each.get("probability") is None else f"{each['probability']:.3f}",
                 _checks(each),
             ]
