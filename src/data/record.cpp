@@ -84,7 +84,7 @@ auto collect(Diagnostics& diagnostics, std::optional<Span> mention, Read read) -
 
 std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics) {
   std::optional<Table> const table = collect(diagnostics, request.mention, [&] {
-    Table read = Table::read(request.path, request.mention);
+    Table read = Table::read(request.path, request.mention, request.shown_path);
     if (read.rows() < 2) throw UserError(data_errors::too_few_rows(read.name(), read.rows(), request.mention));
     return read;
   });
@@ -96,7 +96,7 @@ std::optional<Record> read_record(RecordRequest const& request, Table const& tab
     throw InternalError("a record without a time column needs a step");
   bool complete_record = true;
   Record record;
-  record.path = request.path;
+  record.path = request.shown_path.empty() ? request.path : request.shown_path;
   record.digest = table.digest();
   record.comments = table.comments();
   std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(table, request, whole); });

@@ -33,6 +33,7 @@ struct RecordRequest {
   bool independent_rows = false;                       // no dynamics: times in any order, and row numbers where there are none
   std::vector<InputRequest> inputs;                    // in the order of the model's inputs
   std::vector<std::optional<ColumnRequest>> measured;  // in the order of its channels; nothing: not in this data
+  std::string shown_path{};                            // what messages name in place of the path; empty: the path
 };
 
 struct Record {

@@ -184,7 +184,7 @@ bool all_numbers(std::vector<std::string> const& names) {
 
 }  // namespace
 
-Table Table::read(std::string const& path, std::optional<Span> mention) {
+Table Table::read(std::string const& path, std::optional<Span> mention, std::string const& shown_path) {
   double const size = static_cast<double>(regular_file_size(path));
   if (size > large) try {
       require_memory(fmt::format("reading `{}`", path), memory_per_byte * size,
@@ -194,7 +194,7 @@ Table Table::read(std::string const& path, std::optional<Span> mention) {
       if (mention) placed.primary = Label{*mention, {}};
       throw UserError(std::move(placed));
     }
-  return parse(path, read_regular_file(path), mention);
+  return parse(shown_path.empty() ? path : shown_path, read_regular_file(path), mention);
 }
 
 Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention, int rows_before) {

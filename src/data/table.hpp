@@ -17,8 +17,9 @@ namespace sysid {
 /// numbers.
 class Table {
  public:
-  /// IoError when the file cannot be read, UserError (at `mention`) when it is no such table.
-  static Table read(std::string const& path, std::optional<Span> mention = std::nullopt);
+  /// IoError when the file cannot be read, UserError (at `mention`) when it is no such table. shown_path: what messages name in
+  /// place of the path; empty: the path.
+  static Table read(std::string const& path, std::optional<Span> mention = std::nullopt, std::string const& shown_path = {});
   /// The same for bytes at hand, which messages call `name`. rows_before: of the file, which the bytes leave out.
   static Table parse(std::string name, std::string bytes, std::optional<Span> mention = std::nullopt, int rows_before = 0);
 

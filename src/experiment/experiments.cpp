@@ -43,10 +43,10 @@ void check_steps(Record const& record, DataBlock const& block, Model const& mode
          "E4203",
          model.step
              ? fmt::format("row {} of `{}` is {:.9g} s after the row before, but model `{}` has steps of {:.9g} s", i + 1,
-                           block.path, step, model.name, wanted)
+                           block.mention(), step, model.name, wanted)
              : fmt::format(
                    "row {} of `{}` is {:.9g} s after the row before, but the mean step is {:.9g} s: model `{}` needs equal steps",
-                   i + 1, block.path, step, wanted, model.name),
+                   i + 1, block.mention(), step, wanted, model.name),
          Label{block.time ? block.time->span : block.span, {}},
          {},
          "correct `time discrete`, or resample the record to equal steps; differences of up to 1 % of the step, such as those of "
@@ -125,6 +125,7 @@ std::string data_name(DataBlock const& block, int part) {
 RecordRequest record_request(DataBlock const& block, Model const& model, std::filesystem::path const& folder) {
   RecordRequest request;
   request.path = (folder / block.path).string();
+  request.shown_path = block.shown_path;
   request.mention = block.path_span;
   request.step = block.step > 0 ? block.step : model.step.value_or(0);
   request.independent_rows = model.dynamics == Dynamics::none;
@@ -260,7 +261,7 @@ void require_exact_steps(Experiment const& experiment, DataBlock const& block, M
         {Severity::error,
          "E4205",
          fmt::format("row {} of `{}` is {:.9g} s after the row before, but the median step is {:.9g} s: `{}` needs equal steps",
-                     experiment.first_row + static_cast<int>(odd.row), block.path, odd.step, odd.median, solver.method),
+                     experiment.first_row + static_cast<int>(odd.row), block.mention(), odd.step, odd.median, solver.method),
          Label{block.time ? block.time->span : block.span, {}},
          {},
          std::fabs(odd.step - odd.median) < 0.1 * odd.median

@@ -3,19 +3,18 @@
 
 #include <pybind11/stl.h>
 
-#include <cmath>
-#include <limits>
-
 #include "core/numeric/random.hpp"
 #include "diagnostics/tolerance/tolerance.hpp"
+#include "embed/density_values.hpp"
+#include "embed/open_file.hpp"
 #include "python/arrays.hpp"
 #include "python/interrupts.hpp"
-#include "python/open_file.hpp"
 
 namespace sysid::python {
 namespace {
 
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
+using embed::OpenDensity;
+using embed::OpenFile;
 
 /// Without the interpreter lock, with errors raised and Ctrl-C heard.
 template <class Work>
@@ -33,79 +32,23 @@ auto counted(OpenDensity& of, Work&& work) {
   return result;
 }
 
-enum class Part { prior, likelihood, both };
-
-Part part_of(std::string const& name) {
-  if (name == "prior") return Part::prior;
-  if (name == "likelihood") return Part::likelihood;
-  return Part::both;
-}
-
-/// The lanes whose coordinates are all finite. Values outside a prior's support have none.
-std::vector<int> usable_lanes(ConstLanes theta) {
-  std::vector<int> lanes;
-  for (int w = 0; w < theta.width(); ++w) {
-    bool finite = true;
-    for (int p = 0; p < theta.rows(); ++p) finite = finite && std::isfinite(theta(p, w));
-    if (finite) lanes.push_back(w);
-  }
-  return lanes;
-}
-
-LaneArray columns(ConstLanes all, std::vector<int> const& lanes) {
-  LaneArray some(all.rows(), static_cast<int>(lanes.size()));
-  for (int p = 0; p < all.rows(); ++p)
-    for (std::size_t w = 0; w < lanes.size(); ++w) some(p, static_cast<int>(w)) = all(p, lanes[w]);
-  return some;
-}
-
-std::vector<double> log_density(OpenDensity const& of, ConstLanes theta, Part part, bool jacobian, Ledger& ledger) {
-  Target const& target = of.target();
-  std::vector<double> prior(static_cast<std::size_t>(theta.width())), likelihood(prior);
-  if (part != Part::likelihood) target.log_prior(theta, prior, jacobian);
-  if (part != Part::prior) target.log_likelihood(theta, likelihood, ledger);
-  for (std::size_t w = 0; w < prior.size(); ++w) {
-    prior[w] += likelihood[w];
-    if (std::isnan(prior[w])) prior[w] = minus_infinity;
-  }
-  return prior;
+embed::Part part_of(std::string const& name) {
+  if (name == "prior") return embed::Part::prior;
+  if (name == "likelihood") return embed::Part::likelihood;
+  return embed::Part::both;
 }
 
 Array log_density_of(OpenDensity& of, Array const& values, bool declared, std::string const& part) {
   LaneArray const given = lanes_of(values, of.target().dimension());
   return array_of(counted(of, [&](Ledger& ledger) {
-    LaneArray theta = given;
-    if (declared) of.target().unconstrain(given, theta);
-    std::vector<int> const usable = usable_lanes(theta);
-    if (static_cast<int>(usable.size()) == theta.width()) return log_density(of, theta, part_of(part), !declared, ledger);
-    std::vector<double> all(static_cast<std::size_t>(theta.width()), minus_infinity);
-    std::vector<double> const some = log_density(of, columns(theta, usable), part_of(part), !declared, ledger);
-    for (std::size_t i = 0; i < usable.size(); ++i) all[static_cast<std::size_t>(usable[i])] = some[i];
-    return all;
+    return declared ? embed::declared_log_density(of.target(), given, part_of(part), ledger)
+                    : embed::log_density(of.target(), given, part_of(part), ledger);
   }));
 }
 
-struct ValueAndGradient {
-  std::vector<double> value;
-  LaneArray gradient;
-};
-
 py::tuple value_and_gradient(OpenDensity& of, Array const& theta_array) {
   LaneArray const theta = lanes_of(theta_array, of.target().dimension());
-  ValueAndGradient const found = counted(of, [&](Ledger& ledger) {
-    Target const& target = of.target();
-    std::vector<double> value(static_cast<std::size_t>(theta.width())), prior(value);
-    LaneArray gradient(theta.rows(), theta.width()), of_prior(theta.rows(), theta.width());
-    target.log_likelihood_gradient(theta, value, gradient, ledger);
-    target.log_prior_gradient(theta, prior, of_prior);
-    for (int w = 0; w < theta.width(); ++w) {
-      auto const lane = static_cast<std::size_t>(w);
-      value[lane] += prior[lane];
-      if (!std::isfinite(value[lane])) value[lane] = minus_infinity;
-      for (int p = 0; p < theta.rows(); ++p) gradient(p, w) = std::isfinite(value[lane]) ? gradient(p, w) + of_prior(p, w) : 0;
-    }
-    return ValueAndGradient{std::move(value), std::move(gradient)};
-  });
+  auto const found = counted(of, [&](Ledger& ledger) { return embed::log_density_with_gradient(of.target(), theta, ledger); });
   return py::make_tuple(array_of(found.value), array_of(found.gradient));
 }
 
@@ -225,7 +168,7 @@ bool prepare(OpenDensity& of, std::uint64_t seed) {
 void bind_density(py::module_& module) {
   py::class_<OpenDensity>(module, "Density")
       .def(py::init([](std::shared_ptr<OpenFile> file, std::string const& task, int threads) {
-             return std::make_unique<OpenDensity>(std::move(file), task, threads);
+             return interruptible(file->source(), [&] { return std::make_unique<OpenDensity>(file, task, threads); });
            }),
            py::arg("file"), py::arg("task"), py::arg("threads"), py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("dimension", [](OpenDensity const& of) { return of.target().dimension(); })

@@ -5,14 +5,28 @@
 #include "check/checked/task_kinds.hpp"
 #include "core/numeric/instruction_set.hpp"
 #include "core/system/interrupt.hpp"
+#include "embed/open_file.hpp"
 #include "python/density.hpp"
-#include "python/open_file.hpp"
+#include "python/interrupts.hpp"
+#include "python/language.hpp"
 #include "python/tasks.hpp"
 
 namespace sysid::python {
 namespace {
 
 namespace py = pybind11;
+using embed::OpenFile;
+using embed::Raised;
+
+/// Ctrl-C before it is open stops it.
+std::shared_ptr<OpenFile> open(std::string const& path, std::optional<std::string> const& text,
+                               std::map<std::string, std::string> const& records) {
+  Interrupts interrupts;
+  interrupts.stop_if_requested();
+  auto file = std::make_shared<OpenFile>(path, text, records);
+  interrupts.stop_if_requested();
+  return file;
+}
 
 /// Names and verbs, in the order of the file.
 py::list tasks(OpenFile const& file) {
@@ -53,14 +67,15 @@ PYBIND11_MODULE(_engine, module) {
   module.attr("version") = SYSID_VERSION;
   module.def("instruction_set", [] { return std::string(name(instruction_set())); });
   py::class_<OpenFile, std::shared_ptr<OpenFile>>(module, "File")
-      .def(py::init<std::string const&, std::optional<std::string> const&, std::map<std::string, std::string> const&>(),
-           py::arg("path"), py::arg("text"), py::arg("records"), py::call_guard<py::gil_scoped_release>())
+      .def(py::init(&open), py::arg("path"), py::arg("text"), py::arg("records"), py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("warnings", &OpenFile::warnings)
       .def_property_readonly("path", [](OpenFile const& file) { return file.source().name(0); })
       .def_property_readonly("text", [](OpenFile const& file) { return std::string(file.source().text(0)); })
       .def_property_readonly("tasks", &tasks)
-      .def_property_readonly("data", &data);
+      .def_property_readonly("data", &data)
+      .def_property_readonly("models", &typeset_models);
   bind_density(module);
+  bind_language(module);
   bind_tasks(module);
 }
 

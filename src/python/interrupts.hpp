@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/system/interrupt.hpp"
-#include "python/errors.hpp"
+#include "embed/errors.hpp"
 
 namespace sysid::python {
 
@@ -33,7 +33,7 @@ template <class Work>
 auto interruptible(Source const& source, Work&& work) {
   Interrupts interrupts;
   interrupts.stop_if_requested();
-  auto result = guarded(source, [&] {
+  auto result = embed::guarded(source, [&] {
     try {
       return work();
     } catch (Interrupted const&) {

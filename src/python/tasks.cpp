@@ -9,15 +9,20 @@
 #include "app/comparison/compare.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/run/pipeline.hpp"
+#include "app/run/report_results.hpp"
+#include "embed/open_file.hpp"
 #include "exchange/export_netcdf.hpp"
 #include "python/arrays.hpp"
 #include "python/interrupts.hpp"
-#include "python/open_file.hpp"
 #include "report/page/check_page.hpp"
 #include "report/page/comparison.hpp"
 
 namespace sysid::python {
 namespace {
+
+using embed::guarded;
+using embed::OpenFile;
+using embed::Raised;
 
 /// Tells an object of Python, which has the methods begin(what, total), advance(done, note) and end(finished).
 class TellsPython final : public Progress {
@@ -50,12 +55,13 @@ struct Asked {
   std::string output;
   std::optional<std::uint64_t> seed;
   int threads = 0;
-  bool force = false, resume = false, figures = true;
+  bool temporary = false, force = false, resume = false, figures = true;
   double checkpoint_interval = 30;
 
   RunOptions options() const {
     RunOptions run;
     run.output = output;
+    run.temporary_output = temporary;
     run.seed = seed;
     run.force = force;
     run.resume = resume;
@@ -155,20 +161,28 @@ py::tuple compare_folders(std::vector<std::string> const& folders) {
   return py::make_tuple(comparison_text(comparison), comparison_json(comparison));
 }
 
+/// Draws the figures of a task's folder, as SVG.
+void draw_figures(std::string const& folder) {
+  py::gil_scoped_release const released;
+  Source const nothing("sysid", "");
+  guarded(nothing, [&] { redraw_figures(folder, {FigureFormat::svg}); });
+}
+
 }  // namespace
 
 void bind_tasks(py::module_& module) {
   py::class_<Asked>(module, "Asked")
-      .def(py::init([](std::string output, std::optional<std::uint64_t> seed, int threads, bool force, bool resume, bool figures,
-                       double checkpoint_interval) {
-             return Asked{std::move(output), seed, threads, force, resume, figures, checkpoint_interval};
+      .def(py::init([](std::string output, bool temporary, std::optional<std::uint64_t> seed, int threads, bool force, bool resume,
+                       bool figures, double checkpoint_interval) {
+             return Asked{std::move(output), seed, threads, temporary, force, resume, figures, checkpoint_interval};
            }),
-           py::arg("output"), py::arg("seed") = py::none(), py::arg("threads") = 0, py::arg("force") = false,
-           py::arg("resume") = false, py::arg("figures") = true, py::arg("checkpoint_interval") = 30);
+           py::arg("output"), py::arg("temporary") = false, py::arg("seed") = py::none(), py::arg("threads") = 0,
+           py::arg("force") = false, py::arg("resume") = false, py::arg("figures") = true, py::arg("checkpoint_interval") = 30);
   module.def("run", &run, py::arg("file"), py::arg("names"), py::arg("asked"), py::arg("progress"));
   module.def("check", &check, py::arg("file"), py::arg("asked"));
   module.def("inference_data", &inference_data, py::arg("file"), py::arg("folder"), py::arg("asked"), py::arg("draws"));
   module.def("compare", &compare_folders, py::arg("folders"));
+  module.def("draw_figures", &draw_figures, py::arg("folder"));
 }
 
 }  // namespace sysid::python

@@ -252,9 +252,11 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
              "experiment",    "typeset",        "report/figure",   "report/page",  "app/session",
              "app/preflight", "app/comparison", "app/calibration", "app/tracking", "app/catalogue",
              "app/run",       "app/disturbed",  "exchange",        "repl",         "lsp"}},
+    {"embed", {"core", "syntax", "likelihood", "check/checked", "load", "experiment", "app/session", "app/density"}},
+    {"library", {"core", "embed"}},
     {"python",
-     {"core", "syntax", "likelihood", "check/checked", "load", "experiment", "diagnostics/tolerance", "report/page", "app/session",
-      "app/preflight", "app/comparison", "app/run", "app/density", "exchange"}},
+     {"core", "syntax", "check/checked", "diagnostics/tolerance", "typeset", "report/page", "app/session", "app/preflight",
+      "app/comparison", "app/catalogue", "app/run", "assist", "exchange", "embed"}},
 };
 
 /// The one room that may include headers that begin like this.

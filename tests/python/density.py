@@ -87,6 +87,46 @@ class Closed(unittest.TestCase):
         self.assertTrue(np.isfinite(density[0]))
         self.assertEqual(list(density[1:]), [-np.inf] * 3)
 
+    def test_at_the_edge_of_a_closed_support(self):
+        at, within = self.model.log_density([[2.0, 0.01], [2.0, 0.01 * (1 + 1e-9)]], declared=True)
+        self.assertAlmostEqual(at / within, 1, places=6)
+        at, within = self.model.log_density([[2.0, 10.0], [2.0, 10 * (1 - 1e-9)]], declared=True)
+        self.assertAlmostEqual(at / within, 1, places=6)
+        priors = {
+            "uniform(-1, 2)": [(-1.0, -np.log(3)), (2.0, -np.log(3)), (2.1, -np.inf)],
+            "half_normal(sd = 1)": [(0.0, np.log(2) + log_normal(0, 0, 1)), (-1e-9, -np.inf)],
+            "exponential(rate = 2)": [(0.0, np.log(2))],
+            "gamma(shape = 2, rate = 1)": [(0.0, -np.inf)],  # the density is 0 there
+            "log_normal(median = 1, log_sd = 0.5)": [(0.0, -np.inf)],
+            "uniform(0, 1)": [(0.0, 0.0), (1.0, 0.0), (np.inf, -np.inf)],
+        }
+        for prior, expected in priors.items():
+            model = sysid.loads(LINE.replace("normal(0, sd = 10)", prior), data={"u": U, "d": D})
+            values = [[value, 0.1] for value, _ in expected]
+            density = model.log_density(values, declared=True, part="prior")
+            other = -np.log(0.1) - np.log(np.log(1000))  # of sd
+            for (value, density_of_prior), found in zip(expected, density):
+                with self.subTest(prior=prior, value=value):
+                    if np.isfinite(density_of_prior):
+                        self.assertAlmostEqual(found, density_of_prior + other, places=6)
+                    else:
+                        self.assertEqual(found, -np.inf)
+
+    def test_empty_batches(self):
+        model, none = self.model, np.zeros((0, 2))
+        self.assertEqual(model.log_density(none).shape, (0,))
+        self.assertEqual(model.log_density(none, declared=True).shape, (0,))
+        self.assertEqual(model.gradient(none).shape, (0, 2))
+        self.assertEqual([each.shape for each in model.log_density_and_gradient(none)], [(0,), (0, 2)])
+        self.assertEqual(model.residuals(none).shape, (0, 21))
+        self.assertEqual([each.shape for each in model.residuals_and_jacobian(none)], [(0, 21), (0, 21, 2)])
+        self.assertEqual(model.constrain(none).shape, (0, 2))
+        self.assertEqual(model.unconstrain(none).shape, (0, 2))
+        self.assertEqual(model.simulate(none).values["d"].shape, (0, 20))
+        self.assertEqual(model.simulate(none).noisy["d"].shape, (0, 20))
+        with self.assertRaisesRegex(ValueError, r"\[W x 2\]"):
+            model.log_density(np.zeros((0, 3)))
+
     def test_gradient(self):
         theta = np.random.default_rng(2).normal(size=(20, 2))
         value, gradient = self.model.log_density_and_gradient(theta)
@@ -130,8 +170,6 @@ class Closed(unittest.TestCase):
             self.model.log_density([1.0, 2.0, 3.0])
         with self.assertRaisesRegex(ValueError, r"shape \(W, 2\)"):
             self.model.log_density(np.zeros((2, 3)))
-        with self.assertRaisesRegex(ValueError, "at least one"):
-            self.model.log_density(np.zeros((0, 2)))
 
     def test_prior_draws(self):
         draws = self.model.sample_prior(4000, seed=3)
@@ -147,7 +185,7 @@ class Closed(unittest.TestCase):
 
     def test_display(self):
         self.assertIn("slope [m/V] ~ normal(0, sd = 10)", repr(self.model))
-        self.assertIn("<td style='text-align:left'>log_uniform(0.01, 10)</td>", self.model._repr_html_())
+        self.assertIn('alttext="parameter sd [m] ~ log_uniform(0.01, 10)"', self.model._repr_html_())
 
 
 class Data(unittest.TestCase):

@@ -88,6 +88,16 @@ class Bytes(Desk):
             self.assertEqual(len(rows[0]), 301)
             self.assertEqual(*rows)
 
+    def test_arrays_name_no_temporary_table(self):
+        fits = [sysid.load("decay.sysid", data={"t": T, "d": D}).fit() for _ in range(2)]
+        self.assertEqual(files_of(fits[0].folder), files_of(fits[1].folder))
+        self.assertIn("bench (arrays)", (fits[0].folder / "draws_1.csv").read_text())
+        self.assertEqual(fits[0].summary["data"][0]["file"], "bench (arrays)")
+        check = sysid.load("decay.sysid", data={"t": T, "d": D}).check(seed=1)
+        self.assertIn("bench (arrays): rows 1..30", check.text)
+        with self.assertRaisesRegex(sysid.Error, r"`bench \(arrays\)` row 2 \(line 3\), column `t`: time does not increase"):
+            sysid.load("decay.sysid", data={"t": T[::-1], "d": D}).fit()
+
     def test_the_file_of_export(self):
         self.command_line("run", "decay.sysid", "--no-figures", "--quiet")
         self.command_line("export", "results")
@@ -116,6 +126,14 @@ class Results(Desk):
             fit.predictions
         with self.assertRaises(AttributeError):
             fit.nothing
+        forecast = model.predict()
+        self.assertEqual(list(forecast.groups()), ["predictions", "predictions_constant_data"])
+        self.assertEqual(dict(forecast.predictions.sizes), {"row": 10, "chain": 1, "draw": 20})
+        self.assertEqual(list(forecast.predictions.row.values), list(range(31, 41)))
+        self.assertFalse(hasattr(forecast, "posterior"))
+        forecast.to_netcdf("forecast.nc")
+        again = pickle.loads(pickle.dumps(forecast))
+        self.assertTrue(again.predictions.equals(forecast.predictions))
         # Draws have the density that the model as a function gives.
         log_prior = fit.sample_stats.log_prior.values[0]
         values = np.stack([fit.posterior[name].values[0] for name in model.names], axis=1)
@@ -132,8 +150,6 @@ class Results(Desk):
         self.assertFalse(fit.interrupted)
         self.assertIn("draws_1.csv", fit.files)
         self.assertEqual(len(fit.table("draws_1.csv")), 300)
-        self.assertIn("<td>rate</td>", fit._repr_html_())
-        self.assertIn(fit.verdict, fit._repr_html_())
 
     def test_pickle(self):
         fit = sysid.load("decay.sysid").fit()
@@ -169,9 +185,16 @@ class Results(Desk):
         with self.assertRaises(sysid.Error) as caught:
             model.predict(output="empty")
         self.assertEqual(caught.exception.code, "E6202")
+        self.assertIn("run the fit first: model.fit()\n", str(caught.exception))
+        self.assertIn('more: sysid.explain("E6202")', str(caught.exception))
+        self.assertTrue(sysid.explain("E6202").startswith("E6202: "))
         model.fit(output="results")
-        with self.assertRaises(sysid.Error):
+        with self.assertRaises(sysid.Error) as caught:
             model.fit(output="results")
+        self.assertEqual(caught.exception.help, "add force=True to replace them, or output=DIR to write elsewhere")
+        self.assertIn(caught.exception.help, str(caught.exception))
+        with self.assertRaisesRegex(sysid.Error, "no message `E9999`"):
+            sysid.explain("E9999")
 
     def test_options_that_are_none(self):
         model = sysid.load("decay.sysid")
@@ -281,6 +304,9 @@ choice = select shapes to bench with reversible_jump, seed = 1
         self.assertEqual(choice.text, said)
         self.assertEqual(files_of("results/choice"), files_of("of_command_line/choice"))
         self.assertGreater(choice.summary["models"]["straight"]["probability"], 0.5)
+        self.assertFalse(hasattr(choice, "posterior"))
+        with self.assertRaisesRegex(sysid.Error, "`choice` has no groups"):
+            choice.groups()
         self.assertIn("line.sysid", repr(sysid.load("line.sysid")))
         with self.assertRaisesRegex(sysid.Error, "no fit task"):
             sysid.load("line.sysid").log_density([1.0])

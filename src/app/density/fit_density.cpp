@@ -83,6 +83,8 @@ std::vector<PriorInfo> FitDensity::priors() const {
   return sampled;
 }
 
+std::vector<double> const& FitDensity::time(int e) const { return data_[static_cast<std::size_t>(e)].experiment.time; }
+
 FitDensity::Simulated FitDensity::simulate(int e, ConstLanes declared, std::uint64_t seed) const {
   Model const& model = likelihood_->model();
   if (!compiled_) no_function(task_, "a Gaussian process is part of what it predicts", "predict with a `predict` task instead");

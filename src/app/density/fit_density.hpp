@@ -41,6 +41,8 @@ class FitDensity {
     Trajectory::Result result;
   };
   int experiments() const { return static_cast<int>(data_.size()); }
+  /// Of the rows of an experiment, [N] s.
+  std::vector<double> const& time(int experiment) const;
   /// declared [P x W]: values of the sampled parameters, declared units. seed: of the noise. UserError (E6212) for models with
   /// Gaussian processes or an estimated filter, whose predictions are no function of the parameters.
   Simulated simulate(int experiment, ConstLanes declared, std::uint64_t seed) const;

@@ -11,7 +11,7 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
   Experiment const& experiment = data.experiment;
   CoveragePage page;
   page.name = experiment.name;
-  page.file = block.path;
+  page.file = block.mention();
   page.rows = data.record.rows();
   auto const first = std::find(experiment.scored.begin(), experiment.scored.end(), 1);
   page.first = experiment.first_row + static_cast<int>(first - experiment.scored.begin());

@@ -29,7 +29,7 @@ std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData cons
     complete = false;
     CoveragePage coverage;
     coverage.name = data_name(block, use.part);
-    coverage.file = block.path;
+    coverage.file = block.mention();
     coverage.made_by = made->name;
     page.coverage.push_back(std::move(coverage));
   }

@@ -15,6 +15,7 @@ namespace sysid {
 
 struct RunOptions {
   std::filesystem::path output = "results";
+  bool temporary_output = false;            // a folder that is removed with the results: nothing stored names it
   Surface surface = Surface::command_line;  // where the run's messages are read
   bool force = false;                       // overwrite results of the same name
   bool resume = false;                      // go on from checkpoints, keep what is complete

@@ -54,7 +54,7 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
   DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
   DataInfo info;
   info.name = data.experiment.name;
-  info.file = block.path;
+  info.file = block.mention();
   info.sha256 = data.record.digest;
   info.rows = data.record.rows();
   info.scored = static_cast<int>(std::count(data.experiment.scored.begin(), data.experiment.scored.end(), 1));

@@ -105,7 +105,7 @@ void add_repetition(Session const& session, Task const& task, Report& report, Re
     for (Task const* each : needed)
       if (!stated(*each)) report.unseeded.push_back(each->name);
   // Beside the first, so that the two can be compared.
-  auto again = options.output;
+  auto again = options.temporary_output ? RunOptions().output : options.output;
   if (!again.has_filename()) again = again.parent_path();
   report.command += fmt::format(" -o {}", quoted_for_shell(again.string() + "_again"));
 }
@@ -226,7 +226,7 @@ std::optional<Diagnostic> otherwise(Session const& session, Task const& task, st
     if (stored[e].value("name", "") != data_name(block, experiments[e].part)) return refuse("set of experiments");
     auto const path = session.folder() / block.path;
     if (std::filesystem::exists(path) && stored[e].value("sha256", "") != sha256(read_regular_file(path)))
-      return refuse("content of `" + block.path + "`");
+      return refuse("content of `" + block.mention() + "`");
   }
   if (seed && summary.value("seed", std::uint64_t{0}) != *seed) return refuse("seed");
   if (summary.at("versions").value("statement_sha256", "") != statement_digest(session, task))

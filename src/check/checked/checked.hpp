@@ -70,12 +70,15 @@ struct DataBlock {
   Span span;
   std::string path;  // as written, relative to the .sysid file
   Span path_span;
+  std::string shown_path;  // what messages and results name in its place; empty: `path`
   std::optional<ColumnUse> time;
   double step = 0;  // [s], when there is no time column; 0: the block does not say when its rows were taken
   std::vector<DataInputUse> inputs;
   std::vector<DataMeasureUse> measured;
   std::vector<DataConstantUse> constants;
   std::vector<DataPart> parts;
+
+  std::string const& mention() const { return shown_path.empty() ? path : shown_path; }
 };
 
 /// A data reference of a task: one experiment of its model.

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import json
 
+from ._words import in_python
+
 
 class Error(Exception):
     """A mistake in a model or its data, or a file that cannot be read.
 
-    ``str(error)`` is the whole message with the place, the line and the help, as ``sysid run`` prints it.
+    ``str(error)`` is the whole message with the place, the line and the help, as ``sysid run`` prints it, with calls of Python in
+    the place of commands.
     """
 
     def __init__(self, text: str, details: str = "") -> None:
-        super().__init__(text)
+        super().__init__(in_python(text))
         self._details = details
 
     @property
     def diagnostics(self) -> list[dict]:
         """All messages: ``file``, ``severity``, ``code``, ``message``, ``help``, and ``primary`` with its ``line`` and ``column``."""
-        return [json.loads(line) for line in self._details.splitlines() if line.strip()]
+        found = [json.loads(line) for line in self._details.splitlines() if line.strip()]
+        return [{**each, "help": in_python(each["help"])} if each.get("help") else each for each in found]
 
     def _first(self, key: str):
         found = self.diagnostics
@@ -26,7 +30,7 @@ class Error(Exception):
 
     @property
     def code(self) -> str | None:
-        """The code of the first message, ``"E2103"``; ``sysid explain E2103`` explains it. None where it has none."""
+        """The code of the first message, ``"E2103"``; ``sysid.explain("E2103")`` explains it. None where it has none."""
         return self._first("code") or None
 
     def _place(self, key: str) -> int | None:

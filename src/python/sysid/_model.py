@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import html
 import operator
 import os
 import warnings
@@ -13,9 +12,10 @@ from typing import Any, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _engine, _progress, _records
+from . import _display, _engine, _progress, _records
 from ._error import Error, ModelWarning
 from ._results import Check, Folder, Result, keep_apart, placed, stamp, take_along
+from ._words import in_python
 
 Array = NDArray[np.float64]
 
@@ -59,6 +59,8 @@ def _one_or_many(given: ArrayLike, dimension: int) -> tuple[Array, bool]:
     if np.asarray(given).dtype.kind in "cmM":
         raise TypeError(f"expected real numbers, not {np.asarray(given).dtype}")
     array = np.asarray(given, dtype=np.float64)
+    if array.ndim == 2 and len(array) == 0 and array.shape[1] != dimension:
+        raise ValueError(f"expected an array [W x {dimension}], one parameter vector in each row, not {array.shape}")
     if array.ndim == 1:
         if array.shape[0] != dimension:
             raise ValueError(f"expected a vector of {dimension} parameters, or an array [W x {dimension}], not {array.shape}")
@@ -110,7 +112,7 @@ class Model:
             records = _records.write(data, self._file.data, str(self._folder.path))
             self._begin(_engine.File(self.path, self.text, records), records)
         if self._file.warnings:
-            warnings.warn(self._file.warnings, ModelWarning, stacklevel=3)
+            warnings.warn(in_python(self._file.warnings), ModelWarning, stacklevel=3)
 
     def _begin(self, file: _engine.File, records: dict[str, str]) -> None:
         self._file, self._records, self._process = file, records, os.getpid()
@@ -197,7 +199,8 @@ class Model:
 
     @property
     def solver(self) -> str:
-        """How finely the equations are integrated: ``"rk4(substeps = 1)"``; "" for a model without differential equations."""
+        """How finely the equations are integrated: ``"1 integrator step per sample"``; "" for a model without
+        differential equations."""
         return self._density.solver
 
     @property
@@ -235,7 +238,7 @@ class Model:
             raise ValueError(f"part is 'both', 'prior' or 'likelihood', not {part!r}")
         density = self._density
         batch, one = _one_or_many(theta, density.dimension)
-        out = density.log_density(batch, declared, part)
+        out = density.log_density(batch, declared, part) if len(batch) else np.zeros(0)
         return float(out[0]) if one else out
 
     def gradient(self, theta: ArrayLike) -> Array:
@@ -246,6 +249,8 @@ class Model:
         """`log_density` [W] and its gradient [W x P] at unconstrained coordinates, at the cost of the gradient."""
         density = self._density
         batch, one = _one_or_many(theta, density.dimension)
+        if not len(batch):
+            return np.zeros(0), batch
         value, gradient = density.value_and_gradient(batch)
         return (float(value[0]), gradient[0]) if one else (value, gradient)
 
@@ -257,13 +262,15 @@ class Model:
         """
         density = self._density
         batch, one = _one_or_many(theta, density.dimension)
-        out = density.residuals(batch)
+        out = density.residuals(batch) if len(batch) else np.zeros((0, density.residual_count))
         return out[0] if one else out
 
     def residuals_and_jacobian(self, theta: ArrayLike) -> tuple[Array, Array]:
         """`residuals` [W x R] and their derivatives by the unconstrained coordinates [W x R x P], by differences."""
         density = self._density
         batch, one = _one_or_many(theta, density.dimension)
+        if not len(batch):
+            return np.zeros((0, density.residual_count)), np.zeros((0, density.residual_count, density.dimension))
         out, jacobian = density.residuals_with_jacobian(batch)
         return (out[0], jacobian[0]) if one else (out, jacobian)
 
@@ -271,7 +278,7 @@ class Model:
         """Values [W x P] in declared units at unconstrained coordinates [W x P]."""
         density = self._density
         batch, one = _one_or_many(theta, density.dimension)
-        out = density.constrain(batch)
+        out = density.constrain(batch) if len(batch) else batch
         return out[0] if one else out
 
     def unconstrain(self, values: ArrayLike) -> Array:
@@ -282,7 +289,7 @@ class Model:
         """
         density = self._density
         batch, one = _one_or_many(values, density.dimension)
-        out = density.unconstrain(batch)
+        out = density.unconstrain(batch) if len(batch) else batch
         return out[0] if one else out
 
     def sample_prior(self, count: int, seed: int = 0) -> Array:
@@ -298,11 +305,13 @@ class Model:
         if not 0 <= experiment < density.experiments:
             raise IndexError(f"the fit has experiments 0 to {density.experiments - 1}, not {experiment}")
         batch, one = _one_or_many(values, density.dimension)
-        made = density.simulate(batch, experiment, _seed(seed))
-        if one:
+        # Of no vectors the rows and quantities are those of any vector.
+        some = batch if len(batch) else density.constrain(density.sample_prior(1, 0))
+        made = density.simulate(some, experiment, _seed(seed))
+        if one or not len(batch):
             for each in (made["values"], made["noisy"]):
                 for name in each:
-                    each[name] = each[name][0]
+                    each[name] = each[name][0] if one else each[name][:0]
         return Simulation(**made)
 
     # ---- tasks
@@ -321,7 +330,8 @@ class Model:
         output: the folder of results; by default a temporary one of this result alone.
         force: replaces results that are in `output`. resume: goes on from a checkpoint there, or from where this task of the model
         has stopped.
-        figures: also draws figures. progress: a line on standard error; by default at a terminal and in a notebook.
+        figures: also draws figures. progress: a line on standard error at a terminal, a bar in a
+        notebook; by default where there is either.
 
         Ctrl-C keeps the draws so far: the result then has ``interrupted``, and ``fit(resume=True)`` goes on to the bytes of an
         uninterrupted fit. Raises KeyboardInterrupt where there are no draws yet, and where it was pressed too late to stop the
@@ -352,7 +362,7 @@ class Model:
         force: bool = False,
         resume: bool = False,
         figures: bool = False,
-        progress: Optional[bool] = None,
+        progress: Any = None,
         checkpoint_interval: float = 30,
     ) -> Result:
         seed = None if seed is None else _seed(seed)
@@ -372,6 +382,7 @@ class Model:
         before = stamp(run.path / name)
         asked = _engine.Asked(
             output=str(run.path),
+            temporary=run.temporary,
             seed=seed,
             threads=self._state["threads"],
             force=force,
@@ -379,11 +390,12 @@ class Model:
             figures=figures,
             checkpoint_interval=checkpoint_interval,
         )
-        exit, text, notices, requested = _engine.run(self._file, [name], asked, _progress.line_for(progress))
+        with _progress.shown(progress) as told:
+            exit, text, notices, requested = _engine.run(self._file, [name], asked, told)
         self._runs[name] = run
         if exit == 75 and stamp(run.path / name) in (None, before):
             raise KeyboardInterrupt
-        result = Result(self._file, self._records, self._folder, run, name, exit, text, notices, self._state["from"])
+        result = Result(self._file, self._records, self._folder, run, name, exit, text, in_python(notices), self._state["from"])
         self._results[name] = result
         if requested and exit != 75:
             raise KeyboardInterrupt(f"`{name}` had ended: its result is in model.results[{name!r}]")
@@ -410,20 +422,24 @@ class Model:
         return "\n".join([f"sysid.Model of {self.path}", *rows])
 
     def _repr_html_(self) -> str:
-        cells = "".join(
-            "<tr>" + "".join(f"<td style='text-align:left'>{html.escape(cell)}</td>" for cell in (each.name, each.unit, each.prior)) + "</tr>"
-            for each in self._shown()
-        )
-        head = "".join(f"<th style='text-align:left'>{title}</th>" for title in ("parameter", "unit", "prior"))
-        return f"<table><caption>{html.escape(self.path)}</caption><thead><tr>{head}</tr></thead><tbody>{cells}</tbody></table>"
+        data = [(name, "arrays" if name in self._records else path, columns) for name, path, columns in self._file.data]
+        return _display.model(self.path, self._file.models, data, self.tasks)
+
+    def _repr_latex_(self) -> str:
+        return self.latex
+
+    @property
+    def latex(self) -> str:
+        """Equations, priors and observations of all models as an ``align*`` of amsmath, as ``sysid export --latex`` prints them."""
+        return "\n".join(latex for _, _, _, latex in self._file.models)
 
 
 def load(path: Union[str, os.PathLike], data: Any = None, task: Optional[str] = None, threads: int = 0) -> Model:
     """Reads and checks a file of the language.
 
     path: of the .sysid file. data: in place of the tables that the data blocks name, a mapping or frame of columns; see
-    docs/python.md; they are copied. Without it, tables are read when they are first needed. task: the fit whose density is wanted; by default the first. threads: 0 is one for each processor; results do
-    not depend on it. Raises `Error` with the located message where something is wrong with the text or the data.
+    docs/python.md; they are copied. Without it, tables are read when they are first needed. task: the fit whose density is
+    wanted; by default the first. threads: 0 is one for each processor; results do not depend on it. Raises `Error` with the located message where something is wrong with the text or the data.
     """
     return Model(os.fspath(path), None, data, task, threads)
 

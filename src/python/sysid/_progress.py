@@ -1,9 +1,12 @@
-"""A line on standard error that says how far a task is."""
+"""How far a task is: a line on standard error, or a bar in a notebook."""
 
 from __future__ import annotations
 
+import contextlib
+import html
 import sys
 import time
+from typing import Any, Iterator, Optional
 
 
 class Line:
@@ -23,11 +26,20 @@ class Line:
         if now - self._shown < 0.1:
             return
         self._shown = now
-        share = f"{100 * done // self._total} %" if self._total else f"{done}"
-        self._write(f"{self._what}: {share}{', ' + note if note else ''}")
+        self._show(done, note)
 
     def end(self, finished: bool) -> None:
         self._write("")
+
+    def close(self) -> None:
+        """All is over."""
+
+    def _words(self, done: int, note: str) -> str:
+        share = f"{100 * done // self._total} %" if self._total else f"{done}"
+        return f"{self._what}: {share}{', ' + note if note else ''}"
+
+    def _show(self, done: int, note: str) -> None:
+        self._write(self._words(done, note))
 
     def _write(self, text: str) -> None:
         if text or self._width:
@@ -36,8 +48,52 @@ class Line:
         self._width = len(text)
 
 
-def line_for(wanted: "bool | None") -> "Line | None":
-    """None asks whether somebody looks: at a terminal, or in a notebook."""
+class Bar(Line):
+    """In a notebook: an output that is replaced by each newer one."""
+
+    def __init__(self, handle: Any = None) -> None:
+        """handle: the output that it is shown in, whose owner writes what stands there afterwards."""
+        super().__init__()
+        self._handle, self._own = handle, handle is None
+        self._begun = time.monotonic()
+
+    def end(self, finished: bool) -> None:
+        pass
+
+    def close(self) -> None:
+        if self._own and self._handle is not None:
+            self._handle.update({"text/plain": ""}, raw=True)
+
+    def _show(self, done: int, note: str) -> None:
+        if time.monotonic() - self._begun < 0.3:  # what is over at once needs no bar
+            return
+        words = self._words(done, note)
+        share = f" max='{self._total}' value='{min(done, self._total)}'" if self._total else ""
+        bundle = {"text/plain": words, "text/html": f"<progress{share} style='width:20em'></progress> {html.escape(words)}"}
+        if self._handle is None:
+            from IPython.display import display
+
+            self._handle = display(bundle, raw=True, display_id=True)
+        else:
+            self._handle.update(bundle, raw=True)
+
+
+def line_for(wanted: Any) -> Optional[Any]:
+    """None asks whether somebody looks: at a terminal, or in a notebook. What can be told itself is returned."""
+    if hasattr(wanted, "begin"):
+        return wanted
+    notebook = "ipykernel" in sys.modules
     if wanted is None:
-        wanted = sys.stderr.isatty() or "ipykernel" in sys.modules
-    return Line() if wanted else None
+        wanted = notebook or sys.stderr.isatty()
+    return (Bar() if notebook else Line()) if wanted else None
+
+
+@contextlib.contextmanager
+def shown(wanted: Any) -> Iterator[Optional[Any]]:
+    """What is told of the progress, and closed at the end."""
+    line = line_for(wanted)
+    try:
+        yield line
+    finally:
+        if isinstance(line, Line):
+            line.close()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
 import pathlib
@@ -13,7 +12,9 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 import numpy as np
 
-from . import _engine, _records
+from . import _display, _engine, _records
+from ._error import Error
+from ._words import in_python
 
 if TYPE_CHECKING:
     import pandas
@@ -66,7 +67,8 @@ class Result:
 
     The groups of a fit are xarray data sets with the names of ArviZ's InferenceData, made when they are first asked for:
     ``posterior``, ``sample_stats``, ``log_likelihood``, ``posterior_predictive``, ``observed_data``, ``constant_data``, ``prior``,
-    ``prior_predictive``, and ``predictions`` where a prediction lies beside it; of an interrupted fit the first two. A result
+    ``prior_predictive``, and ``predictions`` where a prediction lies beside it; of an interrupted fit the first two. A prediction
+    has ``predictions`` and ``predictions_constant_data``. A result
     stays what it is when tasks are run again, and can be pickled, with its files.
     """
 
@@ -108,7 +110,8 @@ class Result:
     @property
     def findings(self) -> list[dict]:
         """What the checks have found: ``severity``, ``code``, ``names``, ``message``, ``help``."""
-        return self.summary.get("findings", [])
+        found = self.summary.get("findings", [])
+        return [{**each, "help": in_python(each["help"])} if each.get("help") else each for each in found]
 
     @property
     def parameters(self) -> dict[str, dict]:
@@ -127,22 +130,53 @@ class Result:
         """Paths of all files, relative to `folder`."""
         return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*") if path.is_file())
 
+    @property
+    def figures(self) -> _display.Figures:
+        """The figures by their names, ``result.figures["posterior"]``; in a notebook they are shown. Drawn when the first is asked
+        for."""
+        return _display.Figures(self.folder, lambda: _engine.draw_figures(str(self.folder)))
+
     # ---- groups
 
+    @property
+    def _verb(self) -> str:
+        return self.summary.get("verb", "")
+
     def _inference_data(self, draws: int) -> tuple:
-        asked = _engine.Asked(output=str(self._run.path))
-        return _engine.inference_data(self._file, str(self.folder), asked, 0 if self.interrupted else draws)
+        run, task = self._run, self.task
+        if self._verb == "predict":
+            # The fit's file has them; of this prediction alone where nothing else lies beside it.
+            task = self.summary["versions"].get("made_from", "")
+            run = Folder()
+            for each in (task, self.task):
+                take_along(self._run, each, run)
+        if self._verb not in ("fit", "predict") or not (run.path / task).is_dir():
+            raise Error(
+                f"sysid: error: `{self.task}` has no groups: it is no fit, and no prediction of one that lies beside it\n"
+                f"help: its tables are {', '.join(name for name in self.files if name.endswith('.csv'))}"
+            )
+        asked = _engine.Asked(output=str(run.path))
+        return _engine.inference_data(self._file, str(run.path / task), asked, 0 if self.interrupted else draws)
 
     def groups(self, draws: int = 200) -> dict[str, "xarray.Dataset"]:
-        """All groups by their names. draws: how many of the stored draws are simulated once more for likelihoods and predictions."""
+        """All groups by their names; of a prediction ``predictions`` and ``predictions_constant_data``. draws: how many of the stored
+        draws are simulated once more for likelihoods and predictive groups."""
         if draws not in self._groups:
             found, attributes, _ = self._inference_data(draws)
-            self._groups[draws] = {name: _dataset(own, dimensions, variables, attributes) for name, own, dimensions, variables in found}
+            # Of a prediction its own; the others are the fit's.
+            own_alone = self._verb == "predict"
+            self._groups[draws] = {
+                name: _dataset(own, dimensions, variables, attributes)
+                for name, own, dimensions, variables in found
+                if not own_alone or name.startswith("predictions")
+            }
         return self._groups[draws]
 
     def __getattr__(self, name: str) -> "xarray.Dataset":
         if name.startswith("_") or name not in GROUPS:
             raise AttributeError(f"a result has no {name!r}")
+        if self._verb not in ("fit", "predict"):
+            raise AttributeError(f"a {self._verb} result has no group {name!r}")
         groups = self.groups()
         if name not in groups:
             raise AttributeError(f"this result has no group {name!r}; it has {', '.join(groups)}")
@@ -152,7 +186,8 @@ class Result:
         return [*super().__dir__(), *GROUPS]
 
     def to_netcdf(self, path: Union[str, os.PathLike], draws: int = 200) -> None:
-        """Writes the groups as one NetCDF-4 file, byte for byte what ``sysid export`` writes; `arviz.from_netcdf` reads it."""
+        """Writes the groups as one NetCDF-4 file, byte for byte what ``sysid export`` writes; `arviz.from_netcdf` reads it. Of a
+        prediction it is the file of its fit."""
         pathlib.Path(path).write_bytes(self._inference_data(draws)[2])
 
     def to_arviz(self, draws: int = 200) -> Any:
@@ -167,18 +202,7 @@ class Result:
         return self.text.rstrip("\n") or f"sysid.Result of {self.task}"
 
     def _repr_html_(self) -> str:
-        parts = [f"<p><b>{html.escape(self.summary.get('what', self.task))}</b></p>"]
-        rows = self.parameters
-        if rows:
-            keys = ("unit", "mean", "sd", "q5", "q95", "rhat", "ess_bulk")
-            head = "".join(f"<th>{key}</th>" for key in ("", *keys))
-            cells = "".join(
-                "<tr>" + "".join(f"<td>{html.escape(_shown(each))}</td>" for each in (name, *(row.get(key) for key in keys))) + "</tr>"
-                for name, row in rows.items()
-            )
-            parts.append(f"<table><thead><tr>{head}</tr></thead><tbody>{cells}</tbody></table>")
-        parts.append(f"<p>verdict: {html.escape(self.verdict)}</p>")
-        return "".join(parts)
+        return _display.result(self.summary, self.text, self.interrupted)
 
     def __getstate__(self) -> dict:
         results = {str(path.relative_to(self._run.path)): path.read_bytes() for path in self._run.path.rglob("*") if path.is_file()}
@@ -245,12 +269,6 @@ def _dataset(own: dict, dimensions: list, variables: list, attributes: dict) -> 
     return xarray.Dataset(made, coordinates, {**attributes, **own})
 
 
-def _shown(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    return "" if value is None else str(value)
-
-
 class Check:
     """What is known of a file before any sampling."""
 
@@ -267,7 +285,7 @@ class Check:
         return self.text.rstrip("\n")
 
     def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(self.text)}</pre>"
+        return _display.check(self.content, self.text)
 
 
 class Comparison:
@@ -286,7 +304,7 @@ class Comparison:
         return self.text.rstrip("\n")
 
     def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(self.text)}</pre>"
+        return _display.comparison(self.content, self.text)
 
 
 def compare(*results: Union[Result, str, os.PathLike]) -> Comparison:

@@ -1,5 +1,5 @@
 // Opening: read, check, point data blocks to their tables.
-#include "python/open_file.hpp"
+#include "embed/open_file.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,9 @@
 
 #include "check/checked/task_kinds.hpp"
 #include "core/system/files.hpp"
-#include "python/interrupts.hpp"
 #include "syntax/parse.hpp"
 
-namespace sysid::python {
+namespace sysid::embed {
 namespace {
 
 template <class Items>
@@ -30,6 +29,7 @@ void point(CheckedFile& file, std::map<std::string, std::string> const& records)
     if (block == file.data.end())
       unknown(fmt::format("there is no data block `{}` in this file", name), fmt::format("it has {}", names_of(file.data)));
     block->path = path;
+    block->shown_path = fmt::format("{} (arrays)", name);
   }
 }
 
@@ -50,9 +50,6 @@ int fit_task(CheckedFile const& file, std::string const& name) {
 OpenFile::OpenFile(std::string const& path, std::optional<std::string> const& text,
                    std::map<std::string, std::string> const& records)
     : source_(path, "") {
-  // Outside a call's time, a request for other calls would stop this one.
-  Interrupts interrupts;
-  interrupts.stop_if_requested();
   guarded(source_, [&] { source_ = Source(path, text ? *text : read_file(path, most_text_bytes + 1)); });
   guarded(source_, [&] {
     Diagnostics diagnostics;
@@ -61,13 +58,12 @@ OpenFile::OpenFile(std::string const& path, std::optional<std::string> const& te
     if (!diagnostics.all().empty()) warnings_ = Raised(diagnostics, source_).what();
     point(*file_, records);
   });
-  interrupts.stop_if_requested();
 }
 
 OpenDensity::OpenDensity(std::shared_ptr<OpenFile const> file, std::string const& task, int threads)
     : file_(std::move(file)), session_(file_->source(), file_->file(), options_, silent_, out_, notices_) {
   options_.execution.threads = threads;
-  density_ = interruptible(file_->source(), [&] { return std::make_unique<FitDensity>(session_, fit_task(file_->file(), task)); });
+  density_ = guarded(file_->source(), [&] { return std::make_unique<FitDensity>(session_, fit_task(file_->file(), task)); });
 }
 
 Ledger OpenDensity::ledger() const {
@@ -80,4 +76,4 @@ void OpenDensity::add(Ledger const& ledger) {
   ledger_.merge(ledger);
 }
 
-}  // namespace sysid::python
+}  // namespace sysid::embed

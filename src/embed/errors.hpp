@@ -1,4 +1,5 @@
-// What the engine throws as what Python raises: one place, as src/cli/messages.cpp is for the command line.
+// What the engine throws as one kind of error with its text, for programs that have the engine in them: one place, as
+// src/cli/messages.cpp is for the command line.
 #pragma once
 #include <exception>
 #include <string>
@@ -7,9 +8,9 @@
 #include "core/text/diagnostic.hpp"
 #include "core/text/source.hpp"
 
-namespace sysid::python {
+namespace sysid::embed {
 
-/// `sysid.Error`: the messages as the command line prints them, and as JSON, one object a line.
+/// The messages as the command line prints them, and as JSON, one object a line.
 class Raised : public std::exception {
  public:
   Raised(Diagnostics const& diagnostics, Source const& source);
@@ -20,7 +21,7 @@ class Raised : public std::exception {
   std::string text_, json_;
 };
 
-/// Inside a handler: throws what it caught as Raised, KeyboardInterrupt (Interrupted) or MemoryError (std::bad_alloc).
+/// Inside a handler: throws what it caught as Raised, or again where it is Interrupted or std::bad_alloc.
 [[noreturn]] void raise_caught(Source const& source);
 
 /// What `work` returns; what it throws is raised, with places in `source`.
@@ -33,4 +34,4 @@ auto guarded(Source const& source, Work&& work) {
   }
 }
 
-}  // namespace sysid::python
+}  // namespace sysid::embed

@@ -1,5 +1,5 @@
 // Each kind of failure of the engine, with what there is to say about it.
-#include "python/errors.hpp"
+#include "embed/errors.hpp"
 
 #include <filesystem>
 #include <new>
@@ -8,7 +8,7 @@
 #include "core/system/interrupt.hpp"
 #include "experiment/experiments.hpp"
 
-namespace sysid::python {
+namespace sysid::embed {
 namespace {
 
 Diagnostics alone(Diagnostic diagnostic) {
@@ -58,4 +58,4 @@ void raise_caught(Source const& source) {
   }
 }
 
-}  // namespace sysid::python
+}  // namespace sysid::embed

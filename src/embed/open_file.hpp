@@ -1,4 +1,4 @@
-// A file of the language that Python has opened, with all that its models and tasks refer to.
+// A file of the language that a program has opened, with all that its models and tasks refer to.
 #pragma once
 #include <map>
 #include <memory>
@@ -9,10 +9,10 @@
 
 #include "app/density/fit_density.hpp"
 #include "app/session/session.hpp"
+#include "embed/errors.hpp"
 #include "load/load.hpp"
-#include "python/errors.hpp"
 
-namespace sysid::python {
+namespace sysid::embed {
 
 /// A checked file. Records of data blocks may lie elsewhere than the text says.
 class OpenFile {
@@ -56,4 +56,4 @@ class OpenDensity {
   Ledger ledger_;
 };
 
-}  // namespace sysid::python
+}  // namespace sysid::embed
