@@ -16,6 +16,10 @@ if(TARGET sysid_native_module)
   install(TARGETS sysid_native_module LIBRARY DESTINATION ${SYSID_PRIVATE_FOLDER} COMPONENT program)
 endif()
 
+if(TARGET sysid_mpi_module)
+  install(TARGETS sysid_mpi_module LIBRARY DESTINATION ${SYSID_PRIVATE_FOLDER} COMPONENT mpi)
+endif()
+
 # Manual pages and completions are made by the program itself, from the tables of its commands.
 set(made ${CMAKE_BINARY_DIR}/made)
 add_custom_command(TARGET sysid POST_BUILD COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:sysid> -DFOLDER=${made}

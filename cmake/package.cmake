@@ -14,6 +14,9 @@ set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_COMPONENTS_ALL program)
+if(TARGET sysid_mpi_module)
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
+endif()
 if(TARGET sysid_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
@@ -30,6 +33,14 @@ A language for equations with unknown parameters, and the program that
 estimates them from measured data: posteriors, predictions with their
 uncertainty, comparison of models, discovery of equations, and checks
 of every result.")
+
+set(CPACK_DEBIAN_MPI_PACKAGE_NAME sysid-mpi)
+set(CPACK_DEBIAN_MPI_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "sysid (= ${PROJECT_VERSION}), openmpi-bin")
+set(CPACK_COMPONENT_MPI_DESCRIPTION "Bayesian identification of nonlinear systems, on clusters
+What the program sysid loads when mpirun or srun has started it as
+several processes: these divide the simulations of a run among them
+and give the same bytes as one process.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-sysid)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -5,6 +5,8 @@
 #include "app/calibration/crosscheck.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/spread.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/system/progress_terminal.hpp"
 #include "core/text/wrapped.hpp"
@@ -18,19 +20,23 @@ void add_options(CLI::App& verb, ResultOptions& options, std::string& task) {
   verb.add_option("--task", task, "the fit task (default: all fit tasks of the file)")->type_name("NAME");
 }
 
-ExitCode with_session(Messages const& messages, ResultOptions const& options, std::function<ExitCode(Session&)> const& work) {
-  install_interrupt_handlers();
+ExitCode in_session(Messages const& messages, ResultOptions const& options, std::function<ExitCode(Session&)> const& work) {
   return with_checked_file(messages, options.file, [&](Source const& source, CheckedFile const& file, Diagnostics const&) {
     std::ostream nowhere(nullptr);
     SilentProgress silent;
     TerminalProgress terminal;
     LineOutput out(std::cout, wrapped_for(STDOUT_FILENO)), notices(std::cerr, wrapped_for(STDERR_FILENO));
-    Session session(source, file, options.run, options.quiet ? static_cast<Progress&>(silent) : terminal, out,
+    Session session(source, file, options.run, options.quiet || !ranks::leads() ? static_cast<Progress&>(silent) : terminal, out,
                     options.quiet ? nowhere : static_cast<std::ostream&>(notices));
     ExitCode const exit = work(session);
     if (options.quiet && exit == ExitCode::interrupted) std::cerr << "sysid: interrupted\n";
     return exit;
   });
+}
+
+ExitCode with_session(Messages const& messages, ResultOptions options, std::function<ExitCode(Session&)> const& work) {
+  install_interrupt_handlers();
+  return among_ranks(messages, options.run.execution.threads, [&] { return in_session(messages, options, work); });
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ struct Command {
   char const *name, *group, *summary;
   Work (*declare)(CLI::App& verb);
   char const* examples;
+  bool by_ranks = false;  // processes that mpirun starts do it together; all else is done by the first of them
 };
 
 /// Each adds a verb's options to `verb`; the work that it returns owns their values.
@@ -37,7 +38,7 @@ Work declare_version(CLI::App& verb);
 Work declare_manual(CLI::App& verb);
 Work declare_completion(CLI::App& verb);
 
-/// "sysid 1.2 (AVX-512)" and a line end.
+/// "sysid 1.2 (AVX-512, Open MPI v4.1.4)" and a line end.
 std::string version_text();
 
 }  // namespace sysid::cli

@@ -7,6 +7,7 @@
 #include "app/catalogue/module_page.hpp"
 #include "cli/command.hpp"
 #include "core/numeric/instruction_set.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/wrapped.hpp"
 #include "load/modules.hpp"
@@ -60,7 +61,10 @@ Work declare_document(CLI::App& verb) {
   };
 }
 
-std::string version_text() { return fmt::format("sysid {} ({})\n", SYSID_VERSION, name(instruction_set())); }
+std::string version_text() {
+  std::string const mpi = ranks::mpi_library();
+  return fmt::format("sysid {} ({}, {})\n", SYSID_VERSION, name(instruction_set()), mpi.empty() ? "no MPI" : mpi);
+}
 
 Work declare_version(CLI::App&) {
   return [](Messages const&) { return print(version_text(), &wrapped); };

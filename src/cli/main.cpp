@@ -5,6 +5,7 @@
 #include "cli/help.hpp"
 #include "cli/usage.hpp"
 #include "core/numeric/instruction_set.hpp"
+#include "core/ranks/ranks.hpp"
 
 namespace sysid::cli {
 namespace {
@@ -13,21 +14,22 @@ constexpr char const *tasks = "Tasks of a file", *files = "Files", *results = "R
 
 constexpr Command commands[] = {
     {"run", tasks, "run all tasks of a file", &declare_tasks,
-     "sysid run duffing.sysid\nsysid run duffing.sysid -o results/second --seed 2\nsysid run duffing.sysid --resume"},
-    {"simulate", tasks, "run the simulate tasks of a file: generate data", &declare_tasks, "sysid simulate duffing.sysid"},
+     "sysid run duffing.sysid\nsysid run duffing.sysid -o results/second --seed 2\nsysid run duffing.sysid --resume", true},
+    {"simulate", tasks, "run the simulate tasks of a file: generate data", &declare_tasks, "sysid simulate duffing.sysid", true},
     {"fit", tasks, "run the fit tasks of a file", &declare_tasks,
-     "sysid fit duffing.sysid --force\nsysid fit duffing.sysid --dump model"},
+     "sysid fit duffing.sysid --force\nsysid fit duffing.sysid --dump model", true},
     {"select", tasks, "run the select tasks of a file: choose among candidate models", &declare_tasks,
-     "sysid select bouc_wen.sysid --quiet"},
+     "sysid select bouc_wen.sysid --quiet", true},
     {"discover", tasks, "run the discover tasks of a file: find equations from the terms of a dictionary", &declare_tasks,
-     "sysid discover lorenz.sysid"},
-    {"predict", tasks, "run the predict tasks of a file, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force"},
+     "sysid discover lorenz.sysid", true},
+    {"predict", tasks, "run the predict tasks of a file, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force",
+     true},
     {"check", files, "check a file, and report what its data can determine, before any sampling", &declare_check,
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
     {"calibrate", files, "test the intervals of fits, on records simulated from the priors", &declare_calibrate,
-     "sysid calibrate duffing.sysid\nsysid calibrate duffing.sysid --task posterior --replications 500 --seed 1"},
+     "sysid calibrate duffing.sysid\nsysid calibrate duffing.sysid --task posterior --replications 500 --seed 1", true},
     {"crosscheck", files, "fit with two back ends: differences of the posteriors in standard errors", &declare_crosscheck,
-     "sysid crosscheck duffing.sysid\nsysid crosscheck duffing.sysid --task posterior --against tempering"},
+     "sysid crosscheck duffing.sysid\nsysid crosscheck duffing.sysid --task posterior --against tempering", true},
     {"fmt", files, "rewrite files in canonical layout", &declare_format,
      "sysid fmt duffing.sysid\nsysid fmt --check models/*.sysid"},
     {"repl", files, "interactive prompt: enter statements, run tasks, compute with results", &declare_repl,
@@ -57,8 +59,8 @@ void add_verbs(CLI::App& app, Messages const& messages, ExitCode& exit) {
   for (Command const& command : commands) {
     CLI::App* const verb = app.add_subcommand(command.name, command.summary);
     verb->group(command.group)->footer(command.examples);
-    verb->callback([work = command.declare(*verb), &messages, &exit] {
-      exit = guarded(messages, Source("sysid", ""), [&] { return work(messages); });
+    verb->callback([work = command.declare(*verb), &messages, &exit, by_ranks = command.by_ranks] {
+      if (by_ranks || ranks::launched().rank == 0) exit = guarded(messages, Source("sysid", ""), [&] { return work(messages); });
     });
   }
 }
@@ -89,7 +91,7 @@ ExitCode main(int argument_count, char** arguments) {
   } catch (CLI::CallForVersion const&) {
     std::cout << version_text();
   } catch (CLI::ParseError const& error) {
-    return misread(messages, app, error);
+    return ranks::launched().rank == 0 ? misread(messages, app, error) : exit;
   }
   std::cout.flush();
   if (!std::cout && exit != ExitCode::interrupted) {  // a terminal that is gone takes no output

@@ -6,7 +6,9 @@
 #include "app/run/pipeline.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
+#include "cli/spread.hpp"
 #include "core/numeric/instruction_set.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/system/progress_terminal.hpp"
 #include "core/text/wrapped.hpp"
@@ -77,14 +79,13 @@ ExitCode dump(Messages const& messages, TaskOptions const& options) {
   });
 }
 
-ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<std::string> const& kinds) {
-  install_interrupt_handlers();  // a request that comes while the file is read stops the first task
+ExitCode run_in_order(Messages const& messages, TaskOptions const& options, std::vector<std::string> const& kinds) {
   return with_checked_file(messages, options.file, [&](Source const& source, CheckedFile const& file, Diagnostics const&) {
     std::ostream nowhere(nullptr);
     SilentProgress silent;
     TerminalProgress terminal;
     LineOutput out(std::cout, wrapped_for(STDOUT_FILENO)), notices(std::cerr, wrapped_for(STDERR_FILENO));
-    Progress& progress = options.quiet ? static_cast<Progress&>(silent) : terminal;
+    Progress& progress = options.quiet || !ranks::leads() ? static_cast<Progress&>(silent) : terminal;
     std::ostream& said = options.quiet ? nowhere : static_cast<std::ostream&>(notices);
     ExitCode const exit = options.with_disturbance ? fit_with_disturbance(source, file, options.run, progress, out, said)
                                                    : run_tasks(source, file, kinds, options.run, progress, out, said);
@@ -92,6 +93,11 @@ ExitCode run(Messages const& messages, TaskOptions const& options, std::vector<s
     if (options.quiet && exit == ExitCode::interrupted) std::cerr << "sysid: interrupted; --resume continues from there\n";
     return exit;
   });
+}
+
+ExitCode run(Messages const& messages, TaskOptions options, std::vector<std::string> const& kinds) {
+  install_interrupt_handlers();  // a request that comes while the file is read stops the first task
+  return among_ranks(messages, options.run.execution.threads, [&] { return run_in_order(messages, options, kinds); });
 }
 
 }  // namespace

@@ -33,11 +33,14 @@ std::unique_ptr<double, Free> doubles(std::size_t count) {
 }  // namespace
 
 Work Simulator::gradients_work(ConstLanes parameters, Lanes out, Lanes slopes, std::span<Outcome> outcome) const {
-  return blocks(parameters.width(), schedule_.last_summed(), native::LoopKind::tape, [=, this](Block& block, int lane, int lanes) {
-    block.set_parameters(parameters.columns(lane, lanes));
-    run_gradient(block, out.columns(lane, lanes), slopes.columns(lane, lanes),
-                 outcome.subspan(static_cast<std::size_t>(lane), static_cast<std::size_t>(lanes)));
-  });
+  Work result =
+      blocks(parameters.width(), schedule_.last_summed(), native::LoopKind::tape, [=, this](Block& block, int lane, int lanes) {
+        block.set_parameters(parameters.columns(lane, lanes));
+        run_gradient(block, out.columns(lane, lanes), slopes.columns(lane, lanes),
+                     outcome.subspan(static_cast<std::size_t>(lane), static_cast<std::size_t>(lanes)));
+      });
+  result.written = {out, slopes, outcome};
+  return result;
 }
 
 void Simulator::run_gradient(Block& block, Lanes out, Lanes slopes, std::span<Outcome> outcome) const {

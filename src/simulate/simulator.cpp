@@ -7,12 +7,14 @@
 #include <thread>
 
 #include "core/numeric/not_finite.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 #include "simulate/block.hpp"
 #include "simulate/looks.hpp"
 #include "simulate/machine_loop.hpp"
 #include "simulate/settling.hpp"
+#include "simulate/shared_work.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
@@ -26,17 +28,34 @@ constexpr double small_job = 1e5;
 
 }  // namespace
 
-void do_work(std::span<Work const> work, ThreadPool* pool) {
+WrittenLanes::WrittenLanes(Lanes out)
+    : data(reinterpret_cast<std::byte*>(out.data())),
+      rows(static_cast<std::size_t>(out.rows())),
+      row_step(sizeof(double) * static_cast<std::size_t>(out.stride())),
+      lane_step(sizeof(double)),
+      size(sizeof(double)) {}
+
+void do_blocks(std::span<Blocks const> pieces, ThreadPool* pool) {
   std::vector<std::function<void()> const*> blocks;
   double instructions = 0;
-  for (Work const& each : work) {
-    for (auto const& block : each.blocks) blocks.push_back(&block);
+  for (Blocks const& each : pieces) {
+    for (auto const& block : each.all) blocks.push_back(&block);
     instructions += each.instructions;
   }
+  ranks::Apart const apart;
   if (pool != nullptr && instructions > small_job)
     pool->run(static_cast<int>(blocks.size()), [&](int b) { (*blocks[static_cast<std::size_t>(b)])(); });
   else
     for (auto const* block : blocks) (*block)();
+}
+
+void do_work(std::span<Work const> work, ThreadPool* pool) {
+  if (!do_share(work, pool)) {
+    std::vector<Blocks> pieces;
+    for (Work const& each : work)
+      if (each.width > 0) pieces.push_back(each.blocks(0, each.width));
+    do_blocks(pieces, pool);
+  }
   for (Work const& each : work)
     if (each.given_up != nullptr && each.given_up()) throw Interrupted();
 }
@@ -103,16 +122,23 @@ Executor Simulator::interpreter(int width, double instructions) const {
 Work Simulator::blocks(int width, int samples, native::LoopKind loop, BlockWork const& work) const {
   Work result;
   if (width == 0) return result;
+  double const each = work_per_sample(*program_, schedule_.solver()) * samples;
+  result.width = width;
   result.given_up = given_up();
-  result.instructions = work_per_sample(*program_, schedule_.solver()) * samples * width;
-  Executor const executor = this->executor(width, result.instructions, loop);
-  result.instructions /= speed(executor);
-  for (int lane = 0; lane < width; lane += executor.width)
-    result.blocks.push_back([this, work, executor, loop, lane, lanes = std::min(executor.width, width - lane)] {
-      // The last one may be narrower.
-      Block block(*program_, schedule_, narrowed(executor, lanes), lanes, loop, options_.stopped);
-      work(block, lane, lanes);
-    });
+  result.instructions = each * width;
+  result.grain = grain(schedule_.solver());
+  result.blocks = [=, this](int first, int count) {
+    Executor const executor = this->executor(count, each * count, loop);
+    Blocks blocks;
+    blocks.instructions = each * count / speed(executor);
+    for (int lane = first; lane < first + count; lane += executor.width)
+      blocks.all.push_back([this, work, executor, loop, lane, lanes = std::min(executor.width, first + count - lane)] {
+        // The last one may be narrower.
+        Block block(*program_, schedule_, narrowed(executor, lanes), lanes, loop, options_.stopped);
+        work(block, lane, lanes);
+      });
+    return blocks;
+  };
   return result;
 }
 
@@ -133,27 +159,31 @@ Work Simulator::constant_sums_work(ConstLanes parameters, Lanes out, std::span<O
 }
 
 Work Simulator::sums_to(int end, ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const {
+  Work result;
   if (settled_ && end > 0)
-    return blocks(parameters.width(), end, native::LoopKind::observe, [=, this](Block& block, int lane, int lanes) {
+    result = blocks(parameters.width(), end, native::LoopKind::observe, [=, this](Block& block, int lane, int lanes) {
       SettlingLanes(*this, *settled_, block, out.columns(lane, lanes),
                     outcome.subspan(static_cast<std::size_t>(lane), static_cast<std::size_t>(lanes)))
           .run(parameters.columns(lane, lanes));
     });
-  return blocks(parameters.width(), end, native::LoopKind::observe, [=, this](Block& block, int lane, int lanes) {
-    block.set_parameters(parameters.columns(lane, lanes));
-    block.start();
-    bool alive = true;
-    for (int from = 0; from < end && alive;) {
-      if (stopped()) return give_up(from, lane, lanes, out, outcome);
-      int const to = next_look(block, schedule_.solver().substeps, from, end);
-      block.advance(from, to, end - 1);
-      if (to % burial_interval == 0 || to == end) alive = block.bury(to - 1);
-      from = to;
-    }
-    if (end == 0) block.bury(0);
-    take_sums(block, end, out.columns(lane, lanes),
-              outcome.subspan(static_cast<std::size_t>(lane), static_cast<std::size_t>(lanes)));
-  });
+  else
+    result = blocks(parameters.width(), end, native::LoopKind::observe, [=, this](Block& block, int lane, int lanes) {
+      block.set_parameters(parameters.columns(lane, lanes));
+      block.start();
+      bool alive = true;
+      for (int from = 0; from < end && alive;) {
+        if (stopped()) return give_up(from, lane, lanes, out, outcome);
+        int const to = next_look(block, schedule_.solver().substeps, from, end);
+        block.advance(from, to, end - 1);
+        if (to % burial_interval == 0 || to == end) alive = block.bury(to - 1);
+        from = to;
+      }
+      if (end == 0) block.bury(0);
+      take_sums(block, end, out.columns(lane, lanes),
+                outcome.subspan(static_cast<std::size_t>(lane), static_cast<std::size_t>(lanes)));
+    });
+  result.written = {out, outcome};
+  return result;
 }
 
 void Simulator::take_sums(Block& block, int end, Lanes out, std::span<Outcome> outcome) {
@@ -210,10 +240,12 @@ void Simulator::record_block(Block& block, Redraw const* redraw, int lane, int l
 }
 
 Work Simulator::records_work(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const {
-  return blocks(parameters.width(), last, native::LoopKind::record, [=, this](Block& block, int lane, int lanes) {
+  Work result = blocks(parameters.width(), last, native::LoopKind::record, [=, this](Block& block, int lane, int lanes) {
     block.set_parameters(parameters.columns(lane, lanes));
     record_block(block, nullptr, lane, lanes, first, last, out, outcome);
   });
+  result.written = {out, outcome};
+  return result;
 }
 
 void Simulator::records(ConstLanes parameters, int first, int last, Lanes out, std::span<Outcome> outcome) const {
@@ -255,15 +287,17 @@ void Simulator::records_ahead(ConstLanes parameters, Schedule const& uncorrected
       for (int r = 0; death >= 0 && r < samples * records; ++r) out(r, lane + w) = not_a_number;
     }
   };
-  Work const work = blocks(parameters.width(), samples * (1 + ahead), native::LoopKind::record, along);
+  Work work = blocks(parameters.width(), samples * (1 + ahead), native::LoopKind::record, along);
+  work.written = {out, outcome};
   do_work({&work, 1}, pool_.get());
 }
 
 void Simulator::records_redrawn(Redraw const& redraw, int first, int last, Lanes out, std::span<Outcome> outcome) const {
-  Work const work = blocks(static_cast<int>(outcome.size()), last, native::LoopKind::record,
-                           [=, this, &redraw](Block& block, int lane, int lanes) {
-                             record_block(block, &redraw, lane, lanes, first, last, out, outcome);
-                           });
+  Work work = blocks(static_cast<int>(outcome.size()), last, native::LoopKind::record,
+                     [=, this, &redraw](Block& block, int lane, int lanes) {
+                       record_block(block, &redraw, lane, lanes, first, last, out, outcome);
+                     });
+  work.written = {out, outcome};
   do_work({&work, 1}, pool_.get());
 }
 

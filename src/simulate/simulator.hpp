@@ -1,5 +1,6 @@
 // Runs a program over an experiment for any number of parameter vectors at once: lanes in blocks, blocks over threads.
 #pragma once
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -49,12 +50,36 @@ struct Diagnosis {
 };
 
 /// Blocks of lanes that may run in any order and on any threads, each touching its own part of the results.
-struct Work {
-  std::vector<std::function<void()>> blocks;
-  double instructions = 0;       // in all: too few are not worth waking threads for
-  bool (*given_up)() = nullptr;  // asked at the end: whether to throw Interrupted
+struct Blocks {
+  std::vector<std::function<void()>> all;
+  double instructions = 0;  // in all: too few are not worth waking threads for
 };
-/// Does all blocks of all pieces; returns when they are done, or throws. pool: null for the calling thread alone.
+
+/// Where the results of lanes lie: `size` bytes of lane w in row r, at data + r * row_step + w * lane_step.
+struct WrittenLanes {
+  WrittenLanes(Lanes out);
+  template <class T>
+  WrittenLanes(std::span<T> of_lanes)
+      : data(reinterpret_cast<std::byte*>(of_lanes.data())), rows(1), lane_step(sizeof(T)), size(sizeof(T)) {}
+  WrittenLanes(std::byte* first, std::size_t lane_step, std::size_t size)
+      : data(first), rows(1), lane_step(lane_step), size(size) {}
+
+  std::byte* data;
+  std::size_t rows, row_step = 0, lane_step, size;
+};
+
+/// A batch of lanes, of which any part may be done by itself.
+struct Work {
+  int width = 0;  // lanes
+  /// Of lanes [first, first + count).
+  std::function<Blocks(int first, int count)> blocks;
+  double instructions = 0;       // of all lanes, as they are interpreted
+  bool (*given_up)() = nullptr;  // asked at the end: whether to throw Interrupted
+  /// All that the blocks write, so that the lanes may be divided among ranks (core/ranks); empty: each rank does all of them.
+  std::vector<WrittenLanes> written = {};
+  int grain = 1;  // lanes that cost no more together than one of them
+};
+/// Does all lanes of all pieces; returns when they are done, or throws. pool: null for the calling thread alone.
 void do_work(std::span<Work const> work, ThreadPool* pool);
 
 /// Why simulations cannot be compiled to machine code; empty where they can. Loads the compiler.

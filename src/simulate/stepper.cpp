@@ -54,6 +54,8 @@ double work_per_sample(SimulationProgram const& program, SolverSettings const& s
   return 20 * (2 * static_cast<double>(equations.rates.code.size()) + 200 * equations.states);
 }
 
+int grain(SolverSettings const& solver) { return solver.row().in_program ? 4 : 1; }
+
 int least_lanes(SolverSettings const& solver) { return solver.row().in_program ? 16 : 4; }
 
 }  // namespace sysid

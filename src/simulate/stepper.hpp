@@ -60,5 +60,7 @@ std::unique_ptr<Stepper> make_stepper(LaneFile const& file);
 double work_per_sample(SimulationProgram const& program, SolverSettings const& solver);
 /// The narrowest block that is worth a thread of its own.
 int least_lanes(SolverSettings const& solver);
+/// Lanes that cost together hardly more than one of them.
+int grain(SolverSettings const& solver);
 
 }  // namespace sysid

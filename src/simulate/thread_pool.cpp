@@ -1,6 +1,8 @@
 // Workers sleep until a round of tasks begins; the caller takes tasks as well and waits for the last worker.
 #include "simulate/thread_pool.hpp"
 
+#include "core/ranks/ranks.hpp"
+
 namespace sysid {
 namespace {
 
@@ -34,6 +36,7 @@ ThreadPool::~ThreadPool() {
 
 void ThreadPool::run(int tasks, std::function<void(int)> const& task) {
   Claim const claim(busy_);
+  ranks::Apart const apart;  // what threads do they do in any order
   if (!claim.won || workers_.empty() || tasks < 2) {
     for (int i = 0; i < tasks; ++i) task(i);
     return;

@@ -202,24 +202,31 @@ Work wavefront_work(Simulator const& simulator, ConstLanes parameters, Wanted wa
   Work result;
   int const width = parameters.width();
   if (width == 0) return result;
+  double const each = work_per_sample(simulator.program(), simulator.schedule().solver()) * simulator.schedule().last_summed();
+  result.width = width;
   result.given_up = simulator.given_up();
-  result.instructions =
-      work_per_sample(simulator.program(), simulator.schedule().solver()) * simulator.schedule().last_summed() * width;
-  Executor const executor = simulator.executor(width, result.instructions, native::LoopKind::observe);
-  int const block = executor.width;
-  result.instructions /= speed(executor);
-  // Two crews a thread at least, so that threads end together.
-  int const share = (width + 2 * simulator.threads() - 1) / (2 * simulator.threads());
-  int const crew = std::clamp((share + block - 1) / block * block, block, block * blocks_per_crew);
+  result.instructions = each * width;
+  result.written = {out, endings, failed_at};
+  result.grain = grain(simulator.schedule().solver());
   auto const shared = std::make_shared<Wanted const>(std::move(wanted));
-  for (int lane = 0; lane < width; lane += crew)
-    result.blocks.push_back([=, &simulator] {
-      int const lanes = std::min(crew, width - lane);
-      auto const first = static_cast<std::size_t>(lane), count = static_cast<std::size_t>(lanes);
-      Crew(simulator, parameters.columns(lane, lanes), *shared, lane, out.columns(lane, lanes), endings.subspan(first, count),
-           failed_at.subspan(first, count), executor)
-          .run();
-    });
+  result.blocks = [=, &simulator](int begin, int asked) {
+    Executor const executor = simulator.executor(asked, each * asked, native::LoopKind::observe);
+    int const block = executor.width, end = begin + asked;
+    Blocks blocks;
+    blocks.instructions = each * asked / speed(executor);
+    // Two crews a thread at least, so that threads end together.
+    int const share = (asked + 2 * simulator.threads() - 1) / (2 * simulator.threads());
+    int const crew = std::clamp((share + block - 1) / block * block, block, block * blocks_per_crew);
+    for (int lane = begin; lane < end; lane += crew)
+      blocks.all.push_back([=, &simulator] {
+        int const lanes = std::min(crew, end - lane);
+        auto const first = static_cast<std::size_t>(lane), count = static_cast<std::size_t>(lanes);
+        Crew(simulator, parameters.columns(lane, lanes), *shared, lane, out.columns(lane, lanes), endings.subspan(first, count),
+             failed_at.subspan(first, count), executor)
+            .run();
+      });
+    return blocks;
+  };
   return result;
 }
 

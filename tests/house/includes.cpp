@@ -21,6 +21,8 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"core/numeric", {"core/text"}},
     {"core/system", {"core/text"}},
     {"core/setting", {"core/text"}},
+    {"core/ranks", {"core/text", "core/system"}},
+    {"core/ranks/mpi", {"core/ranks"}},
     {"linear_algebra", {"core"}},
     {"result", {"core"}},
     {"criteria", {"core", "result"}},
@@ -272,6 +274,7 @@ std::pair<std::string, std::string> const owned[] = {
     {"<sunlinsol", "simulate"},
     {"<sundials", "simulate"},
     {"<llvm", "native/llvm"},
+    {"<mpi", "core/ranks/mpi"},
     {"<pybind11", "python"},
     // Decompositions, the slowest of Eigen's templates to compile.
     {"<Eigen/Dense", "linear_algebra"},

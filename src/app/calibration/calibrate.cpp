@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "app/calibration/calibration_report.hpp"
 #include "app/calibration/chosen_fits.hpp"
@@ -17,6 +19,7 @@
 #include "app/session/reporting.hpp"
 #include "app/session/results.hpp"
 #include "app/session/task_checkpoint.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 #include "diagnostics/verdict.hpp"
@@ -149,28 +152,72 @@ class Calibration {
     for (int number = 0; number < replications_; ++number)
       if (!done_.contains(number)) open.push_back(number);
     // Replications take the threads, each fit has one.
-    int const threads = std::max(1, std::min(session_.threads(), static_cast<int>(open.size())));
-    std::vector<std::unique_ptr<Replicator>> idle;
-    for (int t = 0; t < threads; ++t) idle.push_back(std::make_unique<Replicator>(session_, plan_));
+    int const ranks = ranks::size(), most = (static_cast<int>(open.size()) + ranks - 1) / ranks;
+    int const threads = std::max(1, std::min(session_.threads(), most));
+    for (int t = 0; t < threads; ++t) idle_.push_back(std::make_unique<Replicator>(session_, plan_));
     ThreadPool pool(threads);
+    bool const stopped = ranks > 1 ? stopped_in_rounds(open, pool)
+                                   : stopped_among(pool, open, [&](Replication replication) { keep(std::move(replication)); });
+    idle_.clear();
+    return !stopped || done_.size() == static_cast<std::size_t>(replications_);
+  }
+
+  /// On this rank; keep: called in order of their ends, one at a time. True: it was stopped before their last.
+  bool stopped_among(ThreadPool& pool, std::span<int const> numbers, std::function<void(Replication)> const& keep) {
     bool stopped = false;
-    pool.run(static_cast<int>(open.size()), [&](int i) {
+    pool.run(static_cast<int>(numbers.size()), [&](int i) {
+      ranks::Own const own;
       std::unique_ptr<Replicator> replicator;
       {
         std::lock_guard const lock(mutex_);
         stopped = stopped || interrupt_requested();
         if (stopped) return;
-        replicator = std::move(idle.back());
-        idle.pop_back();
+        replicator = std::move(idle_.back());
+        idle_.pop_back();
       }
-      std::optional<Replication> replication = replicator->run(open[static_cast<std::size_t>(i)]);
+      std::optional<Replication> replication = replicator->run(numbers[static_cast<std::size_t>(i)]);
       std::lock_guard const lock(mutex_);
-      idle.push_back(std::move(replicator));
+      idle_.push_back(std::move(replicator));
       stopped = stopped || !replication;
       if (replication) keep(std::move(*replication));
-      stopped = session_.interrupted() || stopped;  // counts for tests
+      if (ranks::size() == 1) stopped = session_.interrupted() || stopped;  // counts for tests
     });
-    return !stopped || done_.size() == static_cast<std::size_t>(replications_);
+    return stopped;
+  }
+
+  /// Each rank some, then all have all. Rounds become longer until one takes some seconds, as a rank that is done early waits.
+  bool stopped_in_rounds(std::span<int const> open, ThreadPool& pool) {
+    constexpr double long_enough = 5;  // [s]
+    auto const ranks = static_cast<std::size_t>(ranks::size()), own = static_cast<std::size_t>(ranks::rank());
+    bool stopped = false;
+    for (std::size_t each = static_cast<std::size_t>(pool.threads()); !open.empty() && !stopped;) {
+      std::span<int const> const round = open.first(std::min(open.size(), each * ranks));
+      open = open.subspan(round.size());
+      std::vector<int> mine;
+      for (std::size_t i = own; i < round.size(); i += ranks) mine.push_back(round[i]);
+      auto const began = std::chrono::steady_clock::now();
+      json finished = json::array();
+      bool const given_up = stopped_among(pool, mine, [&](Replication replication) { finished.push_back(store(replication)); });
+      std::chrono::duration<double> const took = std::chrono::steady_clock::now() - began;
+      std::vector<std::uint8_t> const bytes = json::to_cbor(json::array({took.count(), given_up, std::move(finished)}));
+      double longest = 0;
+      std::map<int, Replication> all;
+      for (std::string const& one : ranks::gather({reinterpret_cast<char const*>(bytes.data()), bytes.size()})) {
+        json const of_rank = json::from_cbor(one);
+        longest = std::max(longest, of_rank.at(0).get<double>());
+        stopped = stopped || of_rank.at(1).get<bool>();
+        for (json const& stored : of_rank.at(2)) {
+          Replication replication = restore_replication(stored);
+          all.emplace(replication.number, std::move(replication));
+        }
+      }
+      for (auto& [number, replication] : all) {
+        keep(std::move(replication));
+        stopped = session_.interrupted() || stopped;  // counts for tests
+      }
+      if (longest < long_enough) each *= 2;
+    }
+    return stopped;
   }
 
   void keep(Replication replication) {
@@ -212,6 +259,7 @@ class Calibration {
   std::mutex mutex_;
   std::map<int, Replication> done_;  // by number
   int failed_ = 0;
+  std::vector<std::unique_ptr<Replicator>> idle_;
 };
 
 /// Whether a calibration of as many replications of this very task stands there already; UserError (E6208) where what stands there
@@ -281,6 +329,7 @@ ExitCode calibrate_all(Session& session, std::vector<int> const& fits, Calibrate
     else
       open.push_back(index);
   }
+  ranks::wait_for_all();  // before anything is written where another rank reads
   ClaimedFolders claimed;
   for (int const index : open)
     claimed.folders.emplace_back(session.result_folder(session.file.tasks[static_cast<std::size_t>(index)]), session.options);
@@ -289,6 +338,7 @@ ExitCode calibrate_all(Session& session, std::vector<int> const& fits, Calibrate
     calibrations.push_back(std::make_unique<Calibration>(session, index, options));
     calibrations.back()->prepare();
   }
+  ranks::wait_for_all();
   ExitCode worst = ExitCode::success;
   for (auto& calibration : calibrations) {
     ExitCode const code = calibration->run();

@@ -15,6 +15,7 @@
 #include "app/session/resolved.hpp"
 #include "app/session/results.hpp"
 #include "core/numeric/random.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/number.hpp"
@@ -203,6 +204,7 @@ class Crosscheck {
 
 /// All that can be refused is refused before the first fit.
 ExitCode crosscheck_all(Session& session, std::vector<int> const& fits, std::string const& against) {
+  ranks::wait_for_all();  // before anything is written where another rank reads
   ClaimedFolders claimed;
   std::vector<std::unique_ptr<Crosscheck>> all;
   for (int const index : fits) {

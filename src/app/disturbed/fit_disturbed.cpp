@@ -10,6 +10,7 @@
 #include "app/run/pipeline.hpp"
 #include "app/session/results.hpp"
 #include "check/checked/task_kinds.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/files.hpp"
 
 namespace sysid {
@@ -80,6 +81,7 @@ class DisturbedFit {
     std::filesystem::create_directories(folder);
     copy_modules(session_.source, folder);
     write_file(path, std::string(changed.text(0)));
+    ranks::wait_for_all();
     Diagnostics diagnostics;
     auto const file = load(changed, diagnostics);
     if (!file) {

@@ -14,6 +14,7 @@
 #include "app/session/session.hpp"
 #include "app/session/stored_draws.hpp"
 #include "app/session/task_rows.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 
@@ -31,6 +32,12 @@ ExitCode run_or_stop(Session& session, int index, Task const& task) {
       session.notices << fmt::format("{}: interrupted; {} starts it again\n", task.name, to_resume(session.options.surface));
     return ExitCode::interrupted;
   }
+}
+
+/// What a task has written may be read by the next, by ranks on other nodes too: to open the folder has network file systems look.
+void read_after_leader(std::filesystem::path const& folder) {
+  ranks::wait_for_all();
+  if (std::error_code ignored; files_are_left()) std::filesystem::directory_iterator const looked(folder, ignored);
 }
 
 ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& asked) {
@@ -61,6 +68,7 @@ ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& a
       else
         fitted_model(session, index);
     }
+  ranks::wait_for_all();  // before anything is written where another rank reads
   ClaimedFolders claimed;
   for (Task const& task : file.tasks) {
     if (!wanted(task)) continue;
@@ -78,6 +86,7 @@ ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& a
     if (code == ExitCode::interrupted) return code;
     remove_file(checkpoint_path(session.result_folder(task)));  // that of an earlier run, which this result replaces
     worst = std::max(worst, code);
+    read_after_leader(session.result_folder(task));
   }
   return worst;
 }

@@ -11,6 +11,7 @@
 #include "app/session/resolved.hpp"
 #include "app/session/results.hpp"
 #include "app/session/task_rows.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "experiment/experiments.hpp"
@@ -186,6 +187,12 @@ void keep_result(Session& session, Task const& task, Report& report) {
   report.formulas = formulas(report.equations);
   report.fixed = fixed_parameters(report);
   if (!report.resolved_text.empty()) report.resolved_files = resolved_files(session, task, report.resolved_text);
+  if (files_are_left()) return;
+  if (ranks::size() > 1) {
+    report.timing.emplace_back("ranks", static_cast<std::int64_t>(ranks::size()));
+    report.timing.emplace_back("exchanges", static_cast<std::int64_t>(ranks::exchanges()));
+    report.timing.emplace_back("exchange_seconds", ranks::costs().exchange);
+  }
   std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures());
   session.out << terminal_summary(report, session.options.surface);
   if (!undrawn.empty()) session.notices << fmt::format("{}: {}\n", task.name, undrawn_words(undrawn));

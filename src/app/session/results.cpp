@@ -15,6 +15,7 @@ bool complete(std::filesystem::path const& folder) {
 }
 
 ClaimedFolder::MadeFolders::MadeFolders(std::filesystem::path const& folder) {
+  if (files_are_left()) return;
   for (auto each = std::filesystem::absolute(folder).lexically_normal(); !std::filesystem::exists(each); each = each.parent_path())
     if (each.has_filename()) paths.push_back(each);
   try {
@@ -33,6 +34,7 @@ void ClaimedFolder::MadeFolders::remove_empty() const {
 }
 
 ClaimedFolder::ClaimedFolder(std::filesystem::path const& folder, RunOptions const& options) : made_(folder), lock_(folder) {
+  if (files_are_left()) return;
   if (!options.resume && !options.force) {
     if (std::filesystem::exists(checkpoint_path(folder)))
       throw UserError(result_error("", fmt::format("`{}` contains an interrupted run", folder.string()), resume_or_replace()));

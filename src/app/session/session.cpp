@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <random>
+#include <string>
 #include <thread>
 
+#include "core/ranks/ranks.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 #include "model/input_errors.hpp"
@@ -71,7 +73,8 @@ std::uint64_t Session::seed(Task const& task, std::optional<std::uint64_t> const
   if (!drawn_seed_) {
     // Up to 2^53, so that the printed number may be written into a file as it stands.
     std::random_device device;
-    drawn_seed_ = ((static_cast<std::uint64_t>(device()) << 32) | device()) >> 11;
+    std::uint64_t const drawn = ((static_cast<std::uint64_t>(device()) << 32) | device()) >> 11;
+    drawn_seed_ = std::stoull(ranks::from_leader(std::to_string(drawn)));
     notices << fmt::format("{}: seed {} (drawn; repeat this run with --seed {})\n", task.name, *drawn_seed_, *drawn_seed_);
   }
   return *drawn_seed_;
@@ -87,8 +90,9 @@ int Session::threads() const {
 }
 
 bool Session::interrupted() {
-  if (options.interrupt_after != 0 && ++polls_ == options.interrupt_after) request_interrupt();
-  return interrupt_requested();
+  bool const now = options.interrupt_after != 0 && ++polls_ == options.interrupt_after;
+  if (now) request_interrupt();
+  return ranks::interrupted(now);
 }
 
 ExecutionOptions Session::interruptible() const {

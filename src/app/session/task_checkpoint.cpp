@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/session/results.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "inference/backend/checkpoint.hpp"
@@ -27,11 +28,13 @@ UserError refused(char const* code, std::filesystem::path const& path, char cons
 
 UserError damaged(std::filesystem::path const& path) { return refused("E6207", path, "is damaged", "start again with --force"); }
 
-// With the members `who` and `content`.
+// With the members `who` and `content`. That of the leader: the others may look when it has stored another.
 std::optional<json> read(std::filesystem::path const& path) {
-  if (!std::filesystem::exists(path)) return std::nullopt;
+  bool const there = !files_are_left() && std::filesystem::exists(path);
+  std::string const found = ranks::from_leader(there ? "+" + read_regular_file(path) : "");
+  if (found.empty()) return std::nullopt;
   json stored;
-  switch (open_cbor(read_regular_file(path), form, stored)) {
+  switch (open_cbor(found.substr(1), form, stored)) {
     case Seal::other_form:
       throw refused("E6208", path, "was written by another version of sysid",
                     "continue with that version, or start again with --force");

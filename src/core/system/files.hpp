@@ -12,6 +12,10 @@
 
 namespace sysid {
 
+/// From here on `write_file`, `make_folder` and `remove_file` do nothing: another process of the same run does it.
+void leave_files_to_another();
+bool files_are_left();
+
 /// Paths of the files beside `path`, spelt as it is, in order: for "did you mean".
 std::vector<std::string> files_beside(std::filesystem::path const& path);
 

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 
 namespace sysid {
@@ -44,6 +45,7 @@ bool still_named(int descriptor, std::filesystem::path const& path) {
 }  // namespace
 
 FolderLock::FolderLock(std::filesystem::path const& folder) : path_(folder / "lock") {
+  if (files_are_left()) return;
   for (;;) {
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (descriptor_ < 0) {

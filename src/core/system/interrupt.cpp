@@ -19,6 +19,9 @@ constexpr std::int64_t same_request_nanoseconds = 500'000'000;
 // When an interruption was requested, in nanoseconds of the monotonic clock; 0 where none is. One word, since two signals may be
 // handled by two threads at once.
 std::atomic<std::int64_t> requested_at{0};
+// The same of the first signal that ends with the process being killed.
+std::atomic<std::int64_t> final_at{0};
+std::atomic<bool (*)(bool)> rule{nullptr};
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler may touch lock-free atomics alone");
 
 std::int64_t nanoseconds() {
@@ -29,9 +32,10 @@ std::int64_t nanoseconds() {
 
 void on_signal(int signal) {
   std::int64_t const now = nanoseconds();
-  std::int64_t first = 0;
+  std::int64_t first = 0, none = 0;
+  if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) final_at.compare_exchange_strong(none, now);
   if (requested_at.compare_exchange_strong(first, now)) {
-    if (signal == SIGINT) alarm(1);
+    if (signal == SIGINT && rule.load() == nullptr) alarm(1);
     return;
   }
   // Whoever supervises the program and has no more patience sends SIGKILL: SIGTERM may come as often as it likes.
@@ -64,7 +68,24 @@ void install_interrupt_handlers() {
   if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
-bool interrupt_requested() { return requested_at.load(std::memory_order_relaxed) != 0; }
+void heed_signal(int signal) {
+  struct sigaction action = {};
+  action.sa_handler = &on_signal;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal, &action, nullptr);
+}
+
+bool interrupt_heard() { return requested_at.load(std::memory_order_relaxed) != 0; }
+bool interrupt_requested() {
+  auto const requested = rule.load(std::memory_order_relaxed);
+  return requested == nullptr ? interrupt_heard() : requested(interrupt_heard());
+}
+bool interrupt_is_final() { return final_at.load(std::memory_order_relaxed) != 0; }
+double seconds_since_final_interrupt() {
+  return interrupt_is_final() ? 1e-9 * static_cast<double>(nanoseconds() - final_at.load()) : 0;
+}
+void set_interruption(bool (*requested)(bool heard)) { rule.store(requested); }
 void request_interrupt() {
   std::int64_t none = 0;
   requested_at.compare_exchange_strong(none, nanoseconds());
@@ -72,6 +93,9 @@ void request_interrupt() {
 void stop_if_interrupted() {
   if (interrupt_requested()) throw Interrupted();
 }
-void clear_interrupt() { requested_at.store(0); }
+void clear_interrupt() {
+  requested_at.store(0);
+  final_at.store(0);
+}
 
 }  // namespace sysid

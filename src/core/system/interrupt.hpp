@@ -6,10 +6,20 @@ namespace sysid {
 /// From here on; Ctrl-C pressed again, half a second and more after the first request, ends the program at once. At the prompt,
 /// which has a handler of its own, Ctrl-C never does.
 void install_interrupt_handlers();
+/// Another signal that asks for the same, without the end being near.
+void heed_signal(int signal);
 bool interrupt_requested();
 /// What a signal does; also for tests (`--interrupt-after`).
 void request_interrupt();
 void clear_interrupt();
+
+/// Of a process that stops together with others: whether it has been asked itself; whether by a signal after which it is soon
+/// killed, and since when [s].
+bool interrupt_heard();
+bool interrupt_is_final();
+double seconds_since_final_interrupt();
+/// From here on `interrupt_requested` is what this makes of `interrupt_heard`, and who asked is not answered in words.
+void set_interruption(bool (*requested)(bool heard));
 
 /// Work of which nothing is kept was given up on request.
 struct Interrupted {};

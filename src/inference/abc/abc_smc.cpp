@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/system/interrupt.hpp"
 #include "inference/abc/batch.hpp"
 #include "inference/abc/findings.hpp"
@@ -290,7 +292,14 @@ class Run {
     return width_of(x, equal, {Eigen::MatrixXd::Identity(dimension, dimension), Eigen::VectorXd::Ones(dimension)});
   }
 
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+  /// Where something depends on it: the same on all ranks.
+  double seconds() const {
+    double seconds = std::chrono::duration<double>(Clock::now() - began_).count();
+    if (plan_.wall_time == 0 || !ranks::together()) return seconds;
+    std::string const of_leader = ranks::from_leader({reinterpret_cast<char const*>(&seconds), sizeof seconds});
+    std::memcpy(&seconds, of_leader.data(), sizeof seconds);
+    return seconds;
+  }
 
   void save_sometimes() {
     if (!context_.checkpoint || std::chrono::duration<double>(Clock::now() - saved_).count() < context_.checkpoint_interval) return;

@@ -84,12 +84,19 @@ void ParticleTarget::run(ConstLanes theta, int particles, MakeNormals const& nor
     of_experiment.given_up = simulator.given_up();
     of_experiment.instructions = work_per_sample(simulator.program(), simulator.schedule().solver()) *
                                  simulator.schedule().last_summed() * particles * theta.width();
-    for (int w = 0; w < theta.width(); ++w)
-      of_experiment.blocks.push_back([&, e, w] {
-        std::unique_ptr<ParticleNormals> const numbers = normals(w, e);
-        outcomes[static_cast<std::size_t>(w * experiments + e)] =
-            filter(e, particles).run(columns[static_cast<std::size_t>(e)].view().columns(w, 1), *numbers);
-      });
+    of_experiment.width = theta.width();
+    of_experiment.written = {
+        {reinterpret_cast<std::byte*>(outcomes.data() + e), simulators_->size() * sizeof(FilterOutcome), sizeof(FilterOutcome)}};
+    of_experiment.blocks = [&, e, each = of_experiment.instructions / theta.width()](int first, int count) {
+      Blocks blocks{{}, each * count};
+      for (int w = first; w < first + count; ++w)
+        blocks.all.push_back([&, e, w] {
+          std::unique_ptr<ParticleNormals> const numbers = normals(w, e);
+          outcomes[static_cast<std::size_t>(w * experiments + e)] =
+              filter(e, particles).run(columns[static_cast<std::size_t>(e)].view().columns(w, 1), *numbers);
+        });
+      return blocks;
+    };
     work.push_back(std::move(of_experiment));
   }
   do_work(work, pool_.get());

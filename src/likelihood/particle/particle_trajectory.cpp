@@ -111,11 +111,16 @@ ParticleTrajectory::Result ParticleTrajectory::run(ConstLanes parameters, Stream
   work.given_up = densities_.given_up();
   work.instructions =
       work_per_sample(densities_.program(), densities_.schedule().solver()) * samples() * particles_ * parameters.width() * ahead;
-  for (int d = 0; d < parameters.width(); ++d)
-    work.blocks.push_back([&, d] {
-      paths[static_cast<std::size_t>(d)] =
-          path(parameters.columns(d, 1), key.with_index(key.index + static_cast<std::uint64_t>(d)), result.picks, ahead);
-    });
+  work.width = parameters.width();
+  work.blocks = [&](int first, int count) {
+    Blocks blocks{{}, work.instructions / work.width * count};
+    for (int d = first; d < first + count; ++d)
+      blocks.all.push_back([&, d] {
+        paths[static_cast<std::size_t>(d)] =
+            path(parameters.columns(d, 1), key.with_index(key.index + static_cast<std::uint64_t>(d)), result.picks, ahead);
+      });
+    return blocks;
+  };
   do_work({&work, 1}, pool_.get());
   collect(paths, result);
   return result;

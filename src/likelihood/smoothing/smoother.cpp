@@ -83,11 +83,16 @@ std::vector<Smoother::Path> Smoother::run(ConstLanes parameters) const {
     Work work;
     work.instructions = 100.0 * smoothing_->layout.count * samples() * lanes;
     work.given_up = simulator_.given_up();
-    for (int w = 0; w < lanes; ++w)
-      if (outcome[static_cast<std::size_t>(w)].ok)
-        work.blocks.emplace_back([&, w] {
-          if (!simulator_.stopped()) paths[static_cast<std::size_t>(first + w)] = path(block, records, w);
-        });
+    work.width = lanes;
+    work.blocks = [&](int begin, int count) {
+      Blocks blocks{{}, work.instructions / lanes * count};
+      for (int w = begin; w < begin + count; ++w)
+        if (outcome[static_cast<std::size_t>(w)].ok)
+          blocks.all.emplace_back([&, w] {
+            if (!simulator_.stopped()) paths[static_cast<std::size_t>(first + w)] = path(block, records, w);
+          });
+      return blocks;
+    };
     do_work({&work, 1}, pool_.get());
   }
   return paths;
