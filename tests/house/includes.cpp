@@ -257,8 +257,8 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"embed", {"core", "syntax", "likelihood", "check/checked", "load", "experiment", "app/session", "app/density"}},
     {"library", {"core", "embed"}},
     {"python",
-     {"core", "syntax", "check/checked", "diagnostics/tolerance", "typeset", "report/page", "app/session", "app/preflight",
-      "app/comparison", "app/catalogue", "app/run", "assist", "exchange", "embed"}},
+     {"core", "syntax", "check/checked", "diagnostics/tolerance", "typeset", "report/page", "app/preflight", "app/comparison",
+      "app/catalogue", "app/run", "assist", "exchange", "embed"}},
 };
 
 /// The one room that may include headers that begin like this.

@@ -112,6 +112,42 @@ choice = select shapes to bench with reversible_jump, seed = 1
         self.assertEqual(significant(1.1e-6, 2), "1.1e-6")
 
 
+class Words(unittest.TestCase):
+    """Messages advise in Python's words."""
+
+    def test_phrases(self):
+        from sysid._words import in_python
+
+        for said, expected in {
+            "run the fit first: sysid run FILE, or sysid fit FILE": "run the fit first: model.fit()",
+            "run the select again first: sysid select FILE --force": "run the select again first: model.select(force=True)",
+            "finish it first: sysid fit FILE --resume": "finish it first: model.fit(resume=True)",
+            "run it again: `sysid predict FILE --force`": "run it again: model.predict(force=True)",
+            "add --force to replace them, or -o DIR to write elsewhere": "add force=True to replace them, or output=DIR to write elsewhere",
+            "run the fit again, with --force or another -o": "run the fit again, with force=True or another output",
+            "check priors and units with `sysid check`": "check priors and units with model.check()",
+            "more: sysid explain E2103": 'more: sysid.explain("E2103")',
+            "`sysid fit FILE --with-disturbance` adds": "`sysid fit FILE --with-disturbance` adds",  # which Python does not have
+        }.items():
+            self.assertEqual(in_python(said), expected)
+
+    def test_no_advice_for_a_shell_is_left(self):
+        from sysid._words import in_python
+
+        literal = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+        shell = re.compile(r"--(?:force|resume)\b|another -o\b|sysid (?:fit|predict|select|discover|check) FILE(?! --with)")
+        found = 0
+        for path in (ROOT / "src").rglob("*.cpp"):
+            if path.relative_to(ROOT / "src").parts[0] in ("cli", "repl", "library"):
+                continue
+            for said in literal.findall(path.read_text()):
+                text = re.sub(r"\{0?\}", "fit", said)
+                if shell.search(text) and "prompt" not in text:
+                    found += 1
+                    self.assertNotRegex(in_python(text), shell, path)
+        self.assertGreater(found, 10)
+
+
 class Language(unittest.TestCase):
     TEXT = "model decay {\n  state y [m]\n  parameter rate [1/s] ~ log_\n  y' = -rate*y\n}\n"
 
