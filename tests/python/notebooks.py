@@ -151,7 +151,8 @@ class Cells(unittest.TestCase):
 
     def test_progress_is_a_bar_that_gives_way_to_the_result(self):
         code = """
-import sysid._notebook
+import sysid._notebook, sysid._progress
+sysid._progress.Bar.PATIENCE = 0
 seen = []
 display = sysid._notebook.display
 def watched(*arguments, **options):

@@ -51,6 +51,8 @@ class Line:
 class Bar(Line):
     """In a notebook: an output that is replaced by each newer one."""
 
+    PATIENCE = 0.3  # what is over within these seconds needs no bar
+
     def __init__(self, handle: Any = None) -> None:
         """handle: the output that it is shown in, whose owner writes what stands there afterwards."""
         super().__init__()
@@ -65,7 +67,7 @@ class Bar(Line):
             self._handle.update({"text/plain": ""}, raw=True)
 
     def _show(self, done: int, note: str) -> None:
-        if time.monotonic() - self._begun < 0.3:  # what is over at once needs no bar
+        if time.monotonic() - self._begun < self.PATIENCE:
             return
         words = self._words(done, note)
         share = f" max='{self._total}' value='{min(done, self._total)}'" if self._total else ""
@@ -78,11 +80,16 @@ class Bar(Line):
             self._handle.update(bundle, raw=True)
 
 
+def _in_notebook() -> bool:
+    ipython = sys.modules.get("IPython")
+    return hasattr(ipython.get_ipython() if ipython else None, "kernel")
+
+
 def line_for(wanted: Any) -> Optional[Any]:
     """None asks whether somebody looks: at a terminal, or in a notebook. What can be told itself is returned."""
     if hasattr(wanted, "begin"):
         return wanted
-    notebook = "ipykernel" in sys.modules
+    notebook = _in_notebook()
     if wanted is None:
         wanted = notebook or sys.stderr.isatty()
     return (Bar() if notebook else Line()) if wanted else None
