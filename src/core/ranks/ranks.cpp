@@ -94,7 +94,8 @@ void wait() {
       continue;
     }
     double const waited = seconds_since(began);
-    std::this_thread::sleep_for(std::chrono::microseconds(waited < 2e-3 ? 10 : waited < 1 ? 100 : 1000));
+    // A twentieth of what it has taken so far.
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(waited / 20, 10e-6, 2e-3)));
     if (waited - looked < (interrupt_is_final() ? 0.02 : 1)) continue;
     looked = waited;
     if (all.places.ended(all.rank) >= 0) {
