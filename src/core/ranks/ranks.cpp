@@ -17,6 +17,7 @@
 
 #include "core/ranks/module.hpp"
 #include "core/ranks/node.hpp"
+#include "core/ranks/own.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 
@@ -261,6 +262,7 @@ Apart::Apart() { ++apart; }
 Apart::~Apart() { --apart; }
 Own::Own() { ++own; }
 Own::~Own() { --own; }
+bool on_its_own() { return own > 0; }
 
 std::vector<std::string> gather(std::string_view mine) {
   if (!together()) return {std::string(mine)};
