@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <thread>
 
 #include "core/numeric/not_finite.hpp"
-#include "core/ranks/ranks.hpp"
+#include "core/ranks/own.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 #include "simulate/block.hpp"
@@ -44,7 +45,11 @@ void do_blocks(std::span<Blocks const> pieces, ThreadPool* pool) {
   }
   ranks::Apart const apart;
   if (pool != nullptr && instructions > small_job)
-    pool->run(static_cast<int>(blocks.size()), [&](int b) { (*blocks[static_cast<std::size_t>(b)])(); });
+    pool->run(static_cast<int>(blocks.size()), [&, alone = ranks::on_its_own()](int b) {
+      std::optional<ranks::Own> own;  // threads of the pool hear what the caller hears
+      if (alone) own.emplace();
+      (*blocks[static_cast<std::size_t>(b)])();
+    });
   else
     for (auto const* block : blocks) (*block)();
 }

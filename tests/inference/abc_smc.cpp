@@ -131,6 +131,36 @@ TEST_CASE("thresholds fall to the quantile of all distances, unweighted, and the
   CHECK(result.stopped_by.find("the threshold would next decrease by only") != std::string::npos);
 }
 
+TEST_CASE("proposals that are simulated ahead, as many ranks do, change nothing") {
+  Toy const toy = two_widths();
+  // Populations that need tens of thousands of proposals, more than a batch; one run ends at a number of simulations.
+  for (double const most : {1e8, 60'000.0}) {
+    Settings const settings =
+        with({{"particles", std::int64_t{4000}}, {"simulations", most}, {"schedule", std::vector<double>{0.2, 0.02, 0.002}}});
+    Ledger alone;
+    SelectionResult const expected = run(toy, settings, 1, &alone);
+    CHECK(expected.populations.back().proposed > 2 * 8192);
+    for (int const at_once : {9000, 20'001, 1'000'000}) {
+      CAPTURE(at_once);
+      SilentProgress silent;
+      Ledger ledger;
+      RunContext context{1, silent, ledger, {}, {}, 60, {}, {}, {}};
+      SelectionResult const found = abc::run_wide(toy, settings, context, at_once);
+      CHECK(ledger.solves() == alone.solves());
+      CHECK(found.stopped_by == expected.stopped_by);
+      REQUIRE(found.populations.size() == expected.populations.size());
+      for (std::size_t t = 0; t < found.populations.size(); ++t) {
+        CHECK(found.populations[t].proposed == expected.populations[t].proposed);
+        CHECK(found.populations[t].simulated == expected.populations[t].simulated);
+      }
+      for (std::size_t m = 0; m < found.models.size(); ++m) {
+        CHECK(found.models[m].weight == expected.models[m].weight);
+        CHECK(found.models[m].distance == expected.models[m].distance);
+      }
+    }
+  }
+}
+
 TEST_CASE("a run ends at a target, at its number of populations or simulations, and below an acceptance rate") {
   Toy const toy = two_widths();
   SelectionResult const target = run(toy, with({{"target", 0.01}}));

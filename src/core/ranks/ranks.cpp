@@ -17,6 +17,7 @@
 
 #include "core/ranks/module.hpp"
 #include "core/ranks/node.hpp"
+#include "core/ranks/own.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 
@@ -75,9 +76,9 @@ void say(std::string const& text) { (void)!write(STDERR_FILENO, text.data(), tex
   int const gone = all.places.ended(all.rank);
   if (leads() || (gone == 0 && all.rank == 1))
     say(fmt::format(
-        "\nsysid: error[E6214]: {}\nhelp: checkpoints are kept: go on with --resume, on any number of ranks\nmore: sysid "
-        "explain E6214\n",
-        gone >= 0 ? fmt::format("rank {} ({}) has ended in the middle of the run", gone, all.places.words(gone)) : what));
+        "\nsysid: error[{0}]: {1}\nhelp: checkpoints are kept: go on with --resume, on any number of ranks\nmore: sysid explain "
+        "{0}\n",
+        "E6214", gone >= 0 ? fmt::format("rank {} ({}) has ended in the middle of the run", gone, all.places.words(gone)) : what));
   _exit(interrupted_code);
 }
 
@@ -94,7 +95,8 @@ void wait() {
       continue;
     }
     double const waited = seconds_since(began);
-    std::this_thread::sleep_for(std::chrono::microseconds(waited < 2e-3 ? 10 : waited < 1 ? 100 : 1000));
+    // A twentieth of what it has taken so far.
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(waited / 20, 10e-6, 2e-3)));
     if (waited - looked < (interrupt_is_final() ? 0.02 : 1)) continue;
     looked = waited;
     if (all.places.ended(all.rank) >= 0) {
@@ -260,6 +262,7 @@ Apart::Apart() { ++apart; }
 Apart::~Apart() { --apart; }
 Own::Own() { ++own; }
 Own::~Own() { --own; }
+bool on_its_own() { return own > 0; }
 
 std::vector<std::string> gather(std::string_view mine) {
   if (!together()) return {std::string(mine)};

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -42,10 +43,31 @@ constexpr double surprising = 3;
 /// A model that had fewer particles than these was proposed from places that need not be its best.
 constexpr int few_particles = 10;
 
+/// Simulations of each rank in one exchange, at least, where a population needs as many: they end at different times, and ranks
+/// wait for the last.
+constexpr int lanes_of_a_rank = 64;
+
+/// Proposals that are simulated, from number `first` on.
+struct Ahead {
+  Ahead(SelectionTarget const& candidates, Proposals const& proposals, std::uint64_t first, int count, double threshold)
+      : first(first), batch(candidates, proposals, first, count, threshold) {}
+  std::uint64_t end() const { return first + batch.size(); }
+
+  std::uint64_t first;
+  Batch batch;
+};
+
+/// Those at [from, to) of a batch.
+struct Part {
+  Batch const* batch;
+  std::size_t from, to;
+};
+
 class Run {
  public:
-  Run(SelectionTarget const& candidates, Settings const& settings, RunContext& context)
+  Run(SelectionTarget const& candidates, Settings const& settings, RunContext& context, int at_once)
       : candidates_(candidates),
+        at_once_(at_once),
         plan_(plan_of(settings)),
         walk_(candidates, plan_),
         context_(context),
@@ -85,32 +107,62 @@ class Run {
     return full && weigh(proposals);
   }
 
-  /// How many proposals to make at once: what the rest of the population is expected to need.
-  int batch_size() const {
+  /// What the rest of the population is expected to need.
+  double needed() const {
     double const before = state_.records.empty() ? 1 : state_.records.back().acceptance();
     double const rate = record_.proposed == 0 ? before : (record_.accepted + 1.0) / static_cast<double>(record_.proposed + 1);
-    double const needed = (plan_.particles - record_.accepted) / std::max(rate, 1e-6);
-    double const allowed = static_cast<double>(plan_.simulations - state_.simulations() - record_.simulated);
-    return static_cast<int>(std::min(std::clamp<double>(std::ceil(needed), least_batch, most_batch), allowed));
+    return std::ceil((plan_.particles - record_.accepted) / std::max(rate, 1e-6));
+  }
+
+  double allowed() const { return static_cast<double>(plan_.simulations - state_.simulations() - record_.simulated); }
+
+  /// How many proposals to count before it is asked whether to stop.
+  int batch_size() const { return static_cast<int>(std::min(std::clamp<double>(needed(), least_batch, most_batch), allowed())); }
+
+  /// A batch in which several ranks end together: as many as it has, or those of later batches with them.
+  int simulated_at_once(int batch) const {
+    return std::max(batch, static_cast<int>(std::min({needed(), allowed(), static_cast<double>(at_once_)})));
+  }
+
+  /// The next `count` proposals in parts, simulated here where they have not been.
+  std::vector<Part> next_proposals(Proposals const& proposals, int count) {
+    std::uint64_t const first = record_.proposed, end = first + static_cast<std::uint64_t>(count);
+    while (!ahead_.empty() && ahead_.front().end() <= first) ahead_.pop_front();
+    std::uint64_t const known = ahead_.empty() ? first : ahead_.back().end();
+    if (known < end) {
+      auto const left = static_cast<int>(end - known);
+      ahead_.emplace_back(candidates_, proposals, known, std::max(left, simulated_at_once(count)), next_.threshold);
+    }
+    std::vector<Part> parts;
+    for (Ahead const& each : ahead_)
+      if (each.first < end)
+        parts.push_back({&each.batch, static_cast<std::size_t>(std::max(each.first, first) - each.first),
+                         static_cast<std::size_t>(std::min(each.end(), end) - each.first)});
+    return parts;
   }
 
   /// False when the run is interrupted meanwhile: nothing of the batch is kept.
   bool propose(Proposals const& proposals) {
     try {
-      Batch const batch(candidates_, proposals, record_.proposed, batch_size(), next_.threshold);
+      std::vector<Part> const parts = next_proposals(proposals, batch_size());
       // Before anything is counted: an interruption throws.
       std::uint64_t const traced = std::min(context_.ledger.failed(), traced_failures);
-      count(batch, batch.failed_places(plan_.particles - record_.accepted, traced_failures - traced));
+      int wanted = plan_.particles - record_.accepted;
+      std::vector<Batch::Place> places;
+      for (Part const& each : parts) each.batch->find_failed_places(each.from, each.to, wanted, traced_failures - traced, places);
+      std::size_t placed = 0;
+      for (Part const& each : parts) count(each, places, placed);
       return true;
     } catch (Interrupted const&) {
       return !(result_.interrupted = true);
     }
   }
 
-  /// Up to the proposal that fills the population. failed_places: of its first failures; the others are only counted.
-  void count(Batch const& batch, std::vector<Batch::Place> const& failed_places) {
-    std::size_t placed = 0;
-    for (std::size_t i = 0; i < batch.size() && record_.accepted < plan_.particles; ++i) {
+  /// Up to the proposal that fills the population. failed_places: of the first failures, `placed` of which are used up; the others
+  /// are only counted.
+  void count(Part const& part, std::vector<Batch::Place> const& failed_places, std::size_t& placed) {
+    Batch const& batch = *part.batch;
+    for (std::size_t i = part.from; i < part.to && record_.accepted < plan_.particles; ++i) {
       std::size_t const m = batch.model(i);
       ++record_.proposed;
       ++record_.models[m].proposed;
@@ -202,6 +254,7 @@ class Run {
     next_.threshold = following_threshold();
     record_ = {};
     record_.models.resize(next_.models.size());
+    ahead_.clear();
   }
 
   double following_threshold() const {
@@ -312,6 +365,7 @@ class Run {
   }
 
   SelectionTarget const& candidates_;
+  int const at_once_;
   Plan const plan_;
   Walk const walk_;
   RunContext& context_;
@@ -320,6 +374,7 @@ class Run {
   State state_;
   Population &last_ = state_.last, &next_ = state_.next;
   PopulationRecord& record_ = state_.record;
+  std::deque<Ahead> ahead_;  // those that are not all counted, without gaps
   Clock::time_point const began_ = Clock::now();
   Clock::time_point saved_ = began_;
 };
@@ -327,7 +382,11 @@ class Run {
 }  // namespace
 
 SelectionResult run(SelectionTarget const& candidates, Settings const& settings, RunContext& context) {
-  return Run(candidates, settings, context).run();
+  return run_wide(candidates, settings, context, ranks::together() ? lanes_of_a_rank * ranks::size() : 0);
+}
+
+SelectionResult run_wide(SelectionTarget const& candidates, Settings const& settings, RunContext& context, int at_once) {
+  return Run(candidates, settings, context, at_once).run();
 }
 
 }  // namespace sysid::abc

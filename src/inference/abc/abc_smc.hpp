@@ -10,5 +10,7 @@ namespace sysid::abc {
 /// threshold. The first `particles` accepted proposals, by number, make a population, so threads, lanes and interruptions change
 /// nothing. Toni and Stumpf 2010 (models), Filippi et al. 2013 (kernels).
 SelectionResult run(SelectionTarget const& candidates, Settings const& settings, RunContext& context);
+/// The same with at least so many proposals simulated at once, where a population needs as many: what many ranks do.
+SelectionResult run_wide(SelectionTarget const& candidates, Settings const& settings, RunContext& context, int at_once);
 
 }  // namespace sysid::abc

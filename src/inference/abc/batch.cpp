@@ -38,14 +38,12 @@ void Batch::sort_out(std::size_t model) {
   ending_[model].resize(inside.size());
 }
 
-std::vector<Batch::Place> Batch::failed_places(int wanted, std::size_t most) const {
-  std::vector<Place> found;
-  for (std::size_t i = 0; i < size() && wanted > 0 && found.size() < most; ++i) {
+void Batch::find_failed_places(std::size_t from, std::size_t to, int& wanted, std::size_t most, std::vector<Place>& found) const {
+  for (std::size_t i = from; i < to && wanted > 0 && found.size() < most; ++i) {
     if (!is_simulated(i)) continue;
     if (ending(i) == Simulated::within) --wanted;
     if (ending(i) == Simulated::failed) found.push_back(candidates_.failure(static_cast<int>(model(i)), theta(i)));
   }
-  return found;
 }
 
 void Batch::keep(std::size_t i, Particles& particles) const {

@@ -16,9 +16,9 @@ class Batch {
 
   /// Where a simulation went wrong, in the user's words, and when [s].
   using Place = std::pair<std::string, double>;
-  /// Of its first failures, `most` of them, in the order of the proposals and before the one that is the `wanted`-th within the
-  /// threshold. Throws Interrupted.
-  std::vector<Place> failed_places(int wanted, std::size_t most) const;
+  /// Adds those of its proposals [from, to), in their order, until there are `most` and before the one that is the `wanted`-th
+  /// within the threshold, which is counted down. Throws Interrupted.
+  void find_failed_places(std::size_t from, std::size_t to, int& wanted, std::size_t most, std::vector<Place>& found) const;
 
   std::size_t size() const { return proposed_.model.size(); }
   std::size_t model(std::size_t i) const { return static_cast<std::size_t>(proposed_.model[i]); }
