@@ -18,6 +18,9 @@ constexpr x3::rule<struct data_measure_tag, ast::DataMeasure> data_measure = "a 
 constexpr x3::rule<struct data_constant_tag, ast::DataConstant> data_constant = "a constant";
 constexpr x3::rule<struct data_split_tag, ast::DataSplit> data_split = "a split";
 constexpr x3::rule<struct split_part_tag, ast::SplitPart> split_part = wanted::name;
+constexpr x3::rule<struct data_reading_tag, ast::DataReading> data_reading = "how the file is read";
+constexpr x3::rule<struct reading_setting_tag, ast::ReadingSetting> reading_setting = wanted::name;
+constexpr x3::rule<struct reading_item_tag, ast::ReadingItem> reading_item = "a value";
 constexpr x3::rule<struct rows_tag> rows_word = "`rows`";
 constexpr x3::rule<struct range_tag> range = "`..`";
 
@@ -25,11 +28,22 @@ constexpr x3::rule<struct range_tag> range = "`..`";
 constexpr auto column_name = [](auto& context) { x3::_val(context).name = std::move(x3::_attr(context).text); };
 constexpr auto column_text = [](auto& context) { x3::_val(context).name = std::move(x3::_attr(context).value); };
 
+/// An item keeps how it is written.
+constexpr auto item_text = [](auto& context) {
+  x3::_val(context).value = std::move(x3::_attr(context).value);
+  x3::_val(context).quoted = true;
+};
+constexpr auto item_word = [](auto& context) { x3::_val(context).value = std::move(x3::_attr(context).text); };
+constexpr auto item_digits = [](auto& context) {
+  for (char const c : x3::_attr(context))
+    if (c != ' ' && c != '\t') x3::_val(context).value += c;
+};
+
 auto const data_def = located[keyword("data") > name[to(&ast::Data::name)] > opening_brace >
                               *(data_line[append(&ast::Data::statements)] | '\n' | ';') > '}'];
 auto const data_line_def = (!(x3::lit('\n') | ';' | '}' | x3::eoi)) > data_statement[take] > end_of_statement;
 auto const data_statement_def = data_file[take] | data_time[take] | data_rate[take] | data_input[take] | data_measure[take] |
-                                data_constant[take] | data_split[take];
+                                data_constant[take] | data_split[take] | data_reading[take];
 
 auto const column_def = located[(name[column_name] | text[column_text]) >> -unit[to(&ast::Column::unit)]];
 auto const data_file_def = located[word("file") > text[to(&ast::DataFile::path)]];
@@ -47,10 +61,19 @@ auto const data_split_def =
     located[word("split") > split_part[append(&ast::DataSplit::parts)] > *(',' > split_part[append(&ast::DataSplit::parts)])];
 auto const split_part_def = located[name[to(&ast::SplitPart::name)] > equals > rows_word > expression[to(&ast::SplitPart::first)] >
                                     range > expression[to(&ast::SplitPart::last)]];
+auto const data_reading_def = located[word("read") > reading_setting[append(&ast::DataReading::settings)] >
+                                      *(',' > reading_setting[append(&ast::DataReading::settings)])];
+auto const reading_setting_def =
+    located[name[to(&ast::ReadingSetting::name)] > equals >
+            (('(' > reading_item[append(&ast::ReadingSetting::items)] > *(',' > reading_item[append(&ast::ReadingSetting::items)]) >
+              ')') |
+             (reading_item[append(&ast::ReadingSetting::items)] >>
+              -(range[set(&ast::ReadingSetting::range, true)] > reading_item[append(&ast::ReadingSetting::items)])))];
+auto const reading_item_def = located[text[item_text] | name[item_word] | x3::raw[-x3::lit('-') >> plain_number][item_digits]];
 auto const rows_word_def = word("rows");
 auto const range_def = x3::lit("..");
 
 BOOST_SPIRIT_DEFINE(data, data_line, data_statement, column, data_file, data_time, data_rate, data_input, data_measure,
-                    data_constant, data_split, split_part, rows_word, range)
+                    data_constant, data_split, data_reading, reading_setting, reading_item, split_part, rows_word, range)
 
 }  // namespace sysid::grammar

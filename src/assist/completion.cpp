@@ -116,6 +116,7 @@ class Completer : private Offer {
     std::string_view const first = place().first();
     if (place().before.empty()) return keywords(words::data_statements);
     if (first == "time" && place().before.size() == 1) return columns();
+    if (first == "read") return reading();
     if (first == "split") return place().follows("=") ? keyword("rows") : void();
     if (first == "constant") return place().has("=") ? expression() : own(SymbolKind::parameter);
     if (first != "input" && first != "measure") return;
@@ -126,6 +127,16 @@ class Completer : private Offer {
     if (place().has("error")) return normal();
     if (!place().has("hold")) keyword("hold");
     keyword("error");
+  }
+
+  void reading() {
+    if (place().follows("read") || place().follows(",")) {
+      return vocabulary(reading_settings(), CompletionKind::setting);
+    }
+    auto const& tokens = place().before;
+    if (!place().follows("=") || tokens.size() < 2) return;
+    if (tokens[tokens.size() - 2].is("date")) return columns();
+    vocabulary(choices_of("read", tokens[tokens.size() - 2].text), CompletionKind::choice);
   }
 
   void candidates() {

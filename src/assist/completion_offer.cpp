@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/system/files.hpp"
-#include "data/table.hpp"
+#include "data/table/table.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::assist {

@@ -13,6 +13,7 @@
 #include "check/task/signal_generators.hpp"
 #include "check/task/task_options.hpp"
 #include "data/input_rule.hpp"
+#include "data/table/reading_rules.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "gaussian_process/kernel.hpp"
@@ -215,7 +216,18 @@ std::vector<Word> options_of(std::string_view verb) {
   return all;
 }
 
+std::vector<Word> reading_settings() {
+  Words all;
+  for (ReadingRow const& row : reading_rows())
+    all.push_back({WordKind::setting, std::string(row.name), std::string(row.usage), std::string(row.summary)});
+  return all;
+}
+
 std::vector<Word> choices_of(std::string_view owner, std::string_view setting) {
+  if (owner == "read") {
+    ReadingRow const* const row = find_reading(setting);
+    return row == nullptr ? Words() : as_choices(row->choices);
+  }
   if (setting == "hold") {
     Words all;
     for (InputRuleRow const& row : input_rules()) all.push_back({WordKind::choice, std::string(row.name), {}, {}});

@@ -41,6 +41,8 @@ std::vector<Word> settings_of(std::string_view owner);
 std::vector<Word> options_of(std::string_view verb);
 /// The back ends that a task of this verb may name.
 WordKind backends_of(std::string_view verb);
+/// The settings of `read` in a data block.
+std::vector<Word> reading_settings();
 /// Values of an option or setting that are words: of `start`, `prediction`, `hold`, of a setting with choices or flags.
 std::vector<Word> choices_of(std::string_view owner, std::string_view setting);
 

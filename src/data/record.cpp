@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
-#include "data/file_errors.hpp"
+#include "data/format/open_record.hpp"
 #include "data/rounded_times.hpp"
-#include "data/table.hpp"
+#include "data/table/file_errors.hpp"
+#include "data/table/unit_text.hpp"
 #include "data/table_record.hpp"
 
 namespace sysid {
@@ -27,40 +29,105 @@ void to_si(std::vector<double>& values, ColumnRequest const& request) {
   for (double& value : values) value = convert(value, unit, *declared) * declared->scale;
 }
 
-data_errors::Cell cell(Table const& table, std::size_t index, std::string const& column) {
-  int const row = static_cast<int>(index) + 1;
-  return {table.name(), table.rows_before() + row, table.line(row), column};
+/// With the unit that the file states, where the data block has it read and gives none itself; the two must agree.
+template <class Request>
+Request with_unit_of_file(RecordFile const& file, Request request) {
+  std::optional<std::string> const text = file.unit(request.column);
+  if (!text) return request;
+  std::optional<Unit> const unit = unit_of_text(*text);
+  if (request.unit) {
+    Unit const& stated = *request.unit;
+    auto const same = [](double a, double b) { return std::fabs(a - b) <= 1e-9 * std::max(std::fabs(a), std::fabs(b)); };
+    if (unit && (unit->dimension != stated.dimension || !same(unit->scale, stated.scale) || !same(unit->offset, stated.offset)))
+      throw UserError(data_errors::unit_differs(file.name(), request.column, stated.text, unit->text, request.mention));
+    return request;
+  }
+  if (!unit && !text->empty()) throw UserError(data_errors::unit_unknown(file.name(), request.column, {}, request.mention));
+  if (!unit) return request;
+  if (request.declared && unit->dimension != request.declared->dimension)
+    throw UserError(data_errors::unit_of_another_kind(
+        file.name(), request.column, unit->text,
+        request.declared->text.empty() ? format_dimension(request.declared->dimension) : request.declared->text, request.mention));
+  request.unit = unit;
+  return request;
 }
 
-/// A column without gaps, as its numbers stand there; what: "an input", "the time".
-std::vector<double> complete(Table const& table, ColumnRequest const& request, std::string const& what) {
-  std::vector<double> values = table.numbers(request.column, request.mention);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (std::isnan(values[i])) throw UserError(data_errors::missing_value(cell(table, i, request.column), what, request.mention));
-  return values;
-}
+/// The columns of a record as they are asked for, all of one length.
+class Columns {
+ public:
+  Columns(RecordFile const& file, RecordRequest const& request) : file_(file), request_(request) {}
 
-std::vector<double> times(Table const& table, RecordRequest const& request, bool whole) {
-  if (!request.time) {
-    std::vector<double> time(static_cast<std::size_t>(table.rows()));
-    for (std::size_t i = 0; i < time.size(); ++i)
-      time[i] = request.step > 0 ? static_cast<double>(i) * request.step : static_cast<double>(i + 1);  // a running sum would drift
+  std::vector<double> times(bool whole) {
+    ColumnRequest column = *request_.time;
+    std::vector<double> const written = complete(file_.times(column.column, column.mention), column, "the time");
+    if (!file_.has_stamps()) {
+      column = with_unit_of_file(file_, column);
+      if (column.unit && column.unit->dimension != unit_atom("s").value().dimension)
+        throw UserError(data_errors::unit_of_another_kind(file_.name(), column.column, column.unit->text, "s", column.mention));
+      time_unit_ = column.unit;
+    }
+    auto const in_seconds = [&](std::vector<double>& time) {
+      if (!file_.has_stamps()) to_si(time, column);
+    };
+    std::vector<double> time = written;
+    in_seconds(time);
+    for (std::size_t i = 1; i < time.size() && !request_.independent_rows; ++i)
+      if (!(time[i] > time[i - 1]))
+        throw UserError(data_errors::time_not_increasing(file_.place(i, column.column), time[i - 1], time[i], column.mention));
+    if (whole && !request_.independent_rows && time.size() > 2 && unequal_step(time) > 0)
+      if (std::optional<std::vector<double>> equal = equal_times_before_rounding(written)) {
+        time = std::move(*equal);
+        in_seconds(time);
+      }
     return time;
   }
-  std::vector<double> const written = complete(table, *request.time, "the time");
-  std::vector<double> time = written;
-  to_si(time, *request.time);
-  for (std::size_t i = 1; i < time.size() && !request.independent_rows; ++i)
-    if (!(time[i] > time[i - 1]))
-      throw UserError(
-          data_errors::time_not_increasing(cell(table, i, request.time->column), time[i - 1], time[i], request.time->mention));
-  if (whole && !request.independent_rows && time.size() > 2 && unequal_step(time) > 0)
-    if (std::optional<std::vector<double>> equal = equal_times_before_rounding(written)) {
-      time = std::move(*equal);
-      to_si(time, *request.time);
+  /// Where no column has the time.
+  std::vector<double> counted_times() const {
+    std::vector<double> time(file_.row_count() ? static_cast<std::size_t>(*file_.row_count()) : rows_.value_or(0));
+    for (std::size_t i = 0; i < time.size(); ++i)  // a running sum would drift
+      time[i] = request_.step > 0 ? static_cast<double>(i) * request_.step : static_cast<double>(i + 1);
+    return time;
+  }
+  std::vector<double> input(InputRequest const& asked) {
+    InputRequest const column = with_unit_of_file(file_, asked);
+    std::vector<double> values = complete(file_.numbers(column.column, column.mention), column, "an input");
+    to_si(values, column);
+    return values;
+  }
+  std::vector<double> measured(ColumnRequest const& asked) {
+    ColumnRequest const column = with_unit_of_file(file_, asked);
+    std::vector<double> values = of_one_length(file_.numbers(column.column, column.mention), column);
+    for (std::size_t i = 0; i < values.size() && column.counts; ++i)
+      if (!std::isnan(values[i]) && (values[i] < 0 || values[i] != std::floor(values[i]) || std::isinf(values[i])))
+        throw UserError(data_errors::not_a_count(file_.place(i, column.column), values[i], column.mention));
+    to_si(values, column);
+    return values;
+  }
+  std::optional<Unit> const& time_unit() const { return time_unit_; }
+
+ private:
+  std::vector<double> of_one_length(std::vector<double> values, ColumnRequest const& column) {
+    if (!rows_) {
+      rows_ = values.size();
+      first_ = column.column;
     }
-  return time;
-}
+    if (*rows_ != values.size())
+      throw UserError(data_errors::unequal_lengths(file_.name(), first_, *rows_, column.column, values.size(), column.mention));
+    return values;
+  }
+  /// A column without gaps; what: "an input", "the time".
+  std::vector<double> complete(std::vector<double> values, ColumnRequest const& column, std::string const& what) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::isnan(values[i])) throw UserError(data_errors::missing_value(file_.place(i, column.column), what, column.mention));
+    return of_one_length(std::move(values), column);
+  }
+
+  RecordFile const& file_;
+  RecordRequest const& request_;
+  std::optional<std::size_t> rows_;
+  std::string first_;  // the column that has them
+  std::optional<Unit> time_unit_;
+};
 
 /// The diagnostic of a UserError, pointing to `mention` when it points nowhere yet.
 Diagnostic at(UserError const& error, std::optional<Span> mention) {
@@ -83,65 +150,57 @@ auto collect(Diagnostics& diagnostics, std::optional<Span> mention, Read read) -
 }  // namespace
 
 std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics) {
-  std::optional<Table> const table = collect(diagnostics, request.mention, [&] {
-    Table read = Table::read(request.path, request.mention, request.shown_path);
-    if (read.rows() < 2) throw UserError(data_errors::too_few_rows(read.name(), read.rows(), request.mention));
-    return read;
+  ReadingRules rules = request.rules;
+  if (request.time) rules.time_column = request.time->column;
+  std::optional<std::unique_ptr<RecordFile>> const file = collect(diagnostics, request.mention, [&] {
+    std::unique_ptr<RecordFile> opened = open_record(request.path, rules, request.mention, request.shown_path);
+    if (auto const rows = opened->row_count(); rows && *rows < 2)
+      throw UserError(data_errors::too_few_rows(opened->name(), *rows, request.mention));
+    return opened;
   });
-  return table ? read_record(request, *table, diagnostics, true) : std::nullopt;
+  return file ? read_record(request, **file, diagnostics, true) : std::nullopt;
 }
 
-std::optional<Record> read_record(RecordRequest const& request, Table const& table, Diagnostics& diagnostics, bool whole) {
+std::optional<Record> read_record(RecordRequest const& request, RecordFile const& file, Diagnostics& diagnostics, bool whole) {
   if (!request.time && !(request.step > 0) && !request.independent_rows)
     throw InternalError("a record without a time column needs a step");
   bool complete_record = true;
   Record record;
   record.path = request.shown_path.empty() ? request.path : request.shown_path;
-  record.digest = table.digest();
-  record.comments = table.comments();
-  std::optional<std::vector<double>> time = collect(diagnostics, request.mention, [&] { return times(table, request, whole); });
-  if (!time) complete_record = false;
-  // Inputs of independent rows are read at rows alone.
-  std::vector<double> rows(static_cast<std::size_t>(table.rows()));
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i + 1);
-  for (InputRequest const& input : request.inputs) {
-    std::optional<std::vector<double>> samples = collect(diagnostics, input.mention, [&] {
-      std::vector<double> values = complete(table, input, "an input");
-      to_si(values, input);
-      return values;
-    });
-    std::optional<InputSignal> signal;
-    if (samples && time)
-      signal = collect(diagnostics, input.mention,
-                       [&] { return InputSignal(input.rule, request.independent_rows ? rows : *time, std::move(*samples)); });
-    if (signal)
-      record.inputs.push_back(std::move(*signal));
-    else
-      complete_record = false;
-  }
+  record.digest = file.digest();
+  record.comments = file.comments();
+  Columns columns(file, request);
+  auto const keep = [&](auto&& read, std::optional<Span> mention) {
+    auto result = collect(diagnostics, mention, read);
+    complete_record = complete_record && result.has_value();
+    return result;
+  };
+  std::optional<std::vector<double>> time;
+  if (request.time) time = keep([&] { return columns.times(whole); }, request.mention);
+  std::vector<std::optional<std::vector<double>>> inputs;
+  for (InputRequest const& input : request.inputs) inputs.push_back(keep([&] { return columns.input(input); }, input.mention));
   for (std::optional<ColumnRequest> const& channel : request.measured) {
-    std::optional<std::vector<double>> samples;
-    if (!channel)
-      samples.emplace();
-    else
-      samples = collect(diagnostics, channel->mention, [&] {
-        std::vector<double> values = table.numbers(channel->column, channel->mention);
-        if (channel->counts)
-          for (std::size_t i = 0; i < values.size(); ++i)
-            if (values[i] < 0 || values[i] != std::floor(values[i]) || std::isinf(values[i]))
-              if (!std::isnan(values[i]))
-                throw UserError(data_errors::not_a_count(cell(table, i, channel->column), values[i], channel->mention));
-        to_si(values, *channel);
-        return values;
-      });
-    if (samples)
-      record.measured.push_back(std::move(*samples));
-    else
-      complete_record = false;
+    auto samples = channel ? keep([&] { return columns.measured(*channel); }, channel->mention) : std::vector<double>();
+    if (samples) record.measured.push_back(std::move(*samples));
+  }
+  if (!request.time) time = columns.counted_times();
+  if (complete_record && whole && time->size() < 2) {
+    diagnostics.add(data_errors::too_few_rows(file.name(), static_cast<int>(time->size()), request.mention));
+    return std::nullopt;
+  }
+  // Inputs of independent rows are read at rows alone.
+  std::vector<double> rows(time ? time->size() : 0);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i + 1);
+  for (std::size_t i = 0; i < inputs.size() && time; ++i) {
+    InputRequest const& input = request.inputs[i];
+    if (!inputs[i]) continue;
+    auto signal = keep([&] { return InputSignal(input.rule, request.independent_rows ? rows : *time, std::move(*inputs[i])); },
+                       input.mention);
+    if (signal) record.inputs.push_back(std::move(*signal));
   }
   if (!complete_record) return std::nullopt;
   record.time = std::move(*time);
-  if (request.time) record.time_unit = request.time->unit;
+  record.time_unit = file.has_stamps() && request.time ? request.time->unit : columns.time_unit();
   return record;
 }
 

@@ -7,6 +7,7 @@
 #include "core/numeric/unit.hpp"
 #include "core/text/diagnostic.hpp"
 #include "data/experiment.hpp"
+#include "data/table/reading_rules.hpp"
 
 namespace sysid {
 
@@ -28,6 +29,7 @@ struct InputRequest : ColumnRequest {
 struct RecordRequest {
   std::string path;
   std::optional<Span> mention;
+  ReadingRules rules{};                                // how the file is written
   std::optional<ColumnRequest> time;                   // in seconds unless it has a unit
   double step = 0;                                     // [s] > 0 when there is no time column; row 1 is then at time 0
   bool independent_rows = false;                       // no dynamics: times in any order, and row numbers where there are none

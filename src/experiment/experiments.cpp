@@ -127,6 +127,7 @@ RecordRequest record_request(DataBlock const& block, Model const& model, std::fi
   request.path = (folder / block.path).string();
   request.shown_path = block.shown_path;
   request.mention = block.path_span;
+  request.rules = block.rules;
   request.step = block.step > 0 ? block.step : model.step.value_or(0);
   request.independent_rows = model.dynamics == Dynamics::none;
   if (block.time) request.time = ColumnRequest{block.time->column, block.time->unit, std::nullopt, block.time->span};

@@ -6,7 +6,7 @@
 
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
-#include "data/table.hpp"
+#include "data/format/open_record.hpp"
 #include "load/load.hpp"
 #include "repl/commands.hpp"
 #include "repl/statements.hpp"
@@ -122,12 +122,12 @@ bool columns(Context& context, std::string const& path) {
   if (path.empty()) return context.output.refuse("`columns` needs the name of a data file", "`columns FILE.csv`");
   auto const folder = context.work.statements.path.parent_path();
   auto const given = path_of(path);
-  Table const table = Table::read((std::filesystem::exists(given) ? given : folder / given).string());
+  auto const record = open_record((std::filesystem::exists(given) ? given : folder / given).string(), {});
   std::vector<std::vector<std::string>> rows = {{"column", "numbers", "smallest", "largest", "first"}};
-  for (std::string const& column : table.columns()) {
+  for (std::string const& column : record->columns()) {
     std::vector<double> values;
     try {
-      values = table.numbers(column);
+      values = record->numbers(column);
     } catch (UserError const&) {
       rows.push_back({column, "not only numbers", "", "", ""});
       continue;
@@ -143,7 +143,8 @@ bool columns(Context& context, std::string const& path) {
     rows.push_back({column, std::to_string(count), significant(low, 4), significant(high, 4),
                     values.empty() ? "" : significant(values.front(), 6)});
   }
-  context.output.answers() << fmt::format("{} rows\n", table.rows()) << align_columns(rows, 1) << std::flush;
+  if (auto const count = record->row_count()) context.output.answers() << fmt::format("{} rows\n", *count);
+  context.output.answers() << align_columns(rows, 1) << std::flush;
   return true;
 }
 

@@ -76,7 +76,9 @@ constexpr KeywordRow keyword_rows[] = {
     {"or", "if y > 0 or x < 1 then k else 0", "at least one of the conditions holds"},
     {"not", "if not y > 0 then k else 0", "the condition does not hold"},
     // inside a data block
-    {"file", "file \"bench.csv\"", "the CSV file of a record; its path is relative to the folder of the .sysid file"},
+    {"file", "file \"bench.csv\"",
+     "the file of a record: CSV, MATLAB, NetCDF or HDF5; its path is relative to the folder of the .sysid file"},
+    {"read", "read decimal = \",\", names = 4", "how a file is written that is not plain CSV (`list reading` has the settings)"},
     {"rate", "rate 1000 [Hz]", "samples per second, if no column contains the time"},
     {"step", "step 1 [ms]", "the time between samples, if no column contains it"},
     {"measure", "measure displacement = y_noisy [mm]", "the column with the samples of a channel, and its unit"},

@@ -8,7 +8,6 @@
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/wrapped.hpp"
-#include "data/table.hpp"
 #include "experiment/experiments.hpp"
 
 namespace sysid::repl {

@@ -7,7 +7,7 @@
 
 #include "app/session/preconditions.hpp"
 #include "core/text/words.hpp"
-#include "data/table.hpp"
+#include "data/format/open_record.hpp"
 #include "experiment/experiments.hpp"
 #include "load/load.hpp"
 #include "repl/answers.hpp"
@@ -137,10 +137,12 @@ void ask_for_columns(Context& context, Workspace const& draft, Source const& sou
         return true;  // who reads it says so
       }
     };
-    std::optional<Table> table;
-    if (refused([&] { table = Table::read(path.string(), block.path_span); })) continue;
-    auto const ask = [&](ColumnUse const& use) { refused([&] { table->numbers(use.column, use.span); }); };
-    if (block.time) ask(*block.time);
+    std::unique_ptr<RecordFile> record;
+    ReadingRules rules = block.rules;
+    if (block.time) rules.time_column = block.time->column;
+    if (refused([&] { record = open_record(path.string(), rules, block.path_span); })) continue;
+    auto const ask = [&](ColumnUse const& use) { refused([&] { record->numbers(use.column, use.span); }); };
+    if (block.time) refused([&] { record->times(block.time->column, block.time->span); });
     for (DataInputUse const& input : block.inputs) ask(input);
     for (DataMeasureUse const& measure : block.measured) ask(measure);
   }

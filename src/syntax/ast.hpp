@@ -304,7 +304,26 @@ struct DataSplit : Located {
   friend bool operator==(DataSplit const&, DataSplit const&) = default;
 };
 
-using DataStatement = std::variant<DataFile, DataTime, DataRate, DataInput, DataMeasure, DataConstant, DataSplit>;
+/// `","`, `NaN`, `-9999`: a text, or a word or number as it is written.
+struct ReadingItem : Located {
+  std::string value;
+  bool quoted = false;
+  friend bool operator==(ReadingItem const&, ReadingItem const&) = default;
+};
+/// `names = 4`, `values = 7..106`, `missing = ("NaN", "-9999")`.
+struct ReadingSetting : Located {
+  Name name;
+  std::vector<ReadingItem> items;
+  bool range = false;  // two items with `..` between them
+  friend bool operator==(ReadingSetting const&, ReadingSetting const&) = default;
+};
+/// `read decimal = ",", names = 4`: how the file is written.
+struct DataReading : Located {
+  std::vector<ReadingSetting> settings;
+  friend bool operator==(DataReading const&, DataReading const&) = default;
+};
+
+using DataStatement = std::variant<DataFile, DataTime, DataRate, DataInput, DataMeasure, DataConstant, DataSplit, DataReading>;
 
 /// `data bench { ... }`.
 struct Data : Located {

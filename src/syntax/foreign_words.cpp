@@ -52,7 +52,7 @@ constexpr ForeignWord for_model_statements[] = {
 };
 
 constexpr ForeignWord for_data_statements[] = {
-    {"csv", "file"},         {"load", "file"},          {"read", "file"},       {"read_csv", "file"},    {"path", "file"},
+    {"csv", "file"},         {"load", "file"},          {"delimiter", "read"},  {"read_csv", "file"},    {"path", "file"},
     {"source", "file"},      {"filename", "file"},      {"table", "file"},      {"sampling", "rate"},    {"fs", "rate"},
     {"sample_rate", "rate"}, {"sampling_rate", "rate"}, {"samplerate", "rate"}, {"frequency", "rate"},   {"dt", "step"},
     {"ts", "step"},          {"sample_time", "step"},   {"timestep", "step"},   {"time_step", "step"},   {"observe", "measure"},

@@ -104,6 +104,15 @@ struct DataStatementText {
              return fmt::format("{} = rows {}..{}", part.name.text, unparse(part.first), unparse(part.last));
            });
   }
+  std::string operator()(ast::DataReading const& s) const {
+    return "read " + joined(s.settings, ", ", [](ast::ReadingSetting const& setting) {
+             std::string const items = joined(setting.items, setting.range ? ".." : ", ", [](ast::ReadingItem const& item) {
+               return item.quoted ? string_literal(item.value) : item.value;
+             });
+             bool const list = setting.items.size() > 1 && !setting.range;
+             return fmt::format("{} = {}", setting.name.text, list ? "(" + items + ")" : items);
+           });
+  }
 };
 
 struct CandidateStatementText {

@@ -36,7 +36,7 @@ inline constexpr std::array<std::string_view, 12> model_statements{
 /// Words inside them.
 inline constexpr std::array<std::string_view, 3> model_words{"discrete", "per", "experiment"};
 /// First words of the statements of a data block, and the words inside them.
-inline constexpr std::array<std::string_view, 8> data_statements{"file",  "time",    "rate",     "step",
+inline constexpr std::array<std::string_view, 9> data_statements{"file",  "read",    "time",     "rate", "step",
                                                                  "input", "measure", "constant", "split"};
 inline constexpr std::array<std::string_view, 3> data_words{"hold", "error", "rows"};
 /// Of a set of candidate models: what begins a statement that is no candidate, and what follows a candidate.

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "data/table.hpp"
+#include "data/table/table.hpp"
 #include "data/table_record.hpp"
 #include "temporary_file.hpp"
 

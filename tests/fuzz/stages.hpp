@@ -15,7 +15,7 @@
 #include "core/numeric/unit.hpp"
 #include "core/text/diagnostic.hpp"
 #include "data/record.hpp"
-#include "data/table.hpp"
+#include "data/table/table.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "likelihood/process/process_model.hpp"
 #include "load/modules.hpp"

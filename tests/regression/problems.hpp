@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/numeric/random.hpp"
-#include "data/table.hpp"
+#include "data/table/table.hpp"
 #include "expression/term.hpp"
 #include "regression/discovery.hpp"
 

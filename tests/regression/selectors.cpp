@@ -8,7 +8,7 @@
 #include <map>
 
 #include "core/numeric/random.hpp"
-#include "data/table.hpp"
+#include "data/table/table.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "regression/choice/triangle.hpp"
 

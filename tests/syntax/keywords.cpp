@@ -94,6 +94,16 @@ TEST_CASE("each statement of a data block gives its node") {
   CHECK(input.column.unit.has_value());
   CHECK_FALSE(only_data<ast::DataInput>("input x = force").rule.has_value());
   CHECK(only_data<ast::DataMeasure>("measure displacement = y_noisy [mm]").channel.text == "displacement");
+  auto const reading =
+      only_data<ast::DataReading>("read names = 4, values = 7..106, missing = (\"NaN\", -9999, none), separator = tab");
+  REQUIRE(reading.settings.size() == 4);
+  CHECK(reading.settings[0].items.at(0).value == "4");
+  CHECK(reading.settings[1].range);
+  CHECK(reading.settings[1].items.at(1).value == "106");
+  CHECK(reading.settings[2].items.at(0).quoted);
+  CHECK(reading.settings[2].items.at(1).value == "-9999");
+  CHECK(reading.settings[2].items.at(2).value == "none");
+  CHECK(reading.settings[3].items.at(0).value == "tab");
   auto const split = only_data<ast::DataSplit>("split train = rows 1..500, test = rows 501 .. n - 1");
   REQUIRE(split.parts.size() == 2);
   CHECK(std::get<ast::Number>(split.parts[0].last.node).value == 500);

@@ -146,7 +146,17 @@ ast::ModelStatement RandomTree::model_statement() {
 }
 
 ast::DataStatement RandomTree::data_statement() {
-  switch (random_.below(7)) {
+  switch (random_.below(8)) {
+    case 6: {
+      auto const item = [&] {
+        return random_.chance(2) ? ast::ReadingItem{{}, text().value, true} : ast::ReadingItem{{}, name().text};
+      };
+      return ast::DataReading{{}, several(1, [&] {
+                                auto setting = ast::ReadingSetting{{}, name(), several(1, item)};
+                                setting.range = setting.items.size() == 2 && random_.chance(2);
+                                return setting;
+                              })};
+    }
     case 5:
       return ast::DataConstant{{}, name(), expression(2)};
     case 0:

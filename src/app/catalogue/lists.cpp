@@ -9,6 +9,7 @@
 #include "check/dictionary/generators.hpp"
 #include "check/elaborate/array_functions.hpp"
 #include "core/setting/table.hpp"
+#include "data/table/reading_rules.hpp"
 #include "distribution/distribution.hpp"
 #include "function/table.hpp"
 #include "gaussian_process/kernel.hpp"
@@ -100,16 +101,28 @@ std::string list_solvers() {
   return text;
 }
 
+std::string list_reading() {
+  std::string text;
+  for (ReadingRow const& row : reading_rows())
+    text += fmt::format("{:<14} {}\n{:<14} read {}\n", row.name, row.summary, "", row.usage);
+  return text;
+}
+
 std::string list_modules() {
   std::string text;
   for (LibraryModule const& module : library_modules()) text += fmt::format("{:<14} {}\n", module.name, module_summary(module));
   return text;
 }
 
-constexpr ListRow lists_by_topic[] = {{"functions", &list_functions},       {"distributions", &list_distributions},
-                                      {"disturbances", &list_disturbances}, {"kernels", &list_kernels},
-                                      {"backends", &list_backends},         {"discovery", &list_discovery},
-                                      {"solvers", &list_solvers},           {"modules", &list_modules}};
+constexpr ListRow lists_by_topic[] = {{"functions", &list_functions},
+                                      {"distributions", &list_distributions},
+                                      {"disturbances", &list_disturbances},
+                                      {"kernels", &list_kernels},
+                                      {"backends", &list_backends},
+                                      {"discovery", &list_discovery},
+                                      {"solvers", &list_solvers},
+                                      {"reading", &list_reading},
+                                      {"modules", &list_modules}};
 
 }  // namespace
 

@@ -17,7 +17,7 @@
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/input_rule.hpp"
-#include "data/table.hpp"
+#include "data/table/table.hpp"
 #include "data/table_record.hpp"
 #include "experiment/record_request.hpp"
 #include "model/lags.hpp"
@@ -103,6 +103,9 @@ class Tracking {
         throw no_tracking(
             fmt::format("the input rule `{}` needs later samples, so the record cannot be followed", rule_name(input.rule())),
             "write `hold zero_order` or `hold linear` in the data block to follow a record");
+    if (needs_whole_file(block_.rules))
+      throw no_tracking("the data block has `read` with settings that need the whole file",
+                        "of `read`, only `separator`, `decimal`, `thousands`, `missing` and `ragged` go with rows that arrive");
     bool const standard_input = fit_.options.record == "-";
     auto const path = standard_input ? std::filesystem::path("-") : session_.folder() / block_.path;
     gathered_.file = standard_input ? "standard input" : block_.path;
@@ -143,7 +146,7 @@ class Tracking {
     Diagnostics diagnostics;
     std::optional<Record> const record =
         read_record(record_request(block_, model(), session_.folder()),
-                    Table::parse(gathered_.file, std::move(text), block_.path_span, gone_), diagnostics);
+                    Table::parse(gathered_.file, std::move(text), block_.path_span, gone_, block_.rules), diagnostics);
     if (!record) throw UnusableData(std::move(diagnostics));
     require_steps(*record, block_, model());
     Experiment experiment = cut(*record, block_, model(), -1, {StartRule::Kind::rest, 0});

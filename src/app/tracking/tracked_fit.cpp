@@ -13,6 +13,10 @@
 #include "check/checked/task_kinds.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "core/system/files.hpp"
+#include "data/format/open_record.hpp"
+#include "data/table/encoding.hpp"
+#include "data/table/gzip.hpp"
+#include "data/table/table.hpp"
 #include "data/table_record.hpp"
 #include "experiment/record_request.hpp"
 #include "report/file/stored_files.hpp"
@@ -79,9 +83,15 @@ FittedModel stored_fit(Session const& session, Task const& task, FitTask const& 
 Record record_so_far(DataBlock const& block, Model const& model, std::filesystem::path const& folder) {
   RecordRequest const request = record_request(block, model, folder);
   std::string text = read_file(request.path);
-  if (auto const end = text.rfind('\n'); end != std::string::npos) text.resize(end + 1);
   Diagnostics diagnostics;
-  auto record = read_record(request, Table::parse(request.path, std::move(text), request.mention), diagnostics);
+  if (format_of(text) != nullptr || is_gzip(text) || has_utf16_mark(text)) {  // no lines that are appended
+    auto whole = load(request, diagnostics);
+    if (!whole) throw UnusableData(std::move(diagnostics));
+    require_steps(*whole, block, model);
+    return std::move(*whole);
+  }
+  if (auto const end = text.rfind('\n'); end != std::string::npos) text.resize(end + 1);
+  auto record = read_record(request, Table::parse(request.path, std::move(text), request.mention, 0, request.rules), diagnostics);
   if (!record) throw UnusableData(std::move(diagnostics));
   require_steps(*record, block, model);
   return std::move(*record);

@@ -13,6 +13,7 @@
 #include "core/setting/settings.hpp"
 #include "data/experiment.hpp"
 #include "data/start_rule.hpp"
+#include "data/table/reading_rules.hpp"
 #include "model/filter_rule.hpp"
 #include "model/lags.hpp"
 #include "regression/column/dictionary.hpp"
@@ -71,6 +72,7 @@ struct DataBlock {
   std::string path;  // as written, relative to the .sysid file
   Span path_span;
   std::string shown_path;  // what messages and results name in its place; empty: `path`
+  ReadingRules rules{};  // how the file is written
   std::optional<ColumnUse> time;
   double step = 0;  // [s], when there is no time column; 0: the block does not say when its rows were taken
   std::vector<DataInputUse> inputs;

@@ -13,7 +13,7 @@
 #include "check/message/errors_disturbances.hpp"
 #include "check/message/errors_numbers.hpp"
 #include "check/units/units.hpp"
-#include "data/file_errors.hpp"
+#include "data/table/file_errors.hpp"
 
 namespace sysid {
 namespace {
@@ -35,6 +35,8 @@ class DataChecker {
     block_.span = tree_.name.span;
     for (ast::DataStatement const& statement : tree_.statements) std::visit([&](auto const& each) { take(each); }, statement);
     if (!file_) diagnostics_.add(errors::no_file(tree_.name));
+    if (std::string const reason = refuse(block_.rules); !reason.empty() && !diagnostics_.has_errors(before_))
+      diagnostics_.add(errors::reading_contradicts(reading_, reason));
     if (diagnostics_.has_errors(before_)) return std::nullopt;
     return block_;
   }
@@ -84,6 +86,23 @@ class DataChecker {
       return;
     }
     block_.step = tree.step ? *value : 1 / *value;
+  }
+  void take(ast::DataReading const& tree) {
+    reading_ = tree.span;
+    for (ast::ReadingSetting const& setting : tree.settings) {
+      ReadingRow const* const row = find_reading(setting.name.text);
+      if (row == nullptr) {
+        std::vector<std::string> known;
+        for (ReadingRow const& each : reading_rows()) known.emplace_back(each.name);
+        diagnostics_.add(errors::unknown_reading(setting.name, known));
+        continue;
+      }
+      if (!fresh(settings_, setting.name, "setting")) continue;
+      ReadingValue value{{}, setting.range};
+      for (ast::ReadingItem const& item : setting.items) value.items.push_back(item.value);
+      if (std::string const wanted = row->take(block_.rules, value); !wanted.empty())
+        diagnostics_.add(errors::bad_reading(setting.span, setting.name.text, wanted, std::string(row->usage)));
+    }
   }
   void take(ast::DataInput const& tree) {
     if (!fresh(inputs_, tree.input, "input")) return;
@@ -180,7 +199,8 @@ class DataChecker {
   Scope scope_;
   DataBlock block_;
   std::optional<Span> file_, times_;
-  std::map<std::string, Span> inputs_, channels_, constants_, parts_;
+  Span reading_{};
+  std::map<std::string, Span> inputs_, channels_, constants_, parts_, settings_;
 };
 
 }  // namespace
@@ -189,14 +209,30 @@ std::optional<DataBlock> check_data(ast::Data const& tree, Diagnostics& diagnost
   return DataChecker(tree, diagnostics).run();
 }
 
+namespace {
+
+/// What only observations read, such as the sd of each sample, is read at rows alone.
+bool read_between_rows(Model const& model, std::size_t input) {
+  auto const reads = [&](NodeId root) {
+    return model.graph.depends(root, [&](Node const& leaf) {
+      return (leaf.leaf_kind == LeafKind::input || leaf.leaf_kind == LeafKind::input_rate) && leaf.index == static_cast<int>(input);
+    });
+  };
+  if (model.implicit) return true;
+  return std::any_of(model.states.begin(), model.states.end(), [&](State const& state) { return reads(state.derivative); });
+}
+
+}  // namespace
+
 void check_between_samples(DataBlock const& block, Model const* model, Diagnostics& diagnostics) {
   if (model != nullptr && model->dynamics == Dynamics::none) return;
   bool const has_step = model != nullptr && model->step;
   if (!block.time && !(block.step > 0) && !has_step) diagnostics.add(errors::no_time({{block.span}, block.name}));
   if (model != nullptr && model->dynamics == Dynamics::discrete) return;
   for (DataInputUse const& use : block.inputs) {
-    bool const wanted = model == nullptr || std::any_of(model->inputs.begin(), model->inputs.end(),
-                                                        [&](Quantity const& input) { return input.name == use.input; });
+    bool wanted = model == nullptr;
+    for (std::size_t i = 0; model != nullptr && i < model->inputs.size(); ++i)
+      wanted = wanted || (model->inputs[i].name == use.input && read_between_rows(*model, i));
     if (!use.rule && wanted) diagnostics.add(errors::rule_missing(use.rule_span, use.input, input_rule_names()));
   }
 }

@@ -117,6 +117,10 @@ Diagnostic time_and_rate(Span second, Span first);
 Diagnostic stated_twice(Span second, Span first, Subject const& what);
 Diagnostic rule_missing(Span span, std::string const& input, Names const& rules);
 Diagnostic unknown_rule(ast::Name const& rule, Names const& known);
+/// E4117, E4118: settings of `read`; usage: "decimal = \",\"".
+Diagnostic unknown_reading(ast::Name const& setting, Names const& known);
+Diagnostic bad_reading(Span span, std::string const& setting, std::string const& wanted, std::string const& usage);
+Diagnostic reading_contradicts(Span span, std::string const& reason);
 Diagnostic not_a_time(Span span, Unit const& unit);
 Diagnostic rate_not_positive(Span span);
 Diagnostic bad_rows(Span span);

@@ -49,6 +49,20 @@ Diagnostic unknown_rule(ast::Name const& rule, Names const& known) {
   return about({rule.text}, error("E4106", rule.span, fmt::format("there is no input rule `{}`", rule.text), std::move(help)));
 }
 
+Diagnostic unknown_reading(ast::Name const& setting, Names const& known) {
+  return about({setting.text}, error("E4117", setting.span, fmt::format("`read` has no setting `{}`", setting.text),
+                                     guess_or(setting.text, known, fmt::format("settings: {}", quoted(known)))));
+}
+
+Diagnostic bad_reading(Span span, std::string const& setting, std::string const& wanted, std::string const& usage) {
+  return about({setting},
+               error("E4118", span, fmt::format("`{}` {}", setting, wanted), fmt::format("for example `read {}`", usage)));
+}
+
+Diagnostic reading_contradicts(Span span, std::string const& reason) {
+  return error("E4118", span, reason, "see `sysid list reading` for all settings");
+}
+
 Diagnostic not_a_time(Span span, Unit const& unit) {
   return error("E4114", span, fmt::format("time cannot be {}", measure(unit)), "give a unit of time: [s], [ms], [min], [h]");
 }

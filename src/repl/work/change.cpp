@@ -75,6 +75,11 @@ Named named(ast::DataStatement const& statement) {
           return {{slot("measure " + each.channel.text, each.span)}};
         } else if constexpr (std::is_same_v<Each, ast::DataConstant>) {
           return {{slot("constant " + each.parameter.text, each.span)}};
+        } else if constexpr (std::is_same_v<Each, ast::DataReading>) {
+          Named result{{}, true, true, "read"};
+          for (ast::ReadingSetting const& setting : each.settings)
+            result.slots.push_back(slot("read " + setting.name.text, setting.span));
+          return result;
         } else {
           Named result{{}, true, true, "split"};
           for (ast::SplitPart const& part : each.parts) result.slots.push_back(slot("split " + part.name.text, part.span));

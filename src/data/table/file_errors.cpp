@@ -1,13 +1,15 @@
 // The wording of data errors. Messages are lower case without a full stop; `help` states what to do.
-#include "data/file_errors.hpp"
+#include "data/table/file_errors.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "core/numeric/unit.hpp"
 #include "core/text/utf8.hpp"
 #include "core/text/words.hpp"
+#include "data/table/cells.hpp"
+#include "data/table/time_stamp.hpp"
+#include "data/table/unit_text.hpp"
 
 namespace sysid::data_errors {
 namespace {
@@ -18,7 +20,9 @@ Diagnostic error(std::string code, Mention mention, std::string message, std::st
   return result;
 }
 
-std::string place(std::string const& file, int row, int line) { return fmt::format("`{}` row {} (line {})", file, row, line); }
+std::string place(std::string const& file, int row, int line) {
+  return line > 0 ? fmt::format("`{}` row {} (line {})", file, row, line) : fmt::format("`{}` row {}", file, row);
+}
 
 std::string place(Cell const& cell) { return fmt::format("{}, column `{}`", place(cell.file, cell.row, cell.line), cell.column); }
 
@@ -37,42 +41,14 @@ std::string column_names(std::vector<std::string> const& names) {
   return first_listed(marked, 20);
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// Digits in groups between the signs of dates and times: `2024-05-01 12:00:00.5`, `1.5.2024`, `5/1/24 3:00 PM`, `12:00:01`.
-bool is_time_stamp(std::string_view text) {
-  if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.size() - 2);
-  if (text.find_first_not_of("0123456789-/.:,+ TZAPMapm") != std::string_view::npos || text.empty() || !is_digit(text[0]))
-    return false;
-  auto const count = [&](char sign) { return std::count(text.begin(), text.end(), sign); };
-  std::size_t const dash = text.find('-', 1);
-  bool const by_dashes = count('-') >= 2 && dash != std::string_view::npos && is_digit(text[dash - 1]);
-  return count(':') > 0 || count('/') == 2 || by_dashes ||
-         (count('.') == 2 && text.size() <= 10 && text.find_first_of(",' ") == std::string_view::npos &&
-          text.rfind('.') + 5 == text.size());
+/// What stands there as a unit of the language, where it is one; else empty. A model of unknown origin may name any file as data,
+/// so what is no unit is not repeated.
+std::string as_unit(std::string_view text) {
+  auto const unit = unit_of_text(text);
+  return unit ? unit->text : std::string();
 }
 
 /// `1,234.5`, `1.234,5`, `1'234`: a number whose digits stand in groups of three, as it is to be written; else empty.
-/// What stands in brackets or alone, where it is products and powers of known units; else empty. A model of unknown origin may name
-/// any file as data, so what is no unit is not repeated.
-std::string as_unit(std::string_view text) {
-  constexpr std::size_t longest = 24;
-  for (std::string_view const pair : {"[]", "()"})
-    if (text.size() > 2 && text.front() == pair[0] && text.back() == pair[1]) text = text.substr(1, text.size() - 2);
-  constexpr std::ptrdiff_t exponents = 4;  // digits
-  if (text.empty() || text.size() > longest || std::count_if(text.begin(), text.end(), is_digit) > exponents) return {};
-  constexpr std::string_view between = " */^().0123456789+-";
-  bool any = false;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t const begin = text.find_first_not_of(between, at);
-    if (begin == std::string_view::npos) break;
-    at = std::min(text.find_first_of(between, begin), text.size());
-    if (!unit_atom(text.substr(begin, at - begin))) return {};
-    any = true;
-  }
-  return any ? std::string(text) : std::string();
-}
-
 std::string without_groups(std::string_view text) {
   if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.size() - 2);
   std::string out;
@@ -89,7 +65,7 @@ std::string without_groups(std::string_view text) {
   int groups = 0;
   for (; at < text.size() && text[at] == text[first]; at += 4, ++groups) {
     for (std::size_t i = at + 1; i <= at + 3; ++i)
-      if (i >= text.size() || !is_digit(text[i])) return {};
+      if (i >= text.size() || !is_decimal_digit(text[i])) return {};
     out += text.substr(at + 1, 3);
   }
   if (at < text.size() && (text[at] == '.' || text[at] == ',')) {
@@ -115,9 +91,61 @@ Diagnostic header_of_numbers(std::string const& file, int line, bool after_comme
                              : "put a line with the names of the columns above the numbers");
 }
 
-Diagnostic not_text(std::string const& file, Mention mention) {
+Diagnostic not_text(std::string const& file, std::optional<std::string> const& proposed, Mention mention) {
   return error("E4003", mention, fmt::format("`{}` is not UTF-8 text", file),
-               "save the record as CSV in UTF-8; spreadsheets and .mat files are not read");
+               proposed ? *proposed : "records are text, MATLAB files (.mat), NetCDF and HDF5; save a spreadsheet as CSV");
+}
+
+Diagnostic not_in_encoding(std::string const& file, std::string const& encoding, Mention mention) {
+  return error("E4003", mention, fmt::format("`{}` is not text in {}", file, encoding),
+               "remove `encoding` from the data block where the file is in UTF-8");
+}
+
+namespace {
+
+std::string columns_there_are(std::vector<std::string> const& known) {
+  return known.empty() ? "it has no vectors of numbers" : fmt::format("its vectors of numbers are {}", column_names(known));
+}
+
+}  // namespace
+
+Diagnostic missing_variable(std::string const& file, std::string const& variable, std::vector<std::string> const& known,
+                            Mention mention) {
+  std::string const guess = did_you_mean(variable, known);
+  return error("E4008", mention, fmt::format("`{}` has no variable `{}`", file, variable),
+               guess + (guess.empty() ? "" : " ") + columns_there_are(known));
+}
+
+Diagnostic no_column_of_numbers(std::string const& file, std::string const& variable, std::string const& reason,
+                                std::vector<std::string> const& known, Mention mention) {
+  return error("E4027", mention, fmt::format("`{}` of `{}` {}", shown(variable), file, reason), columns_there_are(known));
+}
+
+Diagnostic not_a_record(std::string const& file, std::string_view what, std::string_view help, Mention mention) {
+  return error("E4003", mention, fmt::format("`{}` is {}, which is not read", file, what), std::string(help));
+}
+
+Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Mention mention) {
+  return error("E4025", mention, fmt::format("`{}` is a {}, but `read` says how a text file is written", file, what),
+               "remove `read` from the data block");
+}
+
+Diagnostic damaged(std::string const& file, std::string const& what, Mention mention) {
+  return error("E4023", mention, fmt::format("`{}` is damaged, or not a {}", file, what),
+               "copy it again from where it was recorded; a file that is still being written can be read later");
+}
+
+Diagnostic no_such_line(std::string const& file, std::string const& setting, int line, int lines, Mention mention) {
+  return error("E4025", mention,
+               fmt::format("`{} = {}`: no such line above the values of `{}`, of which {} looked at", setting, line, file,
+                           lines == 1 ? "1 line was" : fmt::format("{} lines were", lines)),
+               "lines are counted from 1 at the top of the file, with empty ones and comments");
+}
+
+Diagnostic other_number_of_columns(std::string const& file, int line, int cells, int names, Mention mention) {
+  return error("E4025", mention,
+               fmt::format("line {} of `{}` has {}, but `columns` names {}", line, file, counted(cells, "cell"), names),
+               "name all columns, also those that are not used");
 }
 
 Diagnostic open_quote(std::string const& file, int line, Mention mention) {
@@ -175,9 +203,7 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Men
   std::string help = "a missing sample of a measured column is an empty cell or NA; an input needs a number in every row";
   if (is_time_stamp(text))
     help =
-        "dates and times of day are not read: write the seconds since the start in this column, or `rate` with the sampling rate "
-        "in "
-        "place of the time column";
+        "dates and times of day are read in the time column, with `read stamp`: name it after `time`, or give `rate` in its place";
   else if (std::size_t const d = text.find_first_of("dD");
            d != std::string_view::npos && text.find_first_not_of("0123456789+-.dD") == std::string_view::npos)
     help = fmt::format("write the exponent with `e`: `{}e{}`", text.substr(0, d), text.substr(d + 1));
@@ -222,6 +248,49 @@ Diagnostic not_a_count(Cell const& cell, double value, Mention mention) {
                "cell or NA");
 }
 
+Diagnostic points_or_groups(Cell const& cell, std::string_view text, Mention mention) {
+  return error("E4021", mention,
+               fmt::format("{}: `{}` may be a number with a decimal point or a number of thousands", place(cell), shown(text)),
+               "add one of these lines to the data block: `read decimal = \".\"`, or `read decimal = \",\", thousands = \".\"`");
+}
+
+Diagnostic doubtful_sample(Cell const& cell, double value, int times, Mention mention) {
+  return error(
+      "E4022", mention,
+      fmt::format("{}: {:.10g} is far from all other samples ({}), as a mark for missing ones is", place(cell), value,
+                  times == 1 ? "once" : fmt::format("{} times", times)),
+      fmt::format("add this line to the data block: `read missing = \"{:.10g}\"`; or, if it is a sample, `read missing = none`",
+                  value));
+}
+
+Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention) {
+  std::string const what = text.empty() ? "the cell is not" : fmt::format("`{}` is not", shown(text));
+  return error(
+      "E4024", mention,
+      fmt::format("{}: {} a time as in `stamp = {}`", place(cell), what, pattern == "iso" ? pattern : "\"" + pattern + "\""),
+      "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
+}
+
+Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,
+                        Mention mention) {
+  return error("E4026", mention, fmt::format("column `{}` is in [{}] here, but in `{}` as {}", shown(column), stated, file, found),
+               "one of the two is wrong: write the unit that its numbers have, or none to take that of the file");
+}
+
+Diagnostic unit_unknown(std::string const& file, std::string const& column, std::string const& found, Mention mention) {
+  return error("E4026", mention,
+               fmt::format("the unit of column `{}` in `{}`{} is not known", shown(column), file,
+                           found.empty() ? "" : fmt::format(", `{}`,", found)),
+               fmt::format("write it in the data block, in brackets after the column: `{} [N]`", shown(column)));
+}
+
+Diagnostic unit_of_another_kind(std::string const& file, std::string const& column, std::string const& found,
+                                std::string const& wanted, Mention mention) {
+  return error("E4026", mention,
+               fmt::format("column `{}` is in [{}] in `{}`, but [{}] is needed", shown(column), found, file, wanted),
+               "use the column of the right quantity; units of one kind are converted");
+}
+
 Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention) {
   return error("E4013", mention, fmt::format("{} has no value, but {} needs one in every row", place(cell), what),
                "only measured columns may have missing samples: fill the gap, or cut the record there");
@@ -239,6 +308,14 @@ Diagnostic unequal_steps(int row, double step, double usual, Mention mention) {
                   row, step, usual),
       "if the sampling was regular and the printed times are rounded, give `rate` instead of the time column; otherwise use "
       "`cubic` or `linear`");
+}
+
+Diagnostic unequal_lengths(std::string const& file, std::string const& a, std::size_t rows_a, std::string const& b,
+                           std::size_t rows_b, Mention mention) {
+  return error(
+      "E4028", mention,
+      fmt::format("`{}` has {} numbers and `{}` has {} in `{}`: they are no rows of one record", b, rows_b, a, rows_a, file),
+      "give each of them a data block and a time of its own, or bring them to one time before");
 }
 
 Diagnostic rows_outside(std::string const& file, std::string const& what, int first, int last, int rows, Mention mention) {

@@ -1,5 +1,6 @@
 // Every message about a data file's contents (E40), one named constructor per mistake; wording lives in errors.cpp alone.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,7 +13,7 @@ namespace sysid::data_errors {
 /// Where the user's text mentions the column, file or split; nothing when no text does.
 using Mention = std::optional<Span>;
 
-/// A cell of a data file. Rows count from 1 below the header, lines from 1 at the top of the file.
+/// A cell of a data file. Rows count from 1 below the header, lines from 1 at the top of the file; 0: no file of lines.
 struct Cell {
   std::string file;
   int row = 0;
@@ -23,12 +24,30 @@ struct Cell {
 // the file as a table
 Diagnostic no_header(std::string const& file, Mention mention);
 Diagnostic header_of_numbers(std::string const& file, int line, bool after_comment, Mention mention);
-Diagnostic not_text(std::string const& file, Mention mention);
+/// proposed: the advice that reads it in another encoding, where one does.
+Diagnostic not_text(std::string const& file, std::optional<std::string> const& proposed, Mention mention);
+Diagnostic not_in_encoding(std::string const& file, std::string const& encoding, Mention mention);
+/// E4008 of a file of variables; known: those that are columns.
+Diagnostic missing_variable(std::string const& file, std::string const& variable, std::vector<std::string> const& known,
+                            Mention mention);
+/// E4027. reason: "is complex".
+Diagnostic no_column_of_numbers(std::string const& file, std::string const& variable, std::string const& reason,
+                                std::vector<std::string> const& known, Mention mention);
+/// A file of a kind that is known, and is not read. what: "a spreadsheet".
+Diagnostic not_a_record(std::string const& file, std::string_view what, std::string_view help, Mention mention);
+/// E4025: `read` says how text is written. what: "MATLAB file".
+Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Mention mention);
+/// E4023. what: "gzip file".
+Diagnostic damaged(std::string const& file, std::string const& what, Mention mention);
 Diagnostic open_quote(std::string const& file, int line, Mention mention);
 Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
 Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention);
 Diagnostic too_many_rows(std::string const& file, int most, Mention mention);
 Diagnostic too_few_rows(std::string const& file, int rows, Mention mention);
+
+// what `read` says of a file, and the file does not have
+Diagnostic no_such_line(std::string const& file, std::string const& setting, int line, int lines, Mention mention);
+Diagnostic other_number_of_columns(std::string const& file, int line, int cells, int names, Mention mention);
 
 // columns and cells
 /// quote: whether the names of the file may be shown.
@@ -44,11 +63,25 @@ Diagnostic unknown_separator(std::string const& file, int line, std::string_view
 Diagnostic not_finite(Cell const& cell, std::string_view text, Mention mention);
 Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention);
 /// what: "an input" or "the time".
+/// Digits of `text` after its point may be a group of three.
+Diagnostic points_or_groups(Cell const& cell, std::string_view text, Mention mention);
+Diagnostic doubtful_sample(Cell const& cell, double value, int times, Mention mention);
+/// text: empty where it may not be shown.
+Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention);
+/// E4026. stated: in the data block; found: in the file.
+Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,
+                        Mention mention);
+Diagnostic unit_unknown(std::string const& file, std::string const& column, std::string const& found, Mention mention);
+Diagnostic unit_of_another_kind(std::string const& file, std::string const& column, std::string const& found,
+                                std::string const& wanted, Mention mention);
 Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention);
 
 Diagnostic not_a_count(Cell const& cell, double value, Mention mention);
 
 // the columns as a record
+/// E4028
+Diagnostic unequal_lengths(std::string const& file, std::string const& a, std::size_t rows_a, std::string const& b,
+                           std::size_t rows_b, Mention mention);
 Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention);
 Diagnostic unequal_steps(int row, double step, double usual, Mention mention);
 /// what: "range `train`".

@@ -1,0 +1,146 @@
+// By matio. What it makes of a forged file may be anything: it is called in a process of its own.
+#include "data/format/matlab.hpp"
+
+#include <fmt/format.h>
+#include <matio.h>
+
+#include <memory>
+#include <stdexcept>
+
+namespace sysid {
+namespace {
+
+struct Closes {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+using MatFile = std::unique_ptr<mat_t, Closes>;
+using Read = std::unique_ptr<matvar_t, Closes>;
+
+constexpr int deepest = 16;  // structs in structs
+
+MatFile opened(std::string const& path) {
+  MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  if (!file) throw std::runtime_error("no MATLAB file");
+  return file;
+}
+
+std::string matlab_refusal(matvar_t const& variable) {
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+    case MAT_C_SINGLE:
+    case MAT_C_INT8:
+    case MAT_C_UINT8:
+    case MAT_C_INT16:
+    case MAT_C_UINT16:
+    case MAT_C_INT32:
+    case MAT_C_UINT32:
+    case MAT_C_INT64:
+    case MAT_C_UINT64:
+      return variable.isComplex ? "is complex: save its `real` and `imag` parts" : "";
+    case MAT_C_CHAR:
+      return "is text";
+    case MAT_C_SPARSE:
+      return "is a sparse matrix: save it with `full`";
+    case MAT_C_CELL:
+      return "is a cell array: save it with `cell2mat`";
+    case MAT_C_STRUCT:
+      return "is an array of structs: save the fields as vectors";
+    default:
+      return "is an object, such as a table or a time series: save its columns as vectors";
+  }
+}
+
+void describe(matvar_t* variable, std::string const& path, int depth, std::vector<Variable>& all) {
+  if (variable == nullptr) return;
+  Variable made{path, {}, matlab_refusal(*variable), {}};
+  for (int d = 0; d < variable->rank; ++d) made.size.push_back(variable->dims[d]);
+  bool const single = variable->rank == 2 && variable->dims[0] == 1 && variable->dims[1] == 1;
+  if (variable->class_type != MAT_C_STRUCT || !single || depth > deepest) {
+    all.push_back(std::move(made));
+    return;
+  }
+  unsigned const fields = Mat_VarGetNumberOfFields(variable);
+  char* const* const names = Mat_VarGetStructFieldnames(variable);
+  for (unsigned f = 0; f < fields && names != nullptr; ++f)
+    describe(Mat_VarGetStructFieldByIndex(variable, f, 0), fmt::format("{}.{}", path, names[f]), depth + 1, all);
+}
+
+std::vector<Variable> list_matlab(std::string const& path) {
+  MatFile const file = opened(path);
+  std::vector<Variable> all;
+  while (Read const variable{Mat_VarReadNextInfo(file.get())})
+    if (variable->name != nullptr) describe(variable.get(), variable->name, 0, all);
+  return all;
+}
+
+template <class Number>
+std::vector<double> as_doubles(matvar_t const& variable, std::size_t count) {
+  if (variable.data == nullptr || variable.nbytes < count * sizeof(Number)) throw std::runtime_error("no data");
+  auto const* const numbers = static_cast<Number const*>(variable.data);
+  return {numbers, numbers + count};
+}
+
+std::vector<double> numbers_of(matvar_t const& variable) {
+  std::size_t count = 1;
+  for (int d = 0; d < variable.rank; ++d) count *= variable.dims[d];
+  if (count == 0) return {};
+  if (variable.isComplex) throw std::runtime_error("complex");
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+      return as_doubles<double>(variable, count);
+    case MAT_C_SINGLE:
+      return as_doubles<float>(variable, count);
+    case MAT_C_INT8:
+      return as_doubles<mat_int8_t>(variable, count);
+    case MAT_C_UINT8:
+      return as_doubles<mat_uint8_t>(variable, count);
+    case MAT_C_INT16:
+      return as_doubles<mat_int16_t>(variable, count);
+    case MAT_C_UINT16:
+      return as_doubles<mat_uint16_t>(variable, count);
+    case MAT_C_INT32:
+      return as_doubles<mat_int32_t>(variable, count);
+    case MAT_C_UINT32:
+      return as_doubles<mat_uint32_t>(variable, count);
+    case MAT_C_INT64:
+      return as_doubles<mat_int64_t>(variable, count);
+    case MAT_C_UINT64:
+      return as_doubles<mat_uint64_t>(variable, count);
+    default:
+      throw std::runtime_error("no numbers");
+  }
+}
+
+std::vector<double> read_matlab(std::string const& path, std::string const& name) {
+  MatFile const file = opened(path);
+  std::size_t dot = name.find('.');
+  Read const top{Mat_VarRead(file.get(), name.substr(0, dot).c_str())};
+  matvar_t* variable = top.get();
+  while (variable != nullptr && dot != std::string::npos) {
+    std::size_t const next = name.find('.', dot + 1);
+    variable = Mat_VarGetStructFieldByName(variable, name.substr(dot + 1, next - dot - 1).c_str(), 0);
+    dot = next;
+  }
+  if (variable == nullptr) throw std::runtime_error("no such variable");
+  std::vector<double> const by_columns = numbers_of(*variable);
+  if (variable->rank != 2) return by_columns;
+  std::size_t const rows = variable->dims[0], columns = variable->dims[1];
+  std::vector<double> by_rows(by_columns.size());
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t c = 0; c < columns; ++c) by_rows[r * columns + c] = by_columns[c * rows + r];
+  return by_rows;
+}
+
+}  // namespace
+
+bool is_matlab(std::string_view bytes) {
+  if (bytes.size() < 128 || !bytes.starts_with("MATLAB")) return false;
+  std::string_view const end = bytes.substr(124, 4);
+  return end == std::string_view("\0\1IM", 4) || end == std::string_view("\1\0MI", 4) || end == std::string_view("\0\2IM", 4) ||
+         end == std::string_view("\2\0MI", 4);
+}
+
+VariableFormat const matlab_format{"MATLAB file", &list_matlab, &read_matlab};
+
+}  // namespace sysid

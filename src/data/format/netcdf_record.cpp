@@ -1,0 +1,170 @@
+// By the netCDF library, in a process of its own.
+#include "data/format/netcdf_record.hpp"
+
+#include <netcdf.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace sysid {
+namespace {
+
+struct NetcdfFile {
+  int id = -1;
+  explicit NetcdfFile(std::string const& path) {
+    if (nc_open(path.c_str(), NC_NOWRITE, &id) != NC_NOERR) throw std::runtime_error("no NetCDF file");
+  }
+  ~NetcdfFile() { nc_close(id); }
+  NetcdfFile(NetcdfFile const&) = delete;
+};
+
+std::string name_of_group(int group) {
+  char name[NC_MAX_NAME + 1] = "";
+  nc_inq_grpname(group, name);
+  return name;
+}
+
+std::string text_attribute(int group, int variable, char const* name) {
+  nc_type type = 0;
+  std::size_t length = 0;
+  if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR || length == 0 || length > 1000) return {};
+  if (type == NC_CHAR) {
+    std::string text(length, '\0');
+    return nc_get_att_text(group, variable, name, text.data()) == NC_NOERR ? text.substr(0, text.find('\0')) : std::string();
+  }
+  if (type != NC_STRING || length != 1) return {};
+  char* read = nullptr;
+  if (nc_get_att_string(group, variable, name, &read) != NC_NOERR || read == nullptr) return {};
+  std::string text(read);
+  nc_free_string(1, &read);
+  return text;
+}
+
+std::optional<double> number_attribute(int group, int variable, char const* name) {
+  nc_type type = 0;
+  std::size_t length = 0;
+  double value = 0;
+  if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR || length != 1 || type == NC_CHAR || type == NC_STRING)
+    return std::nullopt;
+  return nc_get_att_double(group, variable, name, &value) == NC_NOERR ? std::optional(value) : std::nullopt;
+}
+
+/// Calls visit(path, group, variable) for each variable, until it returns false.
+template <class Visit>
+bool each_variable(int group, std::string const& prefix, int depth, Visit const& visit) {
+  int count = 0;
+  nc_inq_varids(group, &count, nullptr);
+  std::vector<int> ids(static_cast<std::size_t>(std::max(count, 0)));
+  if (!ids.empty()) nc_inq_varids(group, &count, ids.data());
+  for (int const id : ids) {
+    char name[NC_MAX_NAME + 1] = "";
+    if (nc_inq_varname(group, id, name) == NC_NOERR && !visit(prefix + name, group, id)) return false;
+  }
+  int groups = 0;
+  if (depth > 16 || nc_inq_grps(group, &groups, nullptr) != NC_NOERR || groups <= 0) return true;
+  std::vector<int> inner(static_cast<std::size_t>(groups));
+  nc_inq_grps(group, &groups, inner.data());
+  for (int const each : inner)
+    if (!each_variable(each, prefix + name_of_group(each) + "/", depth + 1, visit)) return false;
+  return true;
+}
+
+std::vector<std::size_t> size_of(int group, int variable) {
+  int dimensions = 0;
+  if (nc_inq_varndims(group, variable, &dimensions) != NC_NOERR || dimensions < 0 || dimensions > NC_MAX_VAR_DIMS)
+    throw std::runtime_error("no dimensions");
+  std::vector<int> ids(static_cast<std::size_t>(dimensions));
+  if (!ids.empty() && nc_inq_vardimid(group, variable, ids.data()) != NC_NOERR) throw std::runtime_error("no dimensions");
+  std::vector<std::size_t> size(ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (nc_inq_dimlen(group, ids[i], &size[i]) != NC_NOERR) throw std::runtime_error("no length");
+  return size;
+}
+
+std::string netcdf_refusal(nc_type type) {
+  if (type == NC_CHAR || type == NC_STRING) return "is text";
+  if (type < NC_BYTE || type > NC_UINT64) return "has numbers of a type of its own, such as complex ones or rows of a table";
+  return {};
+}
+
+std::vector<Variable> list_netcdf(std::string const& path) {
+  NetcdfFile const file(path);
+  std::vector<Variable> all;
+  each_variable(file.id, "", 0, [&](std::string const& name, int group, int variable) {
+    nc_type type = 0;
+    if (nc_inq_vartype(group, variable, &type) != NC_NOERR) throw std::runtime_error("no type");
+    all.push_back({name, size_of(group, variable), netcdf_refusal(type), text_attribute(group, variable, "units")});
+    return true;
+  });
+  return all;
+}
+
+/// What unwritten numbers of a type are, where the file does not say.
+std::optional<double> usual_fill(nc_type type) {
+  switch (type) {
+    case NC_SHORT:
+      return NC_FILL_SHORT;
+    case NC_USHORT:
+      return NC_FILL_USHORT;
+    case NC_INT:
+      return NC_FILL_INT;
+    case NC_UINT:
+      return NC_FILL_UINT;
+    case NC_INT64:
+      return static_cast<double>(NC_FILL_INT64);
+    case NC_UINT64:
+      return static_cast<double>(NC_FILL_UINT64);
+    case NC_FLOAT:
+      return static_cast<double>(NC_FILL_FLOAT);
+    case NC_DOUBLE:
+      return NC_FILL_DOUBLE;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::vector<double> numbers_of(int group, int variable) {
+  nc_type type = 0;
+  if (nc_inq_vartype(group, variable, &type) != NC_NOERR || !netcdf_refusal(type).empty()) throw std::runtime_error("no numbers");
+  std::size_t count = 1;
+  for (std::size_t const each : size_of(group, variable)) count *= each;
+  std::vector<double> values(count);
+  if (count > 0 && nc_get_var_double(group, variable, values.data()) != NC_NOERR) throw std::runtime_error("no data");
+  auto fill = number_attribute(group, variable, "_FillValue");
+  if (!fill) fill = usual_fill(type);
+  auto const missing = number_attribute(group, variable, "missing_value");
+  double const scale = number_attribute(group, variable, "scale_factor").value_or(1);
+  double const offset = number_attribute(group, variable, "add_offset").value_or(0);
+  for (double& value : values) {
+    if ((fill && value == *fill) || (missing && value == *missing))
+      value = std::numeric_limits<double>::quiet_NaN();
+    else
+      value = value * scale + offset;
+  }
+  return values;
+}
+
+std::vector<double> read_netcdf(std::string const& path, std::string const& name) {
+  NetcdfFile const file(path);
+  std::optional<std::vector<double>> values;
+  each_variable(file.id, "", 0, [&](std::string const& each, int group, int variable) {
+    if (each == name) values = numbers_of(group, variable);
+    return !values;
+  });
+  if (!values) throw std::runtime_error("no such variable");
+  return std::move(*values);
+}
+
+}  // namespace
+
+bool is_netcdf(std::string_view bytes) {
+  return bytes.starts_with("\x89HDF\r\n\x1a\n") || bytes.starts_with(std::string_view("CDF\1", 4)) || bytes.starts_with("CDF\2") ||
+         bytes.starts_with("CDF\5");
+}
+
+VariableFormat const netcdf_format{"NetCDF or HDF5 file", &list_netcdf, &read_netcdf};
+
+}  // namespace sysid

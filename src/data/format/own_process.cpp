@@ -1,0 +1,143 @@
+#include "data/format/own_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "core/system/interrupt.hpp"
+#include "core/text/diagnostic.hpp"
+
+namespace sysid {
+namespace {
+
+bool write_all(int file, char const* bytes, std::size_t size) {
+  while (size > 0) {
+    ssize_t const written = ::write(file, bytes, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+/// Bytes of address space in use.
+std::size_t space_in_use() {
+  std::size_t pages = 0;
+  if (std::FILE* const file = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(file, "%zu", &pages) != 1) pages = 0;
+    std::fclose(file);
+  }
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void limit(int resource, rlim_t value) {
+  rlimit const limits{value, value};
+  ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
+}
+
+/// In the copy: default signals, no output, limits; then the work.
+[[noreturn]] void work_and_exit(int out, std::size_t memory, std::function<std::string()> const& work) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  for (int const signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGHUP, SIGXCPU}) std::signal(signal, SIG_DFL);
+  std::signal(SIGINT, SIG_IGN);  // who asked for the work ends it
+  int const nowhere = ::open("/dev/null", O_WRONLY);
+  ::dup2(nowhere, STDOUT_FILENO);
+  ::dup2(nowhere, STDERR_FILENO);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, 60 + memory / 10'000'000);
+  limit(RLIMIT_AS, space_in_use() + memory);
+  ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
+  try {
+    std::string const result = work();
+    ::_exit(write_all(out, "!", 1) && write_all(out, result.data(), result.size()) ? 0 : 1);
+  } catch (...) {
+    ::_exit(1);
+  }
+}
+
+/// Ends the copy, whatever happens here.
+class Child {
+ public:
+  Child(pid_t process, int in) : process_(process), in_(in) {}
+  ~Child() {
+    ::close(in_);
+    ::kill(process_, SIGKILL);
+    wait();
+  }
+  Child(Child const&) = delete;
+  bool ended_well() { return wait() == 0; }
+
+ private:
+  int wait() {
+    if (waited_) return status_;
+    while (::waitpid(process_, &status_, 0) < 0 && errno == EINTR) {
+    }
+    waited_ = true;
+    return status_;
+  }
+  pid_t process_;
+  int in_, status_ = -1;
+  bool waited_ = false;
+};
+
+}  // namespace
+
+RecordCopy::RecordCopy(std::string const& bytes)
+    : path_((std::filesystem::temp_directory_path() / "sysid_record_XXXXXX").string()), size_(bytes.size()) {
+  int const file = ::mkstemp(path_.data());
+  bool const written = file >= 0 && write_all(file, bytes.data(), bytes.size());
+  std::string const reason = std::strerror(errno);
+  if (file >= 0) ::close(file);
+  if (written) return;
+  if (file >= 0) ::unlink(path_.c_str());
+  throw IoError(fmt::format("cannot write `{}`: {}", path_, reason), "make room there, or set TMPDIR to another folder");
+}
+
+RecordCopy::~RecordCopy() { ::unlink(path_.c_str()); }
+
+std::optional<std::string> in_own_process(std::size_t memory, std::function<std::string()> const& work) {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) throw IoError("cannot read the record: " + std::string(std::strerror(errno)));
+  std::fflush(nullptr);
+  pid_t const process = ::fork();
+  if (process < 0) {
+    ::close(ends[0]);
+    ::close(ends[1]);
+    throw IoError("cannot read the record: " + std::string(std::strerror(errno)));
+  }
+  if (process == 0) {
+    ::close(ends[0]);
+    work_and_exit(ends[1], memory, work);
+  }
+  ::close(ends[1]);
+  Child child(process, ends[0]);
+  std::string result;
+  std::string piece(1U << 20U, '\0');
+  for (;;) {
+    stop_if_interrupted();
+    pollfd ready{ends[0], POLLIN, 0};
+    int const state = ::poll(&ready, 1, 100);
+    if (state == 0 || (state < 0 && errno == EINTR)) continue;
+    ssize_t const got = ::read(ends[0], piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    result.append(piece, 0, static_cast<std::size_t>(got));
+  }
+  if (!child.ended_well() || !result.starts_with('!')) return std::nullopt;
+  result.erase(0, 1);
+  return result;
+}
+
+}  // namespace sysid

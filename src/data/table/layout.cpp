@@ -1,0 +1,263 @@
+// The lines are cut at each separator in turn; the one that makes most numbers in lines that look alike is taken.
+#include "data/table/layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include "core/system/interrupt.hpp"
+#include "data/table/cells.hpp"
+#include "data/table/number_notation.hpp"
+#include "data/table/time_stamp.hpp"
+#include "data/table/unit_text.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int most_lines = 20000;  // that are looked at
+constexpr std::string_view comment_signs = "#%!/;*$@";
+
+using Cells = std::vector<std::string>;
+
+std::vector<std::string> first_lines(std::string const& bytes, bool& all) {
+  std::vector<std::string> lines;
+  Lines line(bytes);
+  while (static_cast<int>(lines.size()) < most_lines && line.next()) lines.emplace_back(line.text());
+  all = !line.next();
+  return lines;
+}
+
+/// Empty for a line that cannot be cut so.
+Cells cells_of(std::string const& line, char separator) {
+  Cells cells;
+  if (trimmed(line, cell_blanks).empty()) return cells;
+  if (!split_cells(line, 0, line.size(), separator, [&](std::size_t begin, std::size_t end) {
+        cells.push_back(unquoted_cell(std::string_view(line).substr(begin, end - begin)));
+      }))
+    cells.clear();
+  return cells;
+}
+
+bool begins_comment(std::string const& line) {
+  std::string_view const bare = trimmed(line, cell_blanks);
+  return !bare.empty() && comment_signs.find(bare.front()) != std::string_view::npos;
+}
+
+class Cut {
+ public:
+  Cut(std::vector<std::string> const& lines, char separator) : lines_(lines), separator_(separator) {
+    for (std::string const& line : lines) {
+      cells_.push_back(cells_of(line, separator));
+      std::vector<CellLook>& looks = looks_.emplace_back();
+      for (std::string const& cell : cells_.back()) looks.push_back(look_of(cell));
+    }
+    find_columns();
+    find_rows();
+  }
+
+  /// Numbers in the rows.
+  long score() const {
+    return static_cast<long>(end_ - begin_) * std::count_if(column_looks_.begin(), column_looks_.end(), [](CellLook look) {
+             return look == CellLook::number || look == CellLook::stamp;
+           });
+  }
+  std::size_t width() const { return width_; }
+
+  Layout layout(bool all) const {
+    Layout layout;
+    layout.separator = separator_;
+    layout.first = static_cast<int>(begin_) + 1;
+    layout.last = all ? static_cast<int>(end_) : 0;
+    layout.looks = column_looks_;
+    std::size_t below = end_;
+    while (below < lines_.size() && trimmed(lines_[below]).empty()) ++below;
+    layout.more_below = below < lines_.size();
+    find_names(layout);
+    std::size_t const wide = layout.columns.size();
+    for (std::size_t i = begin_; i < end_; ++i) {
+      if (cells_[i].empty() || !is_row(i)) {
+        if (begins_comment(lines_[i])) layout.comments = trimmed(lines_[i], cell_blanks).front();
+        continue;
+      }
+      layout.ragged = layout.ragged || cells_[i].size() != wide;
+      Cells row = cells_[i];
+      row.resize(wide);
+      layout.rows.push_back(std::move(row));
+    }
+    layout.looks.resize(wide, CellLook::empty);
+    return layout;
+  }
+
+ private:
+  bool holds_numbers(std::size_t i) const {
+    std::vector<CellLook> const& looks = looks_[i];
+    auto const is = [&](CellLook look) { return std::count(looks.begin(), looks.end(), look); };
+    return is(CellLook::number) + is(CellLook::stamp) > 0 && is(CellLook::text) * 2 <= static_cast<long>(looks.size());
+  }
+  /// The usual number of cells, and what most of them look like.
+  void find_columns() {
+    // By their numbers: settings above a table, `Sample rate;1000`, may be more lines than a short record.
+    std::map<std::size_t, long> widths;
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+      if (holds_numbers(i)) widths[cells_[i].size()] += std::count(looks_[i].begin(), looks_[i].end(), CellLook::number);
+    long most = -1;
+    for (auto const& [width, count] : widths)
+      if (count > most) most = count, width_ = width;
+    for (std::size_t column = 0; column < width_; ++column) {
+      std::array<int, 5> counts{};
+      for (std::size_t i = 0; i < lines_.size(); ++i)
+        if (holds_numbers(i) && cells_[i].size() == width_) ++counts[static_cast<std::size_t>(looks_[i][column])];
+      CellLook look = CellLook::empty;
+      int best = 0;
+      for (CellLook const each : {CellLook::number, CellLook::stamp, CellLook::text})
+        if (counts[static_cast<std::size_t>(each)] > best) best = counts[static_cast<std::size_t>(each)], look = each;
+      column_looks_.push_back(look);
+    }
+    // Separators at the ends of lines make a column of nothing.
+    while (width_ > 1 && column_looks_.back() == CellLook::empty && trailing()) --width_, column_looks_.pop_back();
+  }
+  /// Whether the last column is empty and has no name above.
+  bool trailing() const {
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+      if (cells_[i].size() == width_ && !cells_[i].back().empty()) return false;
+    return true;
+  }
+  bool is_row(std::size_t i) const {
+    std::vector<CellLook> const& looks = looks_[i];
+    if (looks.empty() || looks.size() + 1 < width_ || (looks.size() < width_ && looks.size() < 2)) return false;
+    bool any = false;
+    for (std::size_t c = 0; c < looks.size(); ++c) {
+      if (c >= width_) {
+        if (looks[c] != CellLook::empty) return false;
+        continue;
+      }
+      CellLook const wanted = column_looks_[c], look = looks[c];
+      any = any || look == CellLook::number || look == CellLook::stamp;
+      if (wanted == CellLook::text || look == wanted || look == CellLook::empty || look == CellLook::gap) continue;
+      if (wanted == CellLook::empty) continue;
+      // A short word among numbers: what stands there is asked about where it is read.
+      if (look == CellLook::text && wanted == CellLook::number && c > 0 && any) continue;
+      return false;
+    }
+    return any;
+  }
+  /// The longest run of rows; empty lines and comments may stand between them.
+  void find_rows() {
+    std::size_t begin = 0, count = 0, best = 0, end = 0;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (is_row(i)) {
+        if (count++ == 0) begin = i;
+        end = i + 1;
+        if (count > best) best = count, begin_ = begin, end_ = end;
+      } else if (!(trimmed(lines_[i]).empty() || begins_comment(lines_[i]))) {
+        count = 0;
+      }
+    }
+  }
+
+  /// The cells of a line above the rows that may name columns; empty where it does not. above_units: names may be numbers there.
+  Cells heading(std::size_t i, bool above_units) const {
+    std::string line = lines_[i];
+    Cells cells = cells_[i];
+    if (begins_comment(line) && line.find_first_not_of(" \t") != std::string::npos &&
+        (trimmed(line, cell_blanks).front() == '#' || trimmed(line, cell_blanks).front() == '%')) {
+      line = line.substr(line.find_first_of("#%") + 1);
+      cells = cells_of(line, separator_);
+    }
+    while (cells.size() > width_ && cells.back().empty()) cells.pop_back();
+    if (cells.size() < width_ || cells.size() > width_ + 1) return {};
+    bool any_text = false;
+    for (std::string const& cell : cells) {
+      CellLook const look = look_of(cell);
+      if ((look == CellLook::number && !(above_units && any_text)) || look == CellLook::stamp) return {};
+      any_text = any_text || look == CellLook::text;
+    }
+    return any_text ? cells : Cells{};
+  }
+  void find_names(Layout& layout) const {
+    constexpr std::size_t most_headings = 6;
+    std::vector<std::pair<std::size_t, Cells>> headings;  // from below
+    for (std::size_t i = begin_; i-- > 0 && headings.size() < most_headings;) {
+      if (trimmed(lines_[i]).empty()) continue;
+      bool const comment = trimmed(lines_[i], cell_blanks).starts_with('#');
+      if (comment && !headings.empty()) break;
+      Cells cells = heading(i, !headings.empty() && are_units(headings.back().second));
+      if (cells.empty()) break;
+      headings.emplace_back(i, std::move(cells));
+    }
+    std::size_t chosen = headings.size();
+    for (std::size_t h = 0; h + 1 < headings.size() && chosen == headings.size(); ++h)
+      if (are_units(headings[h].second)) {
+        layout.units = static_cast<int>(headings[h].first) + 1;
+        chosen = h + 1;
+      }
+    for (std::size_t h = 0; h < headings.size() && chosen == headings.size(); ++h) {
+      Cells const& cells = headings[h].second;
+      std::set<std::string> const distinct(cells.begin(), cells.end());
+      if (distinct.size() == cells.size()) chosen = h;  // a column of row numbers may have no name
+    }
+    if (chosen == headings.size() && !headings.empty()) chosen = 0;
+    if (chosen < headings.size()) {
+      layout.names = static_cast<int>(headings[chosen].first) + 1;
+      layout.columns = headings[chosen].second;
+      return;
+    }
+    for (std::size_t c = 0; c < width_; ++c) layout.columns.push_back(fmt::format("column_{}", c + 1));
+  }
+  static bool are_units(Cells const& cells) {
+    long filled = 0, units = 0;
+    for (std::string const& cell : cells) {
+      filled += !cell.empty();
+      units += unit_of_text(cell).has_value();
+    }
+    return filled > 0 && units * 2 >= filled;
+  }
+
+  std::vector<std::string> const& lines_;
+  char separator_;
+  std::vector<Cells> cells_;
+  std::vector<std::vector<CellLook>> looks_;
+  std::size_t width_ = 0, begin_ = 0, end_ = 0;
+  std::vector<CellLook> column_looks_;
+};
+
+}  // namespace
+
+CellLook look_of(std::string_view cell) {
+  if (cell.empty()) return CellLook::empty;
+  if (notation_of(cell).number) return CellLook::number;
+  if (is_time_stamp(cell)) return CellLook::stamp;
+  static constexpr std::string_view gaps[] = {
+      "nan",     "-nan",   "+nan",    "na",    "n/a",    "#n/a",    "#nv",     "null", "none", "nil",  "-",     "--",
+      "---",     "inf",    "-inf",    "+inf",  "bad",    "err",     "error",   "ovf",  "ovl",  "over", "under", "invalid",
+      "1.#qnan", "1.#ind", "-1.#ind", "#ref!", "#wert!", "#value!", "#div/0!", "∞",    "-∞",   "+∞",   "?",     "*"};
+  std::string small(cell);
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return std::find(std::begin(gaps), std::end(gaps), small) == std::end(gaps) ? CellLook::text : CellLook::gap;
+}
+
+std::optional<Layout> find_layout(std::string const& bytes) {
+  bool all = true;
+  std::vector<std::string> const lines = first_lines(bytes, all);
+  std::optional<Layout> best;
+  long best_score = 0;
+  std::size_t best_width = 0;
+  for (char const separator : {'\t', ';', ',', '|', ' '}) {
+    stop_if_interrupted();
+    Cut const cut(lines, separator);
+    bool const wider = best_width < 2 && cut.width() > 1 && cut.score() > 0;
+    if (cut.score() > best_score || wider) {
+      if (best_width > 1 && cut.width() < 2) continue;
+      best_score = cut.score();
+      best_width = cut.width();
+      best = cut.layout(all);
+    }
+  }
+  return best;
+}
+
+}  // namespace sysid

@@ -1,0 +1,34 @@
+// Numbers as programs and countries write them.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sysid {
+
+enum class CellKind { number, missing, text, not_finite, out_of_range };
+
+/// How numbers are written, and what stands for none.
+struct NumberNotation {
+  char decimal = '.';
+  char thousands = 0;  // ' ' is also a narrow or unbreakable blank
+  std::vector<std::string> missing{};
+
+  bool plain() const { return decimal == '.' && thousands == 0; }
+};
+
+/// The number of a cell, quoted or not, with blanks and a + around; missing where the cell is empty, NA or one of the words. Groups
+/// of digits have three digits each, and stand before the decimal sign.
+CellKind parse_cell(std::string_view cell, NumberNotation const& notation, double& value);
+
+/// What the signs in a cell say of the notation. A single sign before exactly three digits (`1.234`) may be either.
+struct NotationEvidence {
+  bool number = false;        // in some notation
+  char decimal = 0;           // surely the decimal sign
+  char thousands = 0;         // surely between groups
+  char either = 0;            // one of the two
+  bool plain_digits = false;  // no sign at all
+};
+NotationEvidence notation_of(std::string_view cell);
+
+}  // namespace sysid

@@ -1,0 +1,251 @@
+// Reads tables strictly. Numbers are parsed when a column is asked for.
+#include "data/table/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/system/digest.hpp"
+#include "core/system/interrupt.hpp"
+#include "core/text/words.hpp"
+#include "data/table/cells.hpp"
+#include "data/table/encoding.hpp"
+#include "data/table/file_errors.hpp"
+#include "data/table/gzip.hpp"
+#include "data/table/proposal.hpp"
+#include "data/table/record_bytes.hpp"
+#include "data/table/table_parser.hpp"
+#include "data/table/time_stamp.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int rows_between_looks = 1 << 16;  // rows between two looks at the signals
+
+/// Such as `1,5` or `3.2 V`: a number in another notation, and no word of a text.
+bool like_a_number(std::string_view cell) {
+  std::size_t const digit = cell.find_first_of("0123456789");
+  return digit != cell.npos && digit == cell.find_first_not_of("+-.,( ") &&
+         cell.find_first_not_of("0123456789+-.,eE:/%() ") >= cell.size() - std::min<std::size_t>(3, cell.size());
+}
+
+/// Such as `n/a` or `#REF!`, which stand in the place of a number. A file without numbers may hold anything in as few characters.
+bool like_a_gap(std::string_view cell) { return cell.size() <= 5; }
+
+}  // namespace
+
+Table Table::read(std::string const& path, std::optional<Span> mention, ReadingRules const& rules) {
+  try {
+    std::string bytes = read_record_bytes(path);
+    if (!is_gzip(bytes)) return parse(path, std::move(bytes), mention, 0, rules);
+    Table table = parse(path, gunzip(path, bytes), mention, 0, rules);
+    table.digest_ = sha256(bytes);
+    return table;
+  } catch (UserError const& error) {
+    Diagnostic placed = error.diagnostic();
+    if (mention && !placed.primary) placed.primary = Label{*mention, {}};
+    throw UserError(std::move(placed));
+  }
+}
+
+Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention, int rows_before, ReadingRules const& rules) {
+  Table table;
+  table.rows_before_ = rows_before;
+  table.name_ = std::move(name);
+  table.digest_ = sha256(bytes);
+  table.rules_ = rules;
+  table.notation_ = {rules.decimal, rules.thousands, rules.missing};
+  if (!has_utf16_mark(bytes) && rules.encoding == Encoding::utf8 && !is_utf8(bytes))
+    throw UserError(data_errors::not_text(table.name_, proposed_encoding(bytes, rules), mention));
+  auto text = to_utf8(std::move(bytes), rules.encoding);
+  if (!text)
+    throw UserError(data_errors::not_in_encoding(table.name_, rules.encoding == Encoding::latin1 ? "latin1" : "utf16", mention));
+  table.bytes_ = std::move(*text);
+  try {
+    TableParser(table, mention).run();
+  } catch (UserError const& error) {
+    table.rethrow_with_proposal(error, {});
+  }
+  return table;
+}
+
+Table Table::parse_as_told(std::string name, std::string bytes, ReadingRules const& rules) {
+  Table table;
+  table.name_ = std::move(name);
+  table.rules_ = rules;
+  table.notation_ = {rules.decimal, rules.thousands, rules.missing};
+  table.bytes_ = std::move(bytes);
+  table.proposes_ = false;
+  TableParser(table, std::nullopt).run();
+  return table;
+}
+
+/// What makes a file readable goes in place of what the message would advise. Of a file that is no record nothing is said.
+void Table::rethrow_with_proposal(UserError const& error, std::string const& column) const {
+  if (!proposes_) throw UserError(error.diagnostic());
+  Diagnostic diagnostic = error.diagnostic();
+  std::string help = proposed_help({bytes_, rules_, column, diagnostic.code});
+  if (!help.empty()) diagnostic.help = std::move(help);
+  throw UserError(std::move(diagnostic));
+}
+
+int Table::line(int row) const {
+  return rows_before_ + (lines_.empty() ? header_line_ + row : lines_[static_cast<std::size_t>(row - 1)]);
+}
+
+data_errors::Cell Table::place(std::size_t index, std::string const& column) const {
+  int const row = static_cast<int>(index) + 1;
+  return {name_, rows_before_ + row, line(row), column};
+}
+
+std::string_view Table::cell(int row, int column) const {
+  std::size_t const at = static_cast<std::size_t>(row - 1) * (columns_.size() + 1) + static_cast<std::size_t>(column);
+  std::size_t const begin = std::min<std::size_t>(cells_[at], bytes_.size());
+  return std::string_view(bytes_).substr(begin, cells_[at + 1] - 1 - cells_[at]);
+}
+
+std::vector<std::string> Table::texts(int column, int most) const {
+  std::vector<std::string> all;
+  for (int row = 1; row <= std::min(rows_, most); ++row) all.push_back(unquoted_cell(cell(row, column)));
+  return all;
+}
+
+bool Table::names_units() const {
+  if (rows_ < 2) return false;
+  auto const kind = [&](int row, int column) {
+    double ignored = 0;
+    return parse_cell(cell(row, column), notation_, ignored);
+  };
+  bool numbers_follow = false;
+  for (int column = 0; column < static_cast<int>(columns_.size()); ++column) {
+    CellKind const first = kind(1, column);
+    if (first != CellKind::text && first != CellKind::missing) return false;
+    numbers_follow = numbers_follow || (first == CellKind::text && kind(2, column) == CellKind::number);
+  }
+  return numbers_follow;
+}
+
+bool Table::is_record() const {
+  constexpr int looked_at = 10;
+  for (int row = 1; row <= std::min(rows_, looked_at); ++row)
+    for (int column = 0; column < static_cast<int>(columns_.size()); ++column)
+      if (std::string_view const text = cell(row, column);
+          text.find_first_of("0123456789") != text.npos && text.find_first_not_of("0123456789+-.,eE \t\"") == text.npos)
+        return true;  // a number, or several where the separator is not the one that the table was read with
+  return false;
+}
+
+int Table::index_of(std::string const& column, std::optional<Span> mention) const {
+  auto const found = std::find(columns_.begin(), columns_.end(), column);
+  if (found == columns_.end() || column.empty())
+    throw UserError(data_errors::missing_column(name_, column, columns_, is_record(), mention));
+  if (std::find(found + 1, columns_.end(), column) != columns_.end())
+    throw UserError(data_errors::repeated_column(name_, column, mention));
+  return static_cast<int>(found - columns_.begin());
+}
+
+std::optional<std::string> Table::unit(std::string const& column) const {
+  auto const found = std::find(columns_.begin(), columns_.end(), column);
+  if (units_.empty() || found == columns_.end()) return std::nullopt;
+  return units_[static_cast<std::size_t>(found - columns_.begin())];
+}
+
+std::vector<double> Table::numbers(std::string const& column, std::optional<Span> mention) const {
+  try {
+    return numbers_as_told(column, mention);
+  } catch (UserError const& error) {
+    rethrow_with_proposal(error, column);
+  }
+}
+
+std::vector<double> Table::times(std::string const& column, std::optional<Span> mention) const {
+  try {
+    return rules_.stamp.empty() ? numbers_as_told(column, mention) : times_as_told(column, mention);
+  } catch (UserError const& error) {
+    rethrow_with_proposal(error, column);
+  }
+}
+
+std::vector<double> Table::numbers_as_told(std::string const& column, std::optional<Span> mention) const {
+  int const index = index_of(column, mention);
+  std::vector<double> values(static_cast<std::size_t>(rows_));
+  bool any = false;  // numbers so far
+  for (int row = 1; row <= rows_; ++row) {
+    if (row % rows_between_looks == 0) stop_if_interrupted();
+    double& value = values[static_cast<std::size_t>(row - 1)];
+    std::string_view const text = cell(row, index);
+    CellKind const kind = parse_cell(text, notation_, value);
+    if (kind == CellKind::number) {
+      any = true;
+      continue;
+    }
+    if (kind == CellKind::missing) {
+      value = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    data_errors::Cell const where = place(static_cast<std::size_t>(row - 1), column);
+    std::string_view const shown = trimmed(text, cell_blanks);
+    if (kind == CellKind::text && rows_before_ + row == 1 && names_units())
+      throw UserError(data_errors::row_of_units(where, shown, mention));
+    // A model of unknown origin may name any file as data: what is no number of a record is not repeated.
+    bool const shows = any || like_a_number(shown) || (like_a_gap(shown) && is_record());
+    throw UserError(kind == CellKind::not_finite     ? data_errors::not_finite(where, shown, mention)
+                    : kind == CellKind::out_of_range ? data_errors::out_of_range(where, shown, mention)
+                                                     : data_errors::not_a_number(where, shown, shows, mention));
+  }
+  if (int const row = row_of_doubtful_points(index))
+    throw UserError(
+        data_errors::points_or_groups(place(static_cast<std::size_t>(row - 1), column), unquoted_cell(cell(row, index)), mention));
+  if (!rules_.asked_for_missing)
+    if (auto const word = doubtful_number(values))
+      throw UserError(data_errors::doubtful_sample(
+          place(static_cast<std::size_t>(std::find(values.begin(), values.end(), *word) - values.begin()), column), *word,
+          static_cast<int>(std::count(values.begin(), values.end(), *word)), mention));
+  return values;
+}
+
+int Table::row_of_doubtful_points(int column) const {
+  if (rules_.decimal_given || rules_.thousands != 0 || separator_ == ',') return 0;
+  int points = 0, whole = 0, first = 0;
+  for (int row = 1; row <= rows_; ++row) {
+    NotationEvidence const evidence = notation_of(cell(row, column));
+    if (evidence.decimal != 0) return 0;
+    points += evidence.either == '.';
+    whole += evidence.plain_digits;
+    if (evidence.either == '.' && first == 0) first = row;
+  }
+  constexpr int enough = 3;
+  return points >= enough && whole > 0 ? first : 0;
+}
+
+std::vector<double> Table::times_as_told(std::string const& column, std::optional<Span> mention) const {
+  auto const pattern = StampPattern::parse(rules_.stamp);
+  if (!pattern) throw InternalError("a stamp that is no pattern");
+  int const index = index_of(column, mention), date = rules_.date.empty() ? -1 : index_of(rules_.date, mention);
+  constexpr std::int64_t day = 86400;
+  std::vector<double> seconds(static_cast<std::size_t>(rows_));
+  TimeStamp first, before;
+  std::int64_t days = 0;
+  for (int row = 1; row <= rows_; ++row) {
+    if (row % rows_between_looks == 0) stop_if_interrupted();
+    std::string text = unquoted_cell(cell(row, index));
+    if (date >= 0) text = unquoted_cell(cell(row, date)) + " " + text;
+    auto stamp = pattern->read(text);
+    if (!stamp) {
+      bool const shows = is_time_stamp(text) || row > 1;
+      throw UserError(data_errors::not_a_stamp(place(static_cast<std::size_t>(row - 1), column), shows ? text : std::string(),
+                                               rules_.stamp, mention));
+    }
+    // Time of day that falls by more than half a day has passed midnight.
+    if (!pattern->has_date() && row > 1 && before.second - (stamp->second + days * day) > day / 2) ++days;
+    stamp->second += days * day;
+    if (row == 1) first = *stamp;
+    before = *stamp;
+    seconds[static_cast<std::size_t>(row - 1)] = seconds_between(first, *stamp);
+  }
+  return seconds;
+}
+
+}  // namespace sysid

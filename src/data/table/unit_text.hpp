@@ -1,0 +1,22 @@
+// Units as programs write them in tables, as units and as the language writes them.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/numeric/unit.hpp"
+
+namespace sysid {
+
+/// `N`, `[mm]`, `(m/s²)`, `kN.m`, `Deg C`, `Volts`, `µm`, `m s-1`; `text` is what may stand in brackets in a data block. Nothing
+/// for what is no unit. A dash or a 1 is the unit of plain numbers.
+std::optional<Unit> unit_of_text(std::string_view text);
+
+/// `Force (N)`, `Force [N]`, `Force / N`, `Force in N`: the name and what stands there as its unit.
+struct NameWithUnit {
+  std::string name;
+  std::string unit;  // without brackets
+};
+std::optional<NameWithUnit> split_name(std::string_view text);
+
+}  // namespace sysid

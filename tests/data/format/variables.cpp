@@ -1,0 +1,198 @@
+// Records in MATLAB, NetCDF and HDF5 files, made here by the libraries that read them; and what becomes of damaged ones.
+#include "data/format/variables.hpp"
+
+#include <doctest/doctest.h>
+#include <matio.h>
+#include <netcdf.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "core/numeric/random.hpp"
+#include "core/system/files.hpp"
+#include "core/text/diagnostic.hpp"
+#include "data/format/open_record.hpp"
+#include "data/temporary_file.hpp"
+
+using namespace sysid;
+
+namespace {
+
+using Numbers = std::vector<double>;
+
+/// A path of this process that is removed at the end.
+struct Scratch {
+  std::string path;
+  explicit Scratch(std::string const& name)
+      : path((std::filesystem::temp_directory_path() / ("sysid_" + std::to_string(::getpid()) + "_" + name)).string()) {}
+  ~Scratch() { std::filesystem::remove(path); }
+  Scratch(Scratch const&) = delete;
+};
+
+matvar_t* doubles(char const* name, std::size_t rows, std::size_t columns, double const* values) {
+  std::size_t size[2] = {rows, columns};
+  return Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size, const_cast<double*>(values), 0);
+}
+
+void put(mat_t* file, matvar_t* variable) {
+  Mat_VarWrite(file, variable, MAT_COMPRESSION_ZLIB);
+  Mat_VarFree(variable);
+}
+
+void write_matlab(std::string const& path, mat_ft version) {
+  mat_t* const file = Mat_CreateVer(path.c_str(), nullptr, version);
+  REQUIRE(file != nullptr);
+  double const time[] = {0, 0.5, 1}, force[] = {1.5, std::nan(""), 3.5}, matrix[] = {1, 2, 3, 10, 20, 30};
+  put(file, doubles("time", 3, 1, time));
+  put(file, doubles("short_one", 1, 2, time));
+  put(file, doubles("X", 3, 2, matrix));
+  std::size_t row[2] = {1, 3}, one[2] = {1, 1};
+  std::int16_t counts[] = {-3, 0, 7};
+  put(file, Mat_VarCreate("counts", MAT_C_INT16, MAT_T_INT16, 2, row, counts, 0));
+  char text[] = "abc";
+  put(file, Mat_VarCreate("remark", MAT_C_CHAR, MAT_T_UTF8, 2, row, text, 0));
+  double imaginary[] = {1, 1, 1}, real[] = {0, 0, 0};
+  mat_complex_split_t parts{real, imaginary};
+  put(file, Mat_VarCreate("z", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, row, &parts, MAT_F_COMPLEX));
+  matvar_t* cells[2] = {doubles(nullptr, 1, 1, time), nullptr};
+  put(file, Mat_VarCreate("cells", MAT_C_CELL, MAT_T_CELL, 2, one, cells, 0));
+  char const* fields[] = {"force", "inner"};
+  char const* inner_fields[] = {"flow"};
+  matvar_t* const inner = Mat_VarCreateStruct("inner", 2, one, inner_fields, 1);
+  Mat_VarSetStructFieldByName(inner, "flow", 0, doubles(nullptr, 3, 1, matrix));
+  matvar_t* const data = Mat_VarCreateStruct("data", 2, one, fields, 2);
+  Mat_VarSetStructFieldByName(data, "force", 0, doubles(nullptr, 1, 3, force));
+  Mat_VarSetStructFieldByName(data, "inner", 0, inner);
+  put(file, data);
+  Mat_Close(file);
+}
+
+void write_netcdf(std::string const& path, int mode) {
+  int file = -1, rows = -1, columns = -1, group = -1, id = -1;
+  REQUIRE(nc_create(path.c_str(), mode, &file) == NC_NOERR);
+  nc_def_dim(file, "row", 3, &rows);
+  nc_def_dim(file, "column", 2, &columns);
+  if (mode & NC_NETCDF4)
+    nc_def_grp(file, "run", &group);
+  else
+    group = file;
+  nc_def_var(group, "time", NC_DOUBLE, 1, &rows, &id);
+  nc_put_att_text(group, id, "units", 29, "seconds since 2024-05-01 12:00");
+  nc_def_var(group, "force", NC_SHORT, 1, &rows, &id);
+  double const scale = 0.5, offset = 100;
+  short const fill = -1;
+  nc_put_att_double(group, id, "scale_factor", NC_DOUBLE, 1, &scale);
+  nc_put_att_double(group, id, "add_offset", NC_DOUBLE, 1, &offset);
+  nc_put_att_short(group, id, "_FillValue", NC_SHORT, 1, &fill);
+  int const both[] = {rows, columns};
+  nc_def_var(group, "X", NC_FLOAT, 2, both, &id);
+  nc_def_var(group, "label", NC_CHAR, 1, &rows, &id);
+  nc_enddef(file);
+  double const time[] = {0, 0.5, 1};
+  short const force[] = {2, -1, 4};
+  float const matrix[] = {1, 10, 2, 20, 3, 30};
+  nc_inq_varid(group, "time", &id), nc_put_var_double(group, id, time);
+  nc_inq_varid(group, "force", &id), nc_put_var_short(group, id, force);
+  nc_inq_varid(group, "X", &id), nc_put_var_float(group, id, matrix);
+  nc_inq_varid(group, "label", &id), nc_put_var_text(group, id, "abc");
+  nc_close(file);
+}
+
+Diagnostic refusal(RecordFile const& record, std::string const& column) {
+  try {
+    (void)record.numbers(column);
+  } catch (UserError const& error) {
+    return error.diagnostic();
+  }
+  return {};
+}
+
+bool contains(std::string const& text, char const* part) { return text.find(part) != std::string::npos; }
+
+/// Damaged copies are refused or read, and nothing else happens.
+void damage(std::string const& path, int trials) {
+  std::string const whole = read_file(path);
+  int refused = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    Stream stream({.seed = 7, .index = static_cast<std::uint64_t>(trial)});
+    std::string bytes = whole;
+    if (trial % 4 == 0)
+      bytes.resize(stream.below(bytes.size()));
+    else
+      for (std::uint64_t flips = 1 + stream.below(6); flips > 0; --flips)
+        bytes[stream.below(bytes.size())] ^= static_cast<char>(1U << stream.below(8));
+    Scratch const file("damaged.bin");
+    std::ofstream(file.path, std::ios::binary) << bytes;
+    try {
+      auto const record = open_record(file.path, {});
+      for (std::string const& column : record->columns()) {
+        try {
+          (void)record->numbers(column);
+        } catch (UserError const&) {
+          ++refused;
+        }
+      }
+    } catch (UserError const& error) {
+      ++refused;
+      CHECK(error.diagnostic().code.starts_with("E"));
+    }
+  }
+  CHECK(refused > 0);
+}
+
+}  // namespace
+
+TEST_CASE("vectors, fields of structs and columns of matrices are read from MATLAB files of both kinds") {
+  for (mat_ft const version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    CAPTURE(static_cast<int>(version));
+    Scratch const file("record.mat");
+    write_matlab(file.path, version);
+    auto const record = open_record(file.path, {});
+    CHECK(record->numbers("time") == Numbers{0, 0.5, 1});
+    CHECK(record->numbers("counts") == Numbers{-3, 0, 7});
+    CHECK(record->numbers("X[:, 2]") == Numbers{10, 20, 30});
+    CHECK(record->numbers("X(3,:)") == Numbers{3, 30});
+    CHECK(record->numbers("data.inner.flow") == Numbers{1, 2, 3});
+    Numbers const force = record->numbers("data.force");
+    CHECK((force[0] == 1.5 && std::isnan(force[1]) && force[2] == 3.5));
+    CHECK(contains(refusal(*record, "X").message, "array of 3 x 2"));
+    CHECK(refusal(*record, "X[:, 3]").code == "E4027");
+    CHECK(contains(refusal(*record, "z").message, "is complex"));
+    CHECK(contains(refusal(*record, "remark").message, "is text"));
+    CHECK(contains(refusal(*record, "cells").message, "cell array"));
+    Diagnostic const missing = refusal(*record, "data.forse");
+    CHECK(missing.code == "E4008");
+    CHECK(contains(missing.help, "did you mean `data.force`?"));
+    CHECK(contains(missing.help, "`X[:, 1]`"));
+  }
+}
+
+TEST_CASE("variables of NetCDF files of every kind are read by their paths, scaled, with fill values as missing samples") {
+  for (int const mode : {NC_CLOBBER, NC_CLOBBER | NC_64BIT_OFFSET, NC_CLOBBER | NC_NETCDF4}) {
+    CAPTURE(mode);
+    Scratch const file("record.nc");
+    write_netcdf(file.path, mode);
+    auto const record = open_record(file.path, {});
+    std::string const group = mode & NC_NETCDF4 ? "run/" : "";
+    CHECK(record->numbers(group + "time") == Numbers{0, 0.5, 1});
+    CHECK(record->unit(group + "time") == "seconds");
+    Numbers const force = record->numbers(group + "force");
+    CHECK((force[0] == 101 && std::isnan(force[1]) && force[2] == 102));
+    CHECK(record->numbers(group + "X[:, 2]") == Numbers{10, 20, 30});
+    CHECK(contains(refusal(*record, group + "label").message, "is text"));
+  }
+}
+
+TEST_CASE("damaged MATLAB and NetCDF files are refused or read, and end no program") {
+  Scratch const five("five.mat"), seven("seven.mat"), classic("classic.nc"), four("four.nc");
+  write_matlab(five.path, MAT_FT_MAT5);
+  write_matlab(seven.path, MAT_FT_MAT73);
+  write_netcdf(classic.path, NC_CLOBBER);
+  write_netcdf(four.path, NC_CLOBBER | NC_NETCDF4);
+  damage(five.path, 40);
+  damage(seven.path, 24);
+  damage(classic.path, 24);
+  damage(four.path, 24);
+}

@@ -1,0 +1,226 @@
+// Tables as loggers and programs write them: each is read as it stands, or refused with a line to add, which then works. The line
+// is taken from the message as it is.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/text/source.hpp"
+#include "data/record.hpp"
+#include "load/load.hpp"
+
+using namespace sysid;
+
+namespace {
+
+constexpr double none = -1e300;  // in place of a missing sample
+
+struct WantedColumn {
+  char const* name;
+  std::vector<double> values;
+};
+struct LoggedTable {
+  char const* file;
+  char const* time;  // as in the data block; empty: rate
+  std::vector<double> seconds;
+  std::vector<WantedColumn> columns;
+  char const* advice = "";  // the line that the message proposes; empty: read as it stands
+  int choice = 0;           // where two are proposed
+};
+
+std::vector<LoggedTable> const tables = {
+    {"excel_german.csv",
+     "Zeit",
+     {0, 0.5, 1},
+     {{"Kraft (N)", {1234.5, 999.25, 12.5}}, {"Weg [µm]", {0.25, -0.5, 1}}},
+     "read names = 2, encoding = latin1, decimal = \",\", thousands = \".\", stamp = \"DD.MM.YYYY hh:mm:ss,f\""},
+    {"excel_us.csv",
+     "Date",
+     {0, 1, 2},
+     {{"Load", {1234.5, 2000, 12.25}}, {"Deflection", {0.1, 0.2, 0.3}}},
+     "read thousands = \",\", stamp = \"MM/DD/YYYY hh:mm:ss AP\""},
+    {"excel_unicode.txt", "Time", {0, 60, 120}, {{"Temp °C", {20.5, 21.25, 22}}}},
+    {"excel_swiss.csv", "t", {0, 1, 2}, {{"Kosten", {1234.5, 12000, 7}}}, "read thousands = \"'\""},
+    {"labview.lvm",
+     "X_Value",
+     {0, 0.001, 0.002},
+     {{"Force", {1.5, 1.75, 2}}, {"Stroke", {-0.25, -0.5, -0.75}}},
+     "read names = 23, decimal = \",\", ragged = yes"},
+    {"campbell_toa5.dat",
+     "TIMESTAMP",
+     {0, 0.5, 1},
+     {{"AirTemp_Avg", {20.5, none, 21.5}}, {"WindSpeed", {1.25, 1.5, 1.75}}},
+     "read names = 2, units = 3, values = 5, missing = \"NAN\", stamp = iso"},
+    {"national_instruments.csv",
+     "\"Time (s)\"",
+     {0, 0.001, 0.002},
+     {{"Voltage_0 (V)", {0.125, 0.25, 0.375}}, {"Acceleration_1 (g)", {-1.5, -1.25, -1}}},
+     "read names = 6"},
+    {"catman.asc",
+     "Zeit",
+     {0, 0.01, 0.02},
+     {{"Kraft", {1.5, 2.5, 3.5}}, {"Weg", {1e-4, 2e-4, 3e-4}}},
+     "read names = 3, units = 4, decimal = \",\""},
+    {"dewesoft.csv",
+     "\"Time (s)\"",
+     {0, 0.001, 0.002},
+     {{"Force (kN)", {1.5, 1.6, 1.7}}, {"Disp (mm)", {0.01, 0.02, 0.03}}},
+     "read names = 9, values = 10..12, decimal = \",\""},
+    {"picoscope.csv",
+     "Time [ms]",
+     {-1e-3, -0.5e-3, 0},
+     {{"Channel A", {0.5, 0.75, 1}}},
+     "read units = 2, values = 4, missing = \"-∞\""},
+    {"keysight.csv", "\"x-axis\"", {-1e-3, -5e-4, 0}, {{"1", {2.1, 2.2, 2.3}}, {"2", {-0.1, -0.2, -0.3}}}, "read units = 2"},
+    {"tektronix.csv",
+     "TIME",
+     {-2e-9, -1.6e-9, -1.2e-9},
+     {{"CH1", {0.0125, 0.025, 0.0375}}, {"CH2", {1.5, 1.25, 1}}},
+     "read names = 12"},
+    {"origin.txt",
+     "Time",
+     {0, 0.5, 1},
+     {{"Stress", {1.5e6, 2.5e6, 3.5e6}}, {"Strain", {0.001, 0.002, 0.003}}},
+     "read units = 2, values = 4"},
+    {"pandas.csv", "time", {0, 0.25, 0.5}, {{"force", {1.5, 2.5, 3.5}}, {"flow", {none, 0.5, 0.75}}}, "read stamp = iso"},
+    {"r_write_csv.csv", "t", {0, 0.5, 1}, {{"y", {1.5, none, 3.5}}}, "read columns = (\"column_1\", \"t\", \"y\", \"y_2\")"},
+    {"r_write_table.txt",
+     "column_2",
+     {0, 0.5, 1},
+     {{"column_3", {1.5, 2.5, 3.5}}},
+     "read values = 2, columns = (\"column_1\", \"column_2\", \"column_3\"), separator = blank"},
+    {"influx.csv", "_time", {0, 10, 20.5}, {{"_value", {20.5, 21.5, 22.5}}}, "read stamp = iso"},
+    {"arduino.log",
+     "",
+     {0, 1, 2},
+     {{"column_2", {512, 513, 511}}, {"column_3", {23.4, 23.5, 23.6}}},
+     "read columns = (\"column_1\", \"column_2\", \"column_3\"), separator = blank"},
+    {"seismic.txt",
+     "column_1",
+     {0, 0.05, 0.1},
+     {{"column_2", {-120, 15, 131}}},
+     "read values = 2, columns = (\"column_1\", \"column_2\"), separator = blank, stamp = iso"},
+    {"matlab_writetable.csv",
+     "Time",
+     {0, 1, 2},
+     {{"Force", {1.5, 2.5, 3.5}}, {"Flow", {none, 0.5, 0.75}}},
+     "read missing = \"NaN\", stamp = \"DD-MMM-YYYY hh:mm:ss\""},
+    {"numpy_savetxt.txt",
+     "t",
+     {0, 0.01, 0.02},
+     {{"force", {1.5, 2.5, 3.5}}, {"y", {-0.1, -0.2, -0.3}}},
+     "read names = 1, separator = blank"},
+    {"weather_station.csv",
+     "Time",
+     {0, 600, 1200},
+     {{"Temp", {12.5, none, 11.5}}, {"Rain", {0.2, 0.4, 0.6}}},
+     "read missing = \"-9999\", stamp = \"DD/MM/YYYY hh:mm:ss\", date = \"Date\""},
+    {"night_shift.csv",
+     "Uhrzeit",
+     {0, 0.5, 1},
+     {{"Druck", {1013.25, 1013.5, 1013.75}}},
+     "read decimal = \",\", stamp = \"hh:mm:ss,f\""},
+    {"comsol.txt",
+     "column_1",
+     {0, 0.1, 0.2},
+     {{"column_2", {0, 0.25, 0.5}}},
+     "read values = 4, columns = (\"column_1\", \"column_2\"), separator = blank"},
+    {"ambiguous_dates.csv", "when", {0, 60, 120}, {{"y", {1, 2, 3}}}, "read stamp = \"DD/MM/YYYY hh:mm\""},
+    {"ambiguous_dates.csv", "when", {0, 60, 120}, {{"y", {1, 2, 3}}}, "read stamp = \"MM/DD/YYYY hh:mm\"", 1},
+    {"ambiguous_numbers.csv", "t", {0, 1, 2}, {{"y", {1.25, 2.5, 3.75}}}, "read decimal = \",\""},
+    {"ambiguous_numbers.csv", "t", {0, 1, 2}, {{"y", {1250, 2500, 3750}}}, "read thousands = \",\"", 1},
+    {"duplicate_names.csv.gz", "t", {0, 0.1, 0.2}, {{"ch", {1, 2, 3}}}, "read columns = (\"t\", \"ch\", \"ch_2\"), ragged = yes"},
+    {"remarks_between.csv", "t", {0, 1, 2}, {{"y", {1, 2, 3}}}, "read values = 2..5, comments = \"#\""},
+};
+
+std::string block_of(LoggedTable const& table, std::string const& line) {
+  std::string text = fmt::format("data d {{\n  file \"{}\"\n  {}\n", table.file, line);
+  std::string const time = table.time;
+  bool const quotes = time.find_first_of("\"[") == std::string::npos;
+  if (time.empty())
+    text += "  rate 1 [Hz]\n";
+  else
+    text += quotes ? fmt::format("  time \"{}\"\n", time) : fmt::format("  time {}\n", time);
+  for (std::size_t i = 0; i < table.columns.size(); ++i) text += fmt::format("  measure m{} = \"{}\"\n", i, table.columns[i].name);
+  return text + "}\n";
+}
+
+struct Answer {
+  std::optional<Record> record;
+  std::string messages;
+  std::string help;  // of the first message
+};
+
+Answer read(std::string const& text) {
+  Answer answer;
+  Diagnostics diagnostics;
+  Source source("loggers.sysid", text);
+  auto const file = load(source, diagnostics);
+  if (file) {
+    DataBlock const& block = file->data.at(0);
+    RecordRequest request;
+    request.path = std::string(SYSID_SOURCE_DIR "/tests/experiment/loggers/") + block.path;
+    request.rules = block.rules;
+    request.step = block.step;
+    if (block.time) request.time = ColumnRequest{block.time->column, block.time->unit, std::nullopt, block.time->span};
+    for (DataMeasureUse const& use : block.measured)
+      request.measured.push_back(ColumnRequest{use.column, use.unit, std::nullopt, use.span});
+    answer.record = sysid::load(request, diagnostics);
+  }
+  for (Diagnostic const& each : diagnostics.all()) {
+    answer.messages += each.code + ": " + each.message + "\n  help: " + each.help + "\n";
+    if (answer.help.empty()) answer.help = each.help;
+  }
+  return answer;
+}
+
+/// The `read` statements in a help, in their order.
+std::vector<std::string> proposed_lines(std::string const& help) {
+  std::vector<std::string> lines;
+  for (std::size_t at = help.find("`read "); at != std::string::npos; at = help.find("`read ", at + 1))
+    lines.push_back(help.substr(at + 1, help.find('`', at + 1) - at - 1));
+  return lines;
+}
+
+/// Quietly missing samples included.
+bool equal(std::vector<double> const& got, std::vector<double> const& wanted) {
+  if (got.size() != wanted.size()) return false;
+  for (std::size_t i = 0; i < got.size(); ++i)
+    if (wanted[i] == none ? !std::isnan(got[i]) : !(std::fabs(got[i] - wanted[i]) <= 1e-12 * std::fabs(wanted[i]))) return false;
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("tables of loggers are read, or refused with the line to add, which then works") {
+  for (LoggedTable const& table : tables) {
+    CAPTURE(table.file);
+    Answer answer = read(block_of(table, ""));
+    std::string const first = answer.messages;
+    CAPTURE(first);
+    if (std::string(table.advice).empty()) {
+      CHECK(answer.record);
+    } else {
+      CHECK_FALSE(answer.record);
+      auto const lines = proposed_lines(answer.help);
+      if (static_cast<int>(lines.size()) <= table.choice) {
+        FAIL_CHECK("no line is proposed");
+        continue;
+      }
+      std::string const line = lines[static_cast<std::size_t>(table.choice)];
+      CHECK(line == table.advice);
+      answer = read(block_of(table, line));
+    }
+    std::string const second = answer.messages;
+    CAPTURE(second);
+    CHECK(answer.record);
+    if (!answer.record) continue;
+    CHECK(equal(answer.record->time, table.seconds));
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      CAPTURE(table.columns[i].name);
+      CHECK(equal(answer.record->measured[i], table.columns[i].values));
+    }
+  }
+}
