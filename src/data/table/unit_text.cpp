@@ -21,7 +21,7 @@ constexpr Spelling whole_texts[] = {
     {"ampere", "A"},   {"amps", "A"},      {"newton", "N"},     {"newtons", "N"},  {"meter", "m"},       {"meters", "m"},
     {"metres", "m"},   {"watts", "W"},     {"hertz", "Hz"},     {"pascal", "Pa"},  {"millivolts", "mV"}, {"mvolts", "mV"},
     {"hours", "h"},    {"minutes", "min"}, {"%", "percent"},    {"1", "-"},        {"none", "-"},        {"rn", "-"},
-    {"ts", "-"},       {"smp", "-"},       {"---", "-"}};
+    {"ts", "-"},       {"---", "-"}};
 constexpr Spelling unit_signs[] = {{"µ", "u"},   {"μ", "u"},   {"²", "^2"},    {"³", "^3"},  {"·", " "},  {"⋅", " "},
                                    {"Ω", "ohm"}, {"Ω", "ohm"}, {"°C", "degC"}, {"°", "deg"}, {"**", "^"}, {"%", "percent"}};
 
