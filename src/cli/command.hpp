@@ -21,6 +21,7 @@ struct Command {
 
 /// Each adds a verb's options to `verb`; the work that it returns owns their values.
 Work declare_tasks(CLI::App& verb);  // run, or the one kind of task that the verb is named after
+Work declare_data(CLI::App& verb);
 Work declare_check(CLI::App& verb);
 Work declare_calibrate(CLI::App& verb);
 Work declare_crosscheck(CLI::App& verb);

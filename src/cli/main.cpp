@@ -24,6 +24,8 @@ constexpr Command commands[] = {
      "sysid discover lorenz.sysid", true},
     {"predict", tasks, "run the predict tasks of a file, from stored draws", &declare_tasks, "sysid predict duffing.sysid --force",
      true},
+    {"data", files, "look at a record: columns, rate, gaps, what may be wrong, and the data block that reads it", &declare_data,
+     "sysid data bench.csv\nsysid data messung.mat --plot messung.svg"},
     {"check", files, "check a file, and report what its data can determine, before any sampling", &declare_check,
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
     {"calibrate", files, "test the intervals of fits, on records simulated from the priors", &declare_calibrate,

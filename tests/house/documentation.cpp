@@ -17,6 +17,7 @@
 #include <regex>
 
 #include "app/preflight/check_file.hpp"
+#include "app/record/record_text.hpp"
 #include "app/run/pipeline.hpp"
 #include "app/running.hpp"
 #include "check/task/task_options.hpp"
@@ -191,6 +192,10 @@ TEST_CASE("quoted output is what the program prints") {
     if (words[1] == "run") {  // compared where that model is run (tests/app/golden_run.cpp)
       CHECK((words[2].starts_with("models/") && fs::exists(root / words[2])));
       ++run;
+      return;
+    }
+    if (words[1] == "data") {  // tests run at the root, where such paths begin
+      check_quotes(command, record_text(look_at_record(words[2])));
       return;
     }
     REQUIRE(words[1] == "check");

@@ -219,18 +219,6 @@ void add_lines(std::string const& bytes, Layout const& layout, ReadingRules& rul
   if (rules.columns.empty() && short_names) rules.columns = layout.columns;
 }
 
-/// Names that are there twice or empty get others.
-std::vector<std::string> distinct_names(std::vector<std::string> const& names) {
-  std::vector<std::string> made;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::string name = names[i].empty() ? fmt::format("column_{}", i + 1) : names[i];
-    for (int number = 2; std::find(made.begin(), made.end(), name) != made.end(); ++number)
-      name = fmt::format("{}_{}", names[i].empty() ? "column" : names[i], number);
-    made.push_back(std::move(name));
-  }
-  return made;
-}
-
 /// Whether all columns of numbers, and the stamps, can be read so.
 bool works(std::string const& bytes, Layout const& layout, ReadingRules const& rules) {
   if (!refuse(rules).empty()) return false;
@@ -249,6 +237,17 @@ bool works(std::string const& bytes, Layout const& layout, ReadingRules const& r
 }
 
 }  // namespace
+
+std::vector<std::string> distinct_names(std::vector<std::string> const& names) {
+  std::vector<std::string> made;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::string name = names[i].empty() ? fmt::format("column_{}", i + 1) : names[i];
+    for (int number = 2; std::find(made.begin(), made.end(), name) != made.end(); ++number)
+      name = fmt::format("{}_{}", names[i].empty() ? "column" : names[i], number);
+    made.push_back(std::move(name));
+  }
+  return made;
+}
 
 std::optional<double> doubtful_number(std::vector<double> const& values) {
   constexpr double marks[] = {-9999, -99999, -999, -999.25, -999.9, -9999.9, -9999.99, -32768, -1e30, -1e20};

@@ -32,6 +32,9 @@ std::string proposed_help(ProposalRequest const& request);
 /// The encoding in which bytes that are no UTF-8 would be read as a record.
 std::optional<std::string> proposed_encoding(std::string const& bytes, ReadingRules const& rules);
 
+/// Names that are there twice or empty get others.
+std::vector<std::string> distinct_names(std::vector<std::string> const& names);
+
 /// A number that stands for a missing sample in many files, -9999 and its like, where all others of the column are far from it.
 std::optional<double> doubtful_number(std::vector<double> const& values);
 

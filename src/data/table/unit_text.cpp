@@ -20,7 +20,8 @@ constexpr Spelling whole_texts[] = {
     {"seconds", "s"},  {"sekunden", "s"},  {"msec", "ms"},      {"usec", "us"},    {"volt", "V"},        {"volts", "V"},
     {"ampere", "A"},   {"amps", "A"},      {"newton", "N"},     {"newtons", "N"},  {"meter", "m"},       {"meters", "m"},
     {"metres", "m"},   {"watts", "W"},     {"hertz", "Hz"},     {"pascal", "Pa"},  {"millivolts", "mV"}, {"mvolts", "mV"},
-    {"hours", "h"},    {"minutes", "min"}, {"%", "percent"},    {"1", "-"},        {"none", "-"},        {"---", "-"}};
+    {"hours", "h"},    {"minutes", "min"}, {"%", "percent"},    {"1", "-"},        {"none", "-"},        {"rn", "-"},
+    {"ts", "-"},       {"---", "-"}};
 constexpr Spelling unit_signs[] = {{"µ", "u"},   {"μ", "u"},   {"²", "^2"},    {"³", "^3"},  {"·", " "},  {"⋅", " "},
                                    {"Ω", "ohm"}, {"Ω", "ohm"}, {"°C", "degC"}, {"°", "deg"}, {"**", "^"}, {"%", "percent"}};
 

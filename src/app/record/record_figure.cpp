@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/record/record_text.hpp"
+#include "report/figure/drawing.hpp"
+
+namespace sysid {
+namespace {
+
+using namespace plot;
+
+constexpr std::size_t shown_columns = 8, most_points = 600;
+
+/// Rows as they are, or the range of each stretch of a long record: x, low, high.
+Rows rows_of(std::vector<double> const& times, std::vector<double> const& values, Axis const& x, Axis const& y) {
+  std::size_t const stretch = (values.size() + most_points - 1) / most_points;
+  Rows rows;
+  for (std::size_t begin = 0; begin < values.size(); begin += stretch) {
+    double low = std::nan(""), high = low;
+    for (std::size_t i = begin; i < std::min(begin + stretch, values.size()); ++i) {
+      if (std::isnan(values[i])) continue;
+      low = std::isnan(low) ? values[i] : std::min(low, values[i]);
+      high = std::isnan(high) ? values[i] : std::max(high, values[i]);
+    }
+    if (std::isnan(low)) {
+      rows.emplace_back();  // a gap breaks the line
+      continue;
+    }
+    rows.push_back({x.scaled(times[begin]), y.scaled(low), y.scaled(high)});
+  }
+  return rows;
+}
+
+}  // namespace
+
+plot::Figure record_figure(RecordLook const& look) {
+  std::vector<std::size_t> shown;
+  std::size_t all = 0;
+  for (std::size_t c = 0; c < look.columns.size(); ++c) {
+    ColumnLook const& column = look.columns[c];
+    if (!column.unread.empty() || column.name == look.time.column || column.missing == column.rows) continue;
+    if (++all <= shown_columns) shown.push_back(c);
+  }
+  constexpr int panel_height = 110, below = 44, above = 8, width = 2 * column_width;
+  Drawing drawing{"record", width, below + above + panel_height * static_cast<int>(std::max<std::size_t>(shown.size(), 1))};
+  bool const has_time = !look.time.column.empty();
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    ColumnLook const& column = look.columns[shown[k]];
+    double const top = drawing.height - above - panel_height * static_cast<double>(k);
+    Axis const x = axis(look.times.front(), look.times.back(), 8);
+    double const pad = column.dead ? std::max(std::fabs(column.smallest), 1.0) * 0.1 : 0;
+    Axis const y = axis(column.smallest - pad, column.largest + pad, 3, 0.06);
+    Panel p = panel_at(78, width - 14, top - panel_height + 10, top, x, y);
+    p.x_numbers = k + 1 == shown.size();
+    if (p.x_numbers) p.x_label = has_time ? axis_label("time", "s", x) : axis_label("row", "", x);
+    p.y_label = axis_label(column.name, column.unit == "-" ? "" : column.unit, y);
+    std::string const table = fmt::format("column{}", k);
+    Rows rows = rows_of(look.times, look.values[shown[k]], x, y);
+    std::vector<Series> series;
+    if (look.rows > most_points) series.push_back(upright_bars(table, 2, 3, plot::data));
+    series.push_back(line(table, 2, 1.0, plot::data));
+    drawing.plots.push_back({std::move(p), {{table, std::move(rows)}}, std::move(series)});
+  }
+  Figure out{"record", look.file, "The columns of the record.", script(drawing), Topic::fit};
+  if (all > shown.size()) out.caption += fmt::format(" Shown are the first {} of {}.", shown.size(), all);
+  return out;
+}
+
+}  // namespace sysid

@@ -1,0 +1,44 @@
+// data: a look at a record before there is a model.
+#include <unistd.h>
+
+#include "app/record/record_text.hpp"
+#include "cli/command.hpp"
+#include "core/system/files.hpp"
+#include "core/text/wrapped.hpp"
+#include "report/figure/gnuplot.hpp"
+
+namespace sysid::cli {
+namespace {
+
+struct DataOptions {
+  std::string file, plot;
+  bool json = false;
+};
+
+ExitCode look(Messages const& messages, DataOptions const& options) {
+  RecordLook const look = look_at_record(options.file);
+  if (options.json)
+    std::cout << record_json(look);
+  else
+    std::cout << wrapped_rows(record_text(look), terminal_columns(STDOUT_FILENO));
+  if (options.plot.empty()) return ExitCode::success;
+  auto const picture = draw(record_figure(look));
+  if (!picture) {
+    messages.complain("the plot was not drawn: gnuplot is not installed", "apt install gnuplot-nox");
+    return ExitCode::io;
+  }
+  write_file(options.plot, *picture);
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Work declare_data(CLI::App& verb) {
+  auto const options = std::make_shared<DataOptions>();
+  verb.add_option("FILE", options->file, "a record: a table as text, a MATLAB, NetCDF or HDF5 file")->required();
+  verb.add_flag("--json", options->json, "print JSON");
+  verb.add_option("--plot", options->plot, "draw the columns over time into this SVG file")->type_name("SVG");
+  return [options](Messages const& messages) { return look(messages, *options); };
+}
+
+}  // namespace sysid::cli

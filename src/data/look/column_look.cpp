@@ -1,0 +1,159 @@
+#include "data/look/column_look.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/fourier.hpp"
+#include "core/system/interrupt.hpp"
+
+namespace sysid {
+namespace {
+
+/// Samples at `value` in runs of at least three, where there are enough of them to be no chance.
+std::size_t in_runs_at(std::vector<double> const& values, double value) {
+  constexpr std::size_t shortest = 3;
+  std::size_t all = 0, run = 0;
+  for (std::size_t i = 0; i <= values.size(); ++i) {
+    if (i < values.size() && values[i] == value) {
+      ++run;
+      continue;
+    }
+    if (run >= shortest) all += run;
+    run = 0;
+  }
+  return all >= 5 && all * 1000 >= values.size() ? all : 0;
+}
+
+/// The step of a converter: the least difference, if all others are multiples of it.
+double quantum_of(std::vector<double> const& levels) {
+  constexpr std::size_t fewest = 4;
+  if (levels.size() < fewest) return 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < levels.size(); ++i) least = std::min(least, levels[i] - levels[i - 1]);
+  double const range = levels.back() - levels.front();
+  if (range / least > 1e9) return 0;
+  // Sums of a few differences give the step to more digits than the least one alone.
+  double const step = range / std::round(range / least);
+  for (double const level : levels) {
+    double const multiple = (level - levels.front()) / step;
+    if (std::fabs(multiple - std::round(multiple)) > 1e-3 + 1e-6 * std::fabs(multiple)) return 0;
+  }
+  return step;
+}
+
+struct Line {
+  double begin = 0, slope = 0, spread = 0;  // over rows
+};
+Line line_through(std::vector<double> const& values) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    double const x = static_cast<double>(i) - 0.5 * static_cast<double>(values.size());
+    n += 1, sx += x, sy += values[i], sxx += x * x, sxy += x * values[i];
+  }
+  Line line;
+  double const determinant = n * sxx - sx * sx;
+  line.slope = determinant > 0 ? (n * sxy - sx * sy) / determinant : 0;
+  double const level = n > 0 ? (sy - line.slope * sx) / n : 0;
+  line.begin = level - line.slope * 0.5 * static_cast<double>(values.size());
+  double squares = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    double const residual = values[i] - line.begin - line.slope * static_cast<double>(i);
+    if (!std::isnan(residual)) squares += residual * residual;
+  }
+  line.spread = n > 2 ? std::sqrt(squares / (n - 2)) : 0;
+  return line;
+}
+
+/// Peaks of the spectrum under a Hann window, the straight line taken off.
+std::vector<SpectralPeak> peaks_of(std::vector<double> const& values, Line const& line, double step) {
+  constexpr std::size_t fewest = 32, most = std::size_t{1} << 22U, shown = 3;
+  std::size_t const rows = std::min(values.size(), most);
+  if (rows < fewest || line.spread == 0) return {};
+  std::size_t size = 4;
+  while (size < rows) size *= 2;
+  Fourier::Parts re(size, 0.0), im(size, 0.0);
+  for (std::size_t i = 0; i < rows; ++i) {
+    double const window = 1 - elementary::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(rows));
+    re[i] = (values[i] - line.begin - line.slope * static_cast<double>(i)) * window;
+  }
+  Fourier const transform(size);
+  transform.to_reversed(re, im, &stop_if_interrupted);
+  // From bit-reversed order.
+  std::vector<double> amplitudes(size / 2);
+  int bits = 0;
+  while ((std::size_t{1} << static_cast<unsigned>(bits)) < size) ++bits;
+  for (std::size_t i = 0; i < size; ++i) {
+    std::size_t k = 0;
+    for (int b = 0; b < bits; ++b) k |= ((i >> static_cast<unsigned>(b)) & 1U) << static_cast<unsigned>(bits - 1 - b);
+    if (k < amplitudes.size()) amplitudes[k] = 2 * std::sqrt(re[i] * re[i] + im[i] * im[i]) / static_cast<double>(rows);
+  }
+  std::vector<SpectralPeak> peaks;
+  double const first = 2.5 * static_cast<double>(size) / static_cast<double>(rows);  // below, the window and the line are seen
+  for (std::size_t k = 1; k + 1 < amplitudes.size(); ++k)
+    if (static_cast<double>(k) >= first && amplitudes[k] > amplitudes[k - 1] && amplitudes[k] >= amplitudes[k + 1]) {
+      // A parabola through the logarithms of three points (Hann window: the error is below a tenth of a bin).
+      double const a = elementary::log(std::max(amplitudes[k - 1], 1e-300)), b = elementary::log(amplitudes[k]),
+                   c = elementary::log(std::max(amplitudes[k + 1], 1e-300));
+      double const shift = a - 2 * b + c < 0 ? 0.5 * (a - c) / (a - 2 * b + c) : 0;
+      peaks.push_back({(static_cast<double>(k) + shift) / (static_cast<double>(size) * step),
+                       amplitudes[k] * elementary::exp(-0.25 * (a - c) * shift)});
+    }
+  std::sort(peaks.begin(), peaks.end(), [](SpectralPeak const& x, SpectralPeak const& y) { return x.amplitude > y.amplitude; });
+  // What stands out of the floor.
+  std::vector<double> sorted = amplitudes;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  double const floor = sorted[sorted.size() / 2];
+  std::erase_if(peaks, [&](SpectralPeak const& peak) { return peak.amplitude < 6 * floor || peak.amplitude < 0.02 * line.spread; });
+  std::vector<SpectralPeak> apart;
+  double const resolution = 4 / (static_cast<double>(rows) * step);
+  for (SpectralPeak const& peak : peaks)
+    if (apart.size() < shown && std::none_of(apart.begin(), apart.end(), [&](SpectralPeak const& other) {
+          return std::fabs(other.frequency - peak.frequency) < resolution;
+        }))
+      apart.push_back(peak);
+  return apart;
+}
+
+}  // namespace
+
+ColumnLook look_at_column(std::string name, std::vector<double> const& values, double step) {
+  ColumnLook look;
+  look.name = std::move(name);
+  look.rows = values.size();
+  std::vector<double> levels;
+  for (double const value : values)
+    if (!std::isnan(value)) levels.push_back(value);
+  look.missing = values.size() - levels.size();
+  if (levels.empty()) return look;
+  look.first = levels.front();
+  double sum = 0, squares = 0;
+  for (double const value : levels) sum += value;
+  look.mean = sum / static_cast<double>(levels.size());
+  for (double const value : levels) squares += (value - look.mean) * (value - look.mean);
+  look.sd = levels.size() > 1 ? std::sqrt(squares / static_cast<double>(levels.size() - 1)) : 0;
+  std::sort(levels.begin(), levels.end());
+  look.smallest = levels.front();
+  look.largest = levels.back();
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  look.levels = levels.size();
+  look.dead = look.levels == 1 && values.size() > 1;
+  if (look.dead) return look;
+  constexpr std::size_t few_levels = 8;  // a switch, or steps of a command, is at its ends most of the time
+  if (look.levels > few_levels) {
+    look.at_smallest = in_runs_at(values, look.smallest);
+    look.at_largest = in_runs_at(values, look.largest);
+  }
+  look.quantum = quantum_of(levels);
+  Line const line = line_through(values);
+  double const drift = line.slope * static_cast<double>(values.size() - 1);
+  constexpr std::size_t few_rows = 20;  // of fewer any line is one
+  if (values.size() >= few_rows && std::fabs(drift) > 2 * line.spread) look.drift = drift;
+  if (step > 0 && look.missing == 0) look.peaks = peaks_of(values, line, step);
+  return look;
+}
+
+}  // namespace sysid

@@ -1,0 +1,228 @@
+#include "data/look/record_look.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "core/numeric/unit.hpp"
+#include "core/text/number.hpp"
+#include "data/format/open_record.hpp"
+#include "data/look/paste_block.hpp"
+#include "data/table/encoding.hpp"
+#include "data/table/gzip.hpp"
+#include "data/table/proposal.hpp"
+#include "data/table/record_bytes.hpp"
+#include "data/table/table.hpp"
+#include "data/table/unit_text.hpp"
+
+namespace sysid {
+namespace {
+
+/// Rules for a text, and what was seen that the block states in other words.
+struct Chosen {
+  ReadingRules rules;
+  std::map<std::string, std::string> units;  // of a line of units, by column
+};
+
+std::string in_small_letters_only(std::string const& name) {
+  std::string small;
+  for (char const c : name)
+    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) small += static_cast<char>(c | 0x20);
+  return small;
+}
+
+/// Whether people call the time so.
+bool is_time_name(std::string const& name) {
+  auto const split = split_name(name);
+  std::string const small = in_small_letters_only(split ? split->name : name.substr(name.find_last_of("./") + 1));
+  for (std::string_view const each : {"t", "time", "zeit", "timestamp", "datetime", "date", "uhrzeit", "datum", "xvalue", "xaxis",
+                                      "elapsedtime", "seconds", "sec", "temps", "tiempo", "tid", "zeitstempel"})
+    if (small == each) return true;
+  return false;
+}
+
+bool keeps_increasing(std::vector<double> const& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (std::isnan(values[i]) || (i > 0 && !(values[i] > values[i - 1]))) return false;
+  return values.size() > 1;
+}
+
+Chosen choose_rules(std::string const& path, std::string const& text, RecordLook& look) {
+  auto proposal = propose(text, {});
+  if (!proposal) return {};
+  // Stamps are looked for in the column that has them.
+  Layout const& layout = proposal->layout;
+  for (std::size_t c = 0; c < layout.columns.size(); ++c)
+    if (layout.looks[c] == CellLook::stamp && !layout.columns[c].empty()) {
+      ReadingRules wanted;
+      wanted.time_column = layout.columns[c];
+      if (auto with_stamps = propose(text, wanted); with_stamps && !with_stamps->rules.front().stamp.empty()) {
+        proposal = std::move(with_stamps);
+        if (!proposal->time.empty())
+          for (ReadingRules& rules : proposal->rules) rules.time_column = proposal->time;
+        break;
+      }
+    }
+  std::vector<std::string> names = proposal->layout.columns;
+  std::vector<std::string> sorted = names;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    for (ReadingRules& rules : proposal->rules) rules.columns = distinct_names(names);
+  Chosen chosen{proposal->rules.front(), {}};
+  // Units of a line stand in the block, where they are seen and can be changed.
+  if (chosen.rules.units == UnitsPlace::line) {
+    Table const table = Table::parse_as_told(path, text, chosen.rules);
+    for (std::string const& column : table.columns())
+      if (auto const unit = unit_of_text(table.unit(column).value_or(""))) chosen.units[column] = unit->text;
+    for (ReadingRules& rules : proposal->rules) {
+      rules.units = UnitsPlace::none;
+      rules.units_line = 0;
+      if (rules.first_value == 0) rules.first_value = proposal->layout.first;
+    }
+    chosen.rules = proposal->rules.front();
+  }
+  look.question = proposal->question;
+  for (ReadingRules const& rules : proposal->rules) look.readings.push_back(reading_statement(rules));
+  look.reading = look.readings.front();
+  return chosen;
+}
+
+std::string unit_in(std::string const& column, RecordFile const& file, Chosen const& chosen) {
+  if (auto const known = chosen.units.find(column); known != chosen.units.end()) return known->second;
+  std::optional<std::string> text = file.unit(column);
+  if (!text)
+    if (auto const split = split_name(column)) text = split->unit;
+  auto const unit = text ? unit_of_text(*text) : std::nullopt;
+  if (!unit && file.unit(column).value_or("") != "") return "-";  // a unit of the file that is none here: plain numbers
+  return unit ? unit->text : std::string();
+}
+
+void look_at_time(RecordLook& look) {
+  TimeLook& time = look.time;
+  std::vector<double> const& t = look.times;
+  time.first = t.front();
+  time.last = t.back();
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  if (steps.empty()) return;
+  std::vector<double> sorted = steps;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  time.step = sorted[sorted.size() / 2];
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i] > 1.5 * time.step) {
+      ++time.gaps;
+      if (steps[i] > time.longest_gap) time.longest_gap = steps[i], time.longest_gap_row = i + 2;
+    } else if (std::fabs(steps[i] - time.step) > 1e-3 * time.step) {
+      ++time.unequal;
+    }
+  }
+}
+
+class Looking {
+ public:
+  Looking(std::string const& path, RecordLook& look) : path_(path), look_(look) {}
+
+  void run() {
+    open();
+    read_columns();
+    find_time();
+    for (std::size_t c = 0; c < look_.columns.size(); ++c) {
+      ColumnLook& column = look_.columns[c];
+      bool const equal = !look_.time.column.empty() && look_.time.unequal == 0 && look_.time.gaps == 0;
+      if (!column.unread.empty()) continue;
+      ColumnLook made = look_at_column(column.name, look_.values[c], equal ? look_.time.step : 0);
+      made.unit = column.unit;
+      column = std::move(made);
+    }
+    look_.block = paste_block(look_);
+  }
+
+ private:
+  void open() {
+    std::string bytes = read_record_bytes(path_);
+    if (is_gzip(bytes)) bytes = gunzip(path_, bytes);
+    FormatRow const* const format = format_of(bytes);
+    look_.format = format == nullptr ? "text" : std::string(format->name);
+    if (format == nullptr) {
+      std::optional<Encoding> encoding = is_utf8(bytes) ? std::optional(Encoding::utf8) : likely_encoding(bytes);
+      bool const marked = has_utf16_mark(bytes);
+      auto const text = encoding ? to_utf8(bytes, *encoding) : std::nullopt;
+      if (text) chosen_ = choose_rules(path_, *text, look_);
+      if (encoding && *encoding != Encoding::utf8 && !marked) {
+        chosen_.rules.encoding = *encoding;
+        look_.reading = reading_statement(chosen_.rules);
+        if (!look_.readings.empty()) look_.readings.front() = look_.reading;
+      }
+    }
+    file_ = open_record(path_, chosen_.rules);
+  }
+  /// Columns of the usual length; those of another are no rows of the same record.
+  void read_columns() {
+    std::map<std::size_t, int> lengths;
+    for (std::string const& name : file_->columns()) {
+      ColumnLook& column = look_.columns.emplace_back();
+      column.name = name;
+      column.unit = unit_in(name, *file_, chosen_);
+      std::vector<double>& values = look_.values.emplace_back();
+      try {
+        values = name.empty() ? std::vector<double>() : file_->numbers(name);
+        if (name.empty()) column.unread = "has no name";
+      } catch (UserError const& error) {
+        column.unread = "holds no numbers";
+      }
+      if (column.unread.empty()) ++lengths[values.size()];
+    }
+    int most = 0;
+    for (auto const& [length, count] : lengths)
+      if (count >= most && length > 0) most = count, look_.rows = length;
+    for (std::size_t c = 0; c < look_.columns.size(); ++c)
+      if (look_.columns[c].unread.empty() && look_.values[c].size() != look_.rows) {
+        look_.columns[c].unread = fmt::format("has {} numbers", look_.values[c].size());
+        look_.values[c].clear();
+      }
+  }
+  void find_time() {
+    TimeLook& time = look_.time;
+    if (!chosen_.rules.stamp.empty()) {
+      std::vector<double> stamps = file_->times(chosen_.rules.time_column);
+      if (keeps_increasing(stamps)) {
+        time.column = chosen_.rules.time_column;
+        time.stamps = true;
+        look_.times = std::move(stamps);
+        look_.rows = std::max(look_.rows, look_.times.size());
+        return look_at_time(look_);
+      }
+    }
+    for (std::size_t c = 0; c < look_.columns.size(); ++c) {
+      ColumnLook const& column = look_.columns[c];
+      if (!column.unread.empty() || !is_time_name(column.name) || !keeps_increasing(look_.values[c])) continue;
+      Unit unit = unit_atom("s").value();
+      if (auto const stated = unit_of_text(column.unit); stated && stated->dimension == unit.dimension) unit = *stated;
+      time.column = column.name;
+      time.unit = unit.text;
+      look_.times = look_.values[c];
+      for (double& value : look_.times) value *= unit.scale;
+      return look_at_time(look_);
+    }
+    for (std::size_t i = 0; i < look_.rows; ++i) look_.times.push_back(static_cast<double>(i + 1));
+  }
+
+  std::string const& path_;
+  RecordLook& look_;
+  Chosen chosen_;
+  std::unique_ptr<RecordFile> file_;
+};
+
+}  // namespace
+
+RecordLook look_at_record(std::string const& path) {
+  RecordLook look;
+  look.file = path;
+  Looking(path, look).run();
+  return look;
+}
+
+}  // namespace sysid

@@ -1,0 +1,39 @@
+// A record whose contents are not known yet: its columns, its time, and the data block that reads it.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/look/column_look.hpp"
+
+namespace sysid {
+
+struct TimeLook {
+  std::string column;               // empty: no column has the time
+  bool stamps = false;              // dates and times
+  std::string unit;                 // of its numbers
+  double first = 0, last = 0;       // s
+  double step = 0;                  // median, s
+  std::size_t unequal = 0;          // steps that differ from the median by more than 0.1 %, gaps apart
+  std::size_t gaps = 0;             // steps of more than one and a half medians
+  double longest_gap = 0;           // s
+  std::size_t longest_gap_row = 0;  // that it ends at, from 1
+};
+
+struct RecordLook {
+  std::string file, format;  // format: "text", "MATLAB file"
+  std::size_t rows = 0;
+  std::string reading;                // `read ...`, empty where the file is plain CSV
+  std::string question;               // what may be read in two ways; the first way is shown
+  std::vector<std::string> readings;  // the ways
+  TimeLook time;
+  std::vector<ColumnLook> columns;          // in the order of the file
+  std::vector<double> times;                // s; row numbers where no column has them
+  std::vector<std::vector<double>> values;  // of the columns; empty where one cannot be read
+  std::string block;                        // a data block ready to paste
+};
+
+/// IoError where the file cannot be read, UserError where it is no record.
+RecordLook look_at_record(std::string const& path);
+
+}  // namespace sysid

@@ -1,0 +1,105 @@
+// `sysid data`: what is seen in records, and that the data block which it prints reads them.
+#include "data/look/record_look.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "app/record/record_text.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/system/files.hpp"
+#include "core/text/source.hpp"
+#include "data/record.hpp"
+#include "data/temporary_file.hpp"
+#include "load/load.hpp"
+
+using namespace sysid;
+
+namespace {
+
+std::optional<Record> read_by(std::string const& block, std::string& messages) {
+  Diagnostics diagnostics;
+  Source source("pasted.sysid", block);
+  auto const file = load(source, diagnostics);
+  std::optional<Record> record;
+  if (file) {
+    DataBlock const& data = file->data.at(0);
+    RecordRequest request;
+    request.path = data.path;
+    request.rules = data.rules;
+    request.step = data.step;
+    if (data.time) request.time = ColumnRequest{data.time->column, data.time->unit, std::nullopt, data.time->span};
+    for (DataMeasureUse const& use : data.measured)
+      request.measured.push_back(ColumnRequest{use.column, use.unit, std::nullopt, use.span});
+    record = sysid::load(request, diagnostics);
+  }
+  for (Diagnostic const& each : diagnostics.all()) messages += each.code + ": " + each.message + "\n  " + each.help + "\n";
+  return record;
+}
+
+ColumnLook const& column(RecordLook const& look, std::string const& name) {
+  for (ColumnLook const& each : look.columns)
+    if (each.name == name) return each;
+  FAIL("no column " << name);
+  return look.columns.front();
+}
+
+}  // namespace
+
+TEST_CASE("the data block of every table of a logger reads it") {
+  for (auto const& entry : std::filesystem::directory_iterator(SYSID_SOURCE_DIR "/tests/experiment/loggers")) {
+    std::string const path = entry.path().string();
+    CAPTURE(path);
+    RecordLook const look = look_at_record(path);
+    CAPTURE(look.block);
+    std::string messages;
+    auto const record = read_by(look.block, messages);
+    CAPTURE(messages);
+    CHECK(record);
+    if (!record) continue;
+    CHECK(record->rows() == 3);
+    CHECK_FALSE(look.time.column.empty() == (look.block.find("  time ") != std::string::npos));
+    CHECK(nlohmann::json::parse(record_json(look))["rows"] == 3);
+    CHECK(record_text(look).find(look.block) != std::string::npos);
+  }
+}
+
+TEST_CASE("gaps, dead, clipped and drifting channels, coarse steps and frequencies are seen") {
+  std::string text = "t,sine,dead,clipped,drift,coarse\n";
+  for (int i = 0; i < 1000; ++i) {
+    double const time = 0.01 * i, sine = 3 * elementary::sin(2 * std::numbers::pi * 5 * time);
+    text += fmt::format("{:.2f},{:.9g},2,{:.9g},{:.9g},{:.2f}\n", time, sine, std::min(sine, 2.0), 4 * time + 0.01 * sine,
+                        std::round(sine / 0.25) * 0.25);
+  }
+  TemporaryFile const file(text);
+  RecordLook const look = look_at_record(file.path());
+  CHECK(look.rows == 1000);
+  CHECK(look.reading.empty());
+  CHECK(look.time.column == "t");
+  CHECK(look.time.step == doctest::Approx(0.01));
+  CHECK((look.time.gaps == 0 && look.time.unequal == 0));
+  ColumnLook const& sine = column(look, "sine");
+  REQUIRE(sine.peaks.size() == 1);
+  CHECK(sine.peaks[0].frequency == doctest::Approx(5).epsilon(1e-3));
+  CHECK(sine.peaks[0].amplitude == doctest::Approx(3).epsilon(0.02));
+  CHECK((sine.at_largest == 0 && sine.at_smallest == 0 && sine.drift == 0));
+  CHECK(column(look, "dead").dead);
+  CHECK(column(look, "clipped").at_largest > 200);
+  CHECK(column(look, "clipped").at_smallest == 0);
+  CHECK(column(look, "drift").drift == doctest::Approx(40).epsilon(0.01));
+  CHECK(column(look, "coarse").quantum == doctest::Approx(0.25));
+  CHECK(record_figure(look).script.find("plot") != std::string::npos);
+}
+
+TEST_CASE("gaps and unequal steps are counted, with the longest gap's place") {
+  TemporaryFile const file("t,y\n0,1\n1,2\n2,3\n3.2,4\n4,5\n9,6\n10,7\n11,8\n");
+  TimeLook const time = look_at_record(file.path()).time;
+  CHECK(time.gaps == 1);
+  CHECK(time.longest_gap == 5);
+  CHECK(time.longest_gap_row == 6);
+  CHECK(time.unequal == 2);
+}
