@@ -2,10 +2,12 @@
 #include "simulate/shared_work.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <string>
 
-#include "core/ranks/ranks.hpp"
+#include "core/ranks/own.hpp"
 
 namespace sysid {
 namespace {
@@ -41,6 +43,14 @@ void for_results(std::span<Work const> work, std::vector<LaneRange> const& lanes
         else
           for (std::size_t w = 0; w < count; ++w) use(first + w * each.lane_step, each.size);
       }
+}
+
+/// What ranks must agree in to understand each other.
+std::uint64_t digest(std::span<Work const> work) {
+  std::uint64_t sum = work.size();
+  for (Work const& each : work)
+    sum = 31 * (31 * sum + static_cast<std::uint64_t>(each.width)) + std::bit_cast<std::uint64_t>(each.instructions);
+  return sum;
 }
 
 double bytes_of(std::span<Work const> work) {
@@ -91,7 +101,7 @@ bool do_share(std::span<Work const> work, ThreadPool* pool) {
     do_blocks(pieces, pool);
   }
   for_results(work, mine, [&](std::byte* at, std::size_t bytes) { results.append(reinterpret_cast<char const*>(at), bytes); });
-  std::vector<std::string> const all = ranks::gather(results);
+  std::vector<std::string> const all = ranks::gather_about(digest(work), results);
   for (int r = 0; r < ranks; ++r) {
     if (r == ranks::rank()) continue;
     std::string const& theirs = all[static_cast<std::size_t>(r)];

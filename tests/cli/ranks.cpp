@@ -216,6 +216,26 @@ TEST_CASE("what is wrong is said once") {
   CHECK_MESSAGE(unknown.exit == 2, unknown.text);
 }
 
+TEST_CASE("what one rank alone cannot do ends all, and its reason is said") {
+  if (!have_mpi()) return;
+  CaseDesk const desk = selection();
+  Said const said = said_by(desk.command(2, "run case.sysid --no-figures -q") + " : -n 1 '" SYSID_PROGRAM "' run missing.sysid");
+  CHECK_MESSAGE(said.exit == 74, said.text);
+  auto const who = said.text.find("sysid: rank 2 (process ");
+  REQUIRE(who != std::string::npos);
+  CHECK(said.text.find("cannot read `missing.sysid`", who) != std::string::npos);
+  CHECK(said.text.find("sysid: stopped, as rank 2 has failed") != std::string::npos);
+}
+
+TEST_CASE("ranks that come to different decisions end") {
+  if (!have_mpi()) return;
+  CaseDesk const desk = selection();
+  Said const said = said_by(desk.command(1, "run case.sysid --no-figures -q --seed 1") + " : -n 1 '" SYSID_PROGRAM
+                                                                                         "' run case.sysid -q --seed 2");
+  CHECK_MESSAGE(said.exit == 70, said.text);
+  CHECK(said.text.find("the ranks came to different places of the program") != std::string::npos);
+}
+
 TEST_CASE("what the leader alone cannot do ends all") {
   if (!have_mpi()) return;
   CaseDesk const desk = selection();

@@ -44,7 +44,7 @@ enum class Kind : std::uint32_t { gather = 1, look, end };
 struct Word {
   Kind kind;
   std::uint32_t stop;  // 1: this rank was asked to
-  std::uint64_t number;
+  std::uint64_t number, same;
   std::int64_t bytes;  // that follow; of `end` the exit code
   double seconds;      // since the last exchange
 };
@@ -142,8 +142,8 @@ std::string exchange(void const* mine, std::vector<std::int64_t> const& bytes) {
 }
 
 /// The words of all; a request of any to stop is from now on one of all.
-std::vector<Word> words(Kind kind, std::int64_t bytes) {
-  Word const mine{kind, interrupt_heard() ? 1U : 0U, ++all.exchanges, bytes, seconds_since(all.last)};
+std::vector<Word> words(Kind kind, std::int64_t bytes, std::uint64_t same = 0) {
+  Word const mine{kind, interrupt_heard() ? 1U : 0U, ++all.exchanges, same, bytes, seconds_since(all.last)};
   std::string const text = exchange(&mine, std::vector<std::int64_t>(static_cast<std::size_t>(all.size), sizeof mine));
   std::vector<Word> result(static_cast<std::size_t>(all.size));
   std::memcpy(result.data(), text.data(), text.size());
@@ -153,17 +153,18 @@ std::vector<Word> words(Kind kind, std::int64_t bytes) {
 }
 
 /// Words of ranks that are at the same place of the program; throws Parted where they are not.
-std::vector<Word> words_of_all(Kind kind, std::int64_t bytes) {
-  std::vector<Word> result = words(kind, bytes);
+std::vector<Word> words_of_all(Kind kind, std::int64_t bytes, std::uint64_t same = 0) {
+  std::vector<Word> result = words(kind, bytes, same);
   for (std::size_t r = 0; r < result.size(); ++r)
     if (result[r].kind == Kind::end) {
       all.ended = static_cast<int>(r);
       all.ended_code = static_cast<int>(result[r].bytes);
       throw Parted{all.ended_code != 0 ? all.ended_code : internal};
     }
-  bool const same = std::all_of(result.begin(), result.end(),
-                                [&](Word const& each) { return each.kind == kind && each.number == result.front().number; });
-  if (!same) throw Parted{internal};
+  bool const alike = std::all_of(result.begin(), result.end(), [&](Word const& each) {
+    return each.kind == result.front().kind && each.number == result.front().number && each.same == result.front().same;
+  });
+  if (!alike) throw Parted{internal};
   return result;
 }
 
@@ -264,11 +265,13 @@ Own::Own() { ++own; }
 Own::~Own() { --own; }
 bool on_its_own() { return own > 0; }
 
-std::vector<std::string> gather(std::string_view mine) {
+std::vector<std::string> gather(std::string_view mine) { return gather_about(0, mine); }
+
+std::vector<std::string> gather_about(std::uint64_t same, std::string_view mine) {
   if (!together()) return {std::string(mine)};
   ++all.gathered;
   std::vector<std::int64_t> bytes;
-  for (Word const& each : words_of_all(Kind::gather, static_cast<std::int64_t>(mine.size()))) bytes.push_back(each.bytes);
+  for (Word const& each : words_of_all(Kind::gather, static_cast<std::int64_t>(mine.size()), same)) bytes.push_back(each.bytes);
   std::string const text = exchange(mine.data(), bytes);
   std::vector<std::string> result;
   std::size_t from = 0;
