@@ -146,3 +146,14 @@ TEST_CASE("a simulation takes values of per-experiment parameters, or their valu
   CHECK(task("dose = 1, k = 2, c = 3")[1].value() == near(2));
   CHECK(task("dose = 1, k = 2, c = 3, mass = 5")[1].value() == near(5));
 }
+
+TEST_CASE("an input that only observations read needs no rule between its samples, one that moves a state does") {
+  auto const said = [](std::string const& equation, std::string const& noise) {
+    return messages("model m {\ninput s\nstate y\ninitial y = 1\nparameter k [1/s] ~ log_uniform(0.1, 10)\n" + equation +
+                    "\nobserve a ~ normal(y, sd = " + noise +
+                    ")\n}\ndata d { file \"d.csv\"; time t [s]; input s = s; measure a = y }\n"
+                    "f = fit m to d with map\n");
+  };
+  CHECK(said("y' = -k*y", "s") == "");
+  CHECK(said("y' = -k*y + 1 [1/s]*s", "0.1").find("E4105") != std::string::npos);
+}

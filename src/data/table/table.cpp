@@ -34,6 +34,11 @@ bool like_a_number(std::string_view cell) {
 /// Such as `n/a` or `#REF!`, which stand in the place of a number. A file without numbers may hold anything in as few characters.
 bool like_a_gap(std::string_view cell) { return cell.size() <= 5; }
 
+/// A quote that does not end and a row that is too short may as well be mistakes of the file: what to do about them stays.
+std::string beside_proposal(Diagnostic const& diagnostic) {
+  return diagnostic.code == "E4004" || diagnostic.code == "E4005" ? diagnostic.help + "; or " : std::string();
+}
+
 }  // namespace
 
 Table Table::read(std::string const& path, std::optional<Span> mention, ReadingRules const& rules) {
@@ -87,7 +92,8 @@ void Table::rethrow_with_proposal(UserError const& error, std::string const& col
   if (!proposes_) throw UserError(error.diagnostic());
   Diagnostic diagnostic = error.diagnostic();
   std::string help = proposed_help({bytes_, rules_, column, diagnostic.code});
-  if (!help.empty()) diagnostic.help = std::move(help);
+  if (!help.empty()) diagnostic.help = beside_proposal(diagnostic) + help;
+  if (!help.empty() && diagnostic.code == "E4022") diagnostic.help += "; or, if it is a sample, `read missing = none`";
   throw UserError(std::move(diagnostic));
 }
 
