@@ -18,6 +18,7 @@ namespace {
 constexpr double decided_probability = 0.95;
 constexpr double probable = 0.8;  // between one half and this, one structure in five is wrong
 constexpr double majority = 0.5;
+constexpr double as_probable = 0;         // log odds of an equation with terms that the dictionary lacks
 constexpr double settled_residual = 1.5;  // of the noise
 constexpr double few_noises = 3;
 constexpr double shared_probability = 0.95;
@@ -39,8 +40,15 @@ std::vector<ValidatedStructure const*> sharing(ValidationReport const& validatio
   return leading;
 }
 
+bool other_terms_are_as_probable(ValidationReport const& validation) {
+  return !validation.outside.empty() && validation.outside_log_odds > as_probable;
+}
+
 std::string form_clause(ValidationReport const& validation) {
   double const probability = validation.structures.front().probability;
+  if (probability >= probable && other_terms_are_as_probable(validation))
+    return fmt::format("the form is decided among the terms of the dictionary (probability {}), but not against others",
+                       probability_text(probability));
   return fmt::format("the form is {} (probability {})",
                      probability >= decided_probability ? "decided"
                      : probability >= probable          ? "more probable than all others"
@@ -124,6 +132,17 @@ Findings undecided_form(ValidationReport const& validation) {
   return {{FindingCode::form_undecided, Severity::warning, std::move(names),
            fmt::format("the record does not decide the form; probabilities: {}", fmt::join(listed, ", ")),
            "add a record from another start or of another amplitude to the same discovery: `discover ... from first, second`"}};
+}
+
+Findings other_terms(ValidationReport const& validation) {
+  if (!checked(validation) || !other_terms_are_as_probable(validation)) return {};
+  return {{FindingCode::other_terms_fit,
+           Severity::warning,
+           {validation.outside},
+           fmt::format("with terms that the dictionary lacks another equation describes the record as well or better, `{}`: "
+                       "the terms that were found may imitate it",
+                       validation.outside),
+           "if such terms make sense, add them to the dictionary and run again; a record of another amplitude decides"}};
 }
 
 Findings merged(Findings const& findings) {

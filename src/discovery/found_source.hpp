@@ -20,9 +20,9 @@ struct FoundSource {
   CheckedDictionary const& dictionary;
   std::vector<ExperimentData> const& data;
   regression::Discovery const& discovery;
-  std::vector<double> inner;  // values of the dictionary's parameters inside terms, SI
+  std::vector<double> inner;          // values of the dictionary's parameters inside terms, SI
   std::vector<double> noise_sd = {};  // per channel, SI, as the simulation has it; empty: as the regression took it
-  std::vector<double> growth = {};  // per channel of the dictionary, SI: ValidatedChannel::growth; empty: 0
+  std::vector<double> growth = {};    // per channel of the dictionary, SI: ValidatedChannel::growth; empty: 0
   std::uint64_t seed = 0;
 
   /// A complete file whose paths start at the task's folder of results. structures: at least one; the first is the model that is

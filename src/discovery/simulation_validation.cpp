@@ -113,12 +113,8 @@ class Validator {
     double sum = 0;
     for (std::size_t e = 0; e < structures_[m].equations.size(); ++e) {
       std::vector<DictionaryTerm> const& terms = dictionary_.equations[e].terms;
-      int offered = 0, taken = 0;
-      for (std::size_t j = 0; j < terms.size(); ++j)
-        if (!terms[j].in_target && is_offered(source_.discovery.equations[e], j)) ++offered;
-      for (int const j : structures_[m].equations[e]->terms)
-        if (!terms[static_cast<std::size_t>(j)].in_target) ++taken;
-      sum += log_structure_prior(offered, taken);
+      std::vector<double> const odds = log_term_odds(terms, source_.discovery.equations[e]);
+      for (int const j : structures_[m].equations[e]->terms) sum += odds[static_cast<std::size_t>(j)];
     }
     return sum;
   }
@@ -332,6 +328,8 @@ class Validator {
       validation.longest = std::max(validation.longest, length);
     }
     validation.whole = fits_->whole();
+    validation.outside = searched_.outside;
+    validation.outside_log_odds = searched_.outside_log_odds;
     validation.step = rows_.step;
     validation.horizon_rows = rows_.horizon;
     validation.horizon = rows_.horizon * rows_.step;

@@ -85,6 +85,18 @@ NoiseShape StructureFits::noise(std::size_t m) const {
     auto& channels = own.relative.emplace_back();
     for (std::size_t const c : models_[m].channels) channels.push_back(experiment[c]);
   }
+  if (!settings_.noise.carried) return own;
+  auto carried = std::make_shared<std::vector<CarriedErrors>>(*settings_.noise.carried);
+  for (std::size_t e = 0; e < carried->size(); ++e) {
+    CarriedErrors const& all = (*settings_.noise.carried)[e];
+    CarriedErrors& each = (*carried)[e];
+    each.state_of_channel.clear(), each.own_sd.clear();
+    for (std::size_t const c : models_[m].channels) {
+      each.state_of_channel.push_back(all.state_of_channel[c]);
+      each.own_sd.push_back(all.own_sd[c]);
+    }
+  }
+  own.carried = std::move(carried);
   return own;
 }
 

@@ -163,6 +163,7 @@ Findings validation_findings(ValidationReport const& validation) {
     return findings;
   }
   for (Finding& each : undecided_form(validation)) findings.push_back(std::move(each));
+  for (Finding& each : other_terms(validation)) findings.push_back(std::move(each));
   if (auto idle = idle_terms(best)) findings.push_back(std::move(*idle));
   if (!validation.whole)
     add(FindingCode::followed_in_parts, Severity::note, {},

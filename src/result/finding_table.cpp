@@ -129,6 +129,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::equation_no_model, "equation_no_model", warning},
     {FindingCode::candidates_left_out, "candidates_left_out", warning},
     {FindingCode::form_undecided, "form_undecided", warning},
+    {FindingCode::other_terms_fit, "other_terms_fit", warning},
     {FindingCode::simulation_prefers, "simulation_prefers", warning_or_note},
     {FindingCode::not_refitted, "not_refitted", warning},
     {FindingCode::term_idle, "term_idle", warning},

@@ -128,6 +128,7 @@ enum class FindingCode {
   equation_no_model,
   candidates_left_out,
   form_undecided,
+  other_terms_fit,
   simulation_prefers,
   not_refitted,
   term_idle,

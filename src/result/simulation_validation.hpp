@@ -55,6 +55,8 @@ struct ValidationReport {
   std::string held_out;        // "bench.test", "the last fifth of bench"; empty: nothing was scored
   bool held_out_seen = false;  // the choice of structures saw these rows
   std::string solver;
+  std::string outside;          // "v': v, exp(-r)": the most probable equation with terms that the dictionary lacks; empty: none
+  double outside_log_odds = 0;  // of it, against the most probable one without
 };
 
 }  // namespace sysid

@@ -1,4 +1,4 @@
-// Residuals of the leading structure, with coarse and fine steps.
+// Residuals of the leading structure, with coarse and fine steps, and with other roundings of the inputs.
 #include "discovery/search/fit_conditions.hpp"
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/random.hpp"
 #include "discovery/search/record_noise.hpp"
+#include "discovery/search/sample_steps.hpp"
 
 namespace sysid {
 namespace {
@@ -18,11 +19,13 @@ constexpr double least_accuracy = 1e-8;  // of a channel's size: what simulation
 constexpr double step_error = 0.02;  // of the noise, that the integrator may be off by: its error is systematic, noise averages out
 constexpr int most_substeps = 64;
 constexpr int most_lags = 100;
-constexpr double rounded_shape = -1;
+constexpr double rounded_shape = -1, carried_shape = -2;
 constexpr double told_noise = 3;  // of its lower bound: less is rounding, whose size is known and no sign of growth
 
-/// The records with another rounding of the inputs; none where no input is rounded.
-std::vector<Experiment> rounded_otherwise(std::vector<Experiment> records, std::size_t inputs) {
+RoundedInputs rounded_inputs(std::vector<Experiment> records, std::size_t inputs) {
+  RoundedInputs out;
+  for (Experiment const& each : records)
+    out.sds.emplace_back(each.time.size(), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(inputs)));
   bool any = false;
   for (std::size_t i = 0; i < inputs; ++i) {
     std::vector<double> all;
@@ -33,14 +36,18 @@ std::vector<Experiment> rounded_otherwise(std::vector<Experiment> records, std::
     any = true;
     Stream stream({0, Purpose::selection, i, 0});
     std::size_t place = 0;
-    for (Experiment& each : records) {
+    for (std::size_t e = 0; e < records.size(); ++e) {
+      InputSignal& input = records[e].inputs[i];
       std::vector<double> samples;
-      for (int row = 0; row < each.inputs[i].rows(); ++row)
-        samples.push_back(each.inputs[i].sample(row) + sds[place++] * stream.normal());
-      each.inputs[i] = InputSignal(each.inputs[i].rule(), each.time, std::move(samples));
+      for (int row = 0; row < input.rows(); ++row, ++place) {
+        samples.push_back(input.sample(row) + sds[place] * stream.normal());
+        out.sds[e][static_cast<std::size_t>(row)](static_cast<Eigen::Index>(i)) = sds[place];
+      }
+      input = InputSignal(input.rule(), records[e].time, std::move(samples));
     }
   }
-  return any ? records : std::vector<Experiment>{};
+  if (any) out.otherwise = std::move(records);
+  return out;
 }
 
 /// Residuals of a channel, segment by segment; with others, what they differ by.
@@ -107,15 +114,16 @@ RecordLimits::RecordLimits(WholeDictionary const& dictionary) : dictionary_(dict
       next = end;
     }
   }
-  rounded_ = rounded_otherwise(records, dictionary.model().inputs.size());
+  rounded_ = rounded_inputs(records, dictionary.model().inputs.size());
   shape_.assign(channels, 0);
   other_errors_.assign(channels, 0);
+  own_errors_.assign(channels, 0);
 }
 
 bool RecordLimits::settle_step(FittedTerms const& lead, FitConditions& conditions) {
   int const before = conditions.substeps;
   FitConditions alike = conditions;
-  alike.noise.relative.clear();
+  alike.noise = {};
   SegmentSimulation const sizes = dictionary_.simulation(lead.terms, alike);
   std::vector<double> error(rounding_.size());
   std::vector<SegmentSlopes> runs;
@@ -134,27 +142,31 @@ bool RecordLimits::settle_step(FittedTerms const& lead, FitConditions& condition
     if (!(worst > 1) || 2 * substeps > most_substeps) break;
   }
   std::vector<SegmentSlopes> others;
-  if (!rounded_.empty()) others = dictionary_.residuals(lead, alike, rounded_);
-  conditions.noise.floor.clear();
+  if (!rounded_.otherwise.empty()) others = dictionary_.residuals(lead, alike, rounded_.otherwise);
+  std::vector<double> floor;
   for (std::size_t c = 0; c < error.size(); ++c) {
     auto const channel = static_cast<int>(c);
     double of_inputs = 0;
-    if (!rounded_.empty()) {
+    if (!rounded_.otherwise.empty()) {
       std::vector<Eigen::VectorXd> const moved = residuals_of(sizes, channel, runs, &others);
       // Free starts follow what runs from fixed ones do not.
       double const size = std::min(root_mean_square(moved), root_mean_square(residuals_of(sizes, channel, runs)));
       if (std::isfinite(size)) of_inputs = size * std::sqrt(peak_of_spectrum(moved));
     }
-    other_errors_[c] = std::max({of_inputs, error[c], least_accuracy * sizes.size(channel)});
-    conditions.noise.floor.push_back(std::hypot(rounding_[c], other_errors_[c]));
+    own_errors_[c] = std::max(error[c], least_accuracy * sizes.size(channel));
+    other_errors_[c] = std::max(of_inputs, own_errors_[c]);
+    floor.push_back(std::hypot(rounding_[c], other_errors_[c]));
   }
+  if (!conditions.noise.carried) conditions.noise.floor = std::move(floor);
   return conditions.substeps != before;
 }
 
 bool RecordLimits::settle_noise(FittedTerms const& lead, FitConditions& conditions) {
+  if (settle_carried(lead, conditions)) return true;
+  if (conditions.noise.carried) return false;
   std::vector<Experiment> const& records = dictionary_.records();
   FitConditions alike = conditions;
-  alike.noise.relative.clear();
+  alike.noise = {};
   std::vector<SegmentSlopes> const runs = dictionary_.residuals(lead, alike);
   std::vector<std::vector<std::vector<double>>> relative;
   for (Experiment const& each : records) relative.emplace_back(shape_.size(), std::vector<double>(each.time.size(), 1.0));
@@ -167,6 +179,40 @@ bool RecordLimits::settle_noise(FittedTerms const& lead, FitConditions& conditio
   bool const any = std::any_of(shape.begin(), shape.end(), [](double each) { return each != 0; });
   shape_ = std::move(shape);
   conditions.noise.relative = any ? std::move(relative) : Relative{};
+  return true;
+}
+
+// Once: along the first structure that leaves no more than the bound.
+bool RecordLimits::settle_carried(FittedTerms const& lead, FitConditions& conditions) {
+  if (rounded_.otherwise.empty() || conditions.noise.carried) return false;
+  for (std::size_t c = 0; c < shape_.size(); ++c)
+    if (!(lead.fit.noise_sd[c] < told_noise * conditions.noise.floor[c])) return false;
+  auto steps = sample_steps(dictionary_, lead, conditions, true);
+  if (!steps) return false;
+  auto carried = std::make_shared<std::vector<CarriedErrors>>();
+  std::vector<int> state_of_channel(shape_.size(), -1);
+  auto const channels = channels_of_states(dictionary_);
+  for (std::size_t x = 0; x < channels->size(); ++x) state_of_channel[(*channels)[x]] = static_cast<int>(x);
+  std::vector<double> squares(shape_.size(), 0), counts(shape_.size(), 0);
+  for (std::size_t e = 0; e < steps->size(); ++e) {
+    SampleSteps& of = (*steps)[e];
+    CarriedErrors each{std::move(of.ahead), std::move(of.here), std::move(of.next), rounded_.sds[e], state_of_channel, {}};
+    for (std::size_t c = 0; c < shape_.size(); ++c) {
+      each.own_sd.push_back(rounding_of_samples_[e][c]);
+      for (double& sd : each.own_sd.back()) sd = std::hypot(sd, own_errors_[c]);
+    }
+    auto const rows = static_cast<int>(each.input_sd.size());
+    RowWhitener const whitener(each, 0, rows, [](int) { return true; });
+    for (std::size_t row = 0; row < whitener.sds().size(); ++row) {
+      std::size_t const c = row / static_cast<std::size_t>(rows);
+      squares[c] += whitener.sds()[row] * whitener.sds()[row], ++counts[c];
+    }
+    carried->push_back(std::move(each));
+  }
+  for (std::size_t c = 0; c < shape_.size(); ++c) conditions.noise.floor[c] = std::sqrt(squares[c] / counts[c]);
+  conditions.noise.carried = std::move(carried);
+  conditions.noise.relative.clear();
+  shape_.assign(shape_.size(), carried_shape);
   return true;
 }
 

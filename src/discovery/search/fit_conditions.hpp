@@ -8,6 +8,12 @@
 
 namespace sysid {
 
+/// Inputs that were written with so many digits.
+struct RoundedInputs {
+  std::vector<Experiment> otherwise;              // the records with other roundings; empty: inputs carry all digits
+  std::vector<std::vector<Eigen::VectorXd>> sds;  // [experiments][rows], [inputs]
+};
+
 class RecordLimits {
  public:
   explicit RecordLimits(WholeDictionary const& dictionary);
@@ -17,7 +23,8 @@ class RecordLimits {
   bool settle_step(FittedTerms const& lead, FitConditions& conditions);
 
   /// Noise near that bound has the shape of the digits, other noise is alike in all samples or grows with the signal. Whether a
-  /// channel's is found to have another shape than before.
+  /// channel's is found to have another shape than before. Where all channels are near that bound, and inputs are rounded, errors
+  /// of the inputs are carried along the motion.
   bool settle_noise(FittedTerms const& lead, FitConditions& conditions);
 
   /// Of a channel of the model, SI: ValidatedChannel::growth.
@@ -25,6 +32,7 @@ class RecordLimits {
 
  private:
   using Relative = std::vector<std::vector<std::vector<double>>>;  // as NoiseShape has it
+  bool settle_carried(FittedTerms const& lead, FitConditions& conditions);
   double shape_of_rounding(std::size_t channel, Relative& relative) const;
   double shape_of_growth(std::size_t channel, std::vector<SegmentSlopes> const& runs, std::vector<Segment> const& parts,
                          Relative& relative) const;
@@ -32,8 +40,9 @@ class RecordLimits {
   WholeDictionary const& dictionary_;
   Relative rounding_of_samples_;
   std::vector<double> rounding_, other_errors_;  // per channel, root mean squares
+  std::vector<double> own_errors_;               // per channel: of these, what is not of inputs
   std::vector<double> shape_;                    // per channel: where noise begins to grow; 0: alike; -1: that of the digits
-  std::vector<Experiment> rounded_;              // with inputs that are rounded otherwise; empty: these carry all digits
+  RoundedInputs rounded_;
 };
 
 }  // namespace sysid

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "core/numeric/elementary.hpp"
-#include "discovery/structure_prior.hpp"
 #include "likelihood/segments/coefficient_prior.hpp"
 #include "linear_algebra/decompositions.hpp"
 
@@ -22,6 +21,7 @@ constexpr double independent = 1e-12;
 /// Pairs of terms are brought in for pairs as long as there are no more than so many combinations.
 constexpr double most_pairs = 3e5;
 constexpr int moves_of_a_kind = 4;
+constexpr int moves_on_the_way = 6, kept_on_the_way = 4;  // where sets are built up
 constexpr int most_expansions = 40, idle_expansions = 8;
 /// What is less probable than the best by this, in log, is not looked at further.
 constexpr double hopeless = 15;
@@ -119,13 +119,9 @@ LinearisedMotion::LinearisedMotion(std::vector<SegmentSlopes> const& slopes, Eig
 }
 
 double LinearisedMotion::log_prior(Terms const& terms) const {
-  std::map<int, std::pair<int, int>> counts;  // per equation: offered, taken
-  for (int j = 0; j < columns(); ++j)
-    if (!always(j) && usable(j)) ++counts[settings_.equations[static_cast<std::size_t>(j)]].first;
-  for (int const j : terms)
-    if (!always(j)) ++counts[settings_.equations[static_cast<std::size_t>(j)]].second;
   double sum = 0;
-  for (auto const& [equation, count] : counts) sum += log_structure_prior(count.first, count.second);
+  for (int const j : terms)
+    if (!always(j)) sum += settings_.log_odds[static_cast<std::size_t>(j)];
   return sum;
 }
 
@@ -233,6 +229,30 @@ std::vector<LinearisedMotion::Move> LinearisedMotion::moves(Terms const& terms, 
   std::vector<Move> all;
   for (auto const& kinds : best)
     for (Best const& each : kinds) all.insert(all.end(), each.moves().begin(), each.moves().end());
+  return all;
+}
+
+std::vector<Terms> built_up(LinearisedMotion const& motion, Terms const& others, std::size_t most) {
+  std::vector<Terms> all = {others};
+  std::set<Terms> seen = {others};
+  std::vector<std::vector<std::pair<double, Terms>>> levels(most + 1);  // by the number of terms more
+  levels.front().emplace_back(0, others);
+  for (std::size_t more = 0; more < most; ++more) {
+    auto& level = levels[more];
+    std::stable_sort(level.begin(), level.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
+    if (level.size() > kept_on_the_way) level.resize(kept_on_the_way);
+    for (auto const& [left, from] : level)
+      for (LinearisedMotion::Move const& move : motion.moves(from, moves_on_the_way)) {
+        std::size_t const size = more + move.in.size();
+        if (!move.out.empty() || move.in.empty() || size > most) continue;
+        Terms grown = from;
+        grown.insert(grown.end(), move.in.begin(), move.in.end());
+        std::sort(grown.begin(), grown.end());
+        if (!seen.insert(grown).second) continue;
+        all.push_back(grown);
+        levels[size].emplace_back(move.squares, std::move(grown));
+      }
+  }
   return all;
 }
 

@@ -27,11 +27,11 @@ struct WeighedTerms {
 class LinearisedMotion {
  public:
   struct Settings {
-    double samples = 0;          // N
-    double floor = 0;            // of s^2
-    double signal = 1;           // of `log_coefficient_weight`
-    std::vector<int> equations;  // per column
-    std::vector<char> always;    // per column: in every set of terms
+    double samples = 0;            // N
+    double floor = 0;              // of s^2
+    double signal = 1;             // of `log_coefficient_weight`
+    std::vector<double> log_odds;  // per column: that it is in, before the record
+    std::vector<char> always;      // per column: in every set of terms
   };
 
   /// slopes: by all coefficients, rows in units of their noise.
@@ -67,6 +67,10 @@ class LinearisedMotion {
   Eigen::MatrixXd products_;  // of columns
   std::vector<char> usable_;
 };
+
+/// `others` with up to `most` terms more, whichever leave least, one or two at a time from the best few: what moves from a set with
+/// many wrong terms do not reach. `others` itself is first.
+std::vector<Terms> built_up(LinearisedMotion const& motion, Terms const& others, std::size_t most);
 
 /// The best sets of terms near some, best first: from the best one that is known the best moves are weighed, again and again, until
 /// several in a row bring nothing better.

@@ -89,6 +89,19 @@ void describe_record(WholeDictionary const& dictionary, FitConditions const& con
     for (std::size_t e = 0; e < record.noise.relative.size(); ++e)
       record.noise.relative[e][own[c]] = conditions.noise.relative[e][c];
   }
+  if (!conditions.noise.carried) return;
+  auto carried = std::make_shared<std::vector<CarriedErrors>>(*conditions.noise.carried);
+  for (std::size_t e = 0; e < carried->size(); ++e) {
+    CarriedErrors const& of = (*conditions.noise.carried)[e];
+    CarriedErrors& each = (*carried)[e];
+    each.state_of_channel.assign(channels, -1);
+    each.own_sd.assign(channels, std::vector<double>(of.input_sd.size(), 1.0));
+    for (std::size_t c = 0; c < own.size(); ++c) {
+      each.state_of_channel[own[c]] = of.state_of_channel[c];
+      each.own_sd[own[c]] = of.own_sd[c];
+    }
+  }
+  record.noise.carried = std::move(carried);
 }
 
 }  // namespace sysid

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "discovery/search/outside_form.hpp"
 #include "likelihood/segments/segment_differences.hpp"
 #include "likelihood/segments/segment_noise.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 constexpr int most_rounds = 8;           // of linearisations at one length of segments
 constexpr int batch = 3;                 // structures that are fitted before the leading one is chosen again
 constexpr int most_batches = 4;          // about one point, as long as the linearisation finds better ones
+constexpr std::size_t most_near = 8;     // that forms with other terms are compared with
 constexpr double joinable_growth = 1.5;  // of a residual when segments are joined
 
 class Searcher {
@@ -54,6 +56,16 @@ class Searcher {
       if (!now_.tried.contains(each.terms)) all.push_back({each.terms, each.coefficients, each.score + now_.near_offset, {}});
     return all;
   }
+  /// Whether terms that the dictionary lacks describe the record as well as the leading structure.
+  std::optional<OutsideForm> outside() const {
+    if (interrupted_()) return std::nullopt;
+    std::vector<double> noise;
+    LinearisedParts const parts = linearised(noise);
+    std::vector<Terms> near;
+    for (WeighedTerms const& each : now_.near)
+      if (near.size() < most_near) near.push_back(each.terms);
+    return outside_form(dictionary_, now_.lead, now_.conditions, parts, noise, near, interrupted_);
+  }
   FitConditions const& conditions() const { return now_.conditions; }
   RecordLimits const& limits() const { return limits_; }
 
@@ -68,14 +80,14 @@ class Searcher {
   };
 
   // About the leading structure, by every coefficient of the dictionary.
-  LinearisedMotion linearised() {
+  LinearisedParts linearised(std::vector<double>& noise) const {
     Terms all;
     for (std::size_t j = 0; j < dictionary_.columns().size(); ++j) all.push_back(static_cast<int>(j));
     SegmentSimulation const simulation = dictionary_.simulation(all, now_.conditions);
     ShootingPoint const point{dictionary_.coefficients_of_all(now_.lead), now_.lead.fit.point.starts};
     SegmentDifferences differences(simulation, point);
     std::vector<SegmentSlopes> const slopes = differences.at(point, most_probes);
-    std::vector<double> const noise = noise_of(simulation, squares_of(simulation, slopes), 0);
+    noise = noise_of(simulation, squares_of(simulation, slopes), 0);
     LinearisedMotion::Settings settings;
     for (int c = 0; c < simulation.channels(); ++c) {
       double const n = simulation.samples_of_channel(c), ratio = simulation.least_noise(c) / noise[static_cast<std::size_t>(c)];
@@ -85,10 +97,15 @@ class Searcher {
     settings.floor /= settings.samples;
     settings.signal = signal_of(simulation, noise);
     for (WholeDictionary::Column const& each : dictionary_.columns()) {
-      settings.equations.push_back(static_cast<int>(each.equation));
+      settings.log_odds.push_back(each.log_odds);
       settings.always.push_back(each.always ? 1 : 0);
     }
-    return LinearisedMotion(weighted(simulation, slopes, noise), point.coefficients, std::move(settings));
+    return {weighted(simulation, slopes, noise), point.coefficients, std::move(settings)};
+  }
+  LinearisedMotion linearised() const {
+    std::vector<double> noise;
+    LinearisedParts parts = linearised(noise);
+    return LinearisedMotion(parts.slopes, parts.at, std::move(parts.settings));
   }
 
   // Linearise, fit what looks best, lead with what is; until the leading structure stays.
@@ -99,6 +116,7 @@ class Searcher {
       std::vector<Terms> from = listed_;
       from.push_back(now_.lead.terms);
       LinearisedMotion const motion = linearised();
+      if (round == 0) add_built_up(motion, from);
       std::erase_if(from, [&](Terms const& terms) {
         return std::any_of(terms.begin(), terms.end(), [&](int j) { return !motion.usable(j); });
       });
@@ -112,6 +130,20 @@ class Searcher {
       if (!better) return;
       now_.lead = std::move(*better);
       settle_step();
+    }
+  }
+
+  // Each equation without its terms, and again with as many as it has.
+  void add_built_up(LinearisedMotion const& motion, std::vector<Terms>& from) const {
+    std::vector<WholeDictionary::Column> const& columns = dictionary_.columns();
+    for (std::size_t e = 0; e < dictionary_.source().dictionary.equations.size(); ++e) {
+      Terms others;
+      for (int const j : now_.lead.terms) {
+        WholeDictionary::Column const& of = columns[static_cast<std::size_t>(j)];
+        if (of.equation != e || of.always) others.push_back(j);
+      }
+      std::vector<Terms> const sets = built_up(motion, others, now_.lead.terms.size() - others.size());
+      from.insert(from.end(), sets.begin(), sets.end());
     }
   }
 
@@ -205,6 +237,10 @@ StructureSearch search_structures(FoundSource const& source, std::vector<FoundSt
   if (!searcher.begin(listed)) return {};
   searcher.run();
   StructureSearch out = searched_structures(source, dictionary, searcher.all(), listed, most);
+  if (auto outside = searcher.outside()) {
+    out.record.outside = outside->equation + ": " + outside->terms;
+    out.record.outside_log_odds = outside->log_odds;
+  }
   describe_record(dictionary, searcher.conditions(), searcher.limits(), source.dictionary.measured.channels.size(), out.record);
   return out;
 }

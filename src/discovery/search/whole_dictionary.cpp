@@ -55,8 +55,12 @@ ValidatedModel WholeDictionary::compiled() {
     all.equations.push_back(&support);
   }
   ValidatedModel model = validated_model(source_, all);
+  std::vector<std::vector<double>> odds;
+  for (std::size_t e = 0; e < dictionary.equations.size(); ++e)
+    odds.push_back(log_term_odds(dictionary.equations[e].terms, source_.discovery.equations[e]));
   for (ValidatedModel::Coefficient const& each : model.coefficients)
-    columns_.push_back({each.equation, each.term, each.parameter, dictionary.equations[each.equation].terms[each.term].in_target});
+    columns_.push_back({each.equation, each.term, each.parameter, dictionary.equations[each.equation].terms[each.term].in_target,
+                        odds[each.equation][each.term]});
   return model;
 }
 
@@ -68,12 +72,17 @@ bool WholeDictionary::can_be_searched() const {
 }
 
 bool WholeDictionary::every_state_measured() const {
-  return std::all_of(model_.states.begin(), model_.states.end(), [&](std::pair<int, int> const& state) {
-    return std::any_of(model_.channels.begin(), model_.channels.end(), [&](std::size_t c) {
-      regression::Channel const& channel = source_.dictionary.numbers.channels[c];
-      return channel.state == state.first && channel.order == state.second;
-    });
+  return std::all_of(model_.states.begin(), model_.states.end(),
+                     [&](std::pair<int, int> const& state) { return channel_of(state).has_value(); });
+}
+
+std::optional<std::size_t> WholeDictionary::channel_of(std::pair<int, int> const& state) const {
+  auto const found = std::find_if(model_.channels.begin(), model_.channels.end(), [&](std::size_t c) {
+    regression::Channel const& channel = source_.dictionary.numbers.channels[c];
+    return channel.state == state.first && channel.order == state.second;
   });
+  if (found == model_.channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - model_.channels.begin());
 }
 
 Terms WholeDictionary::terms_of(FoundStructure const& structure) const {
@@ -111,12 +120,18 @@ Eigen::VectorXd WholeDictionary::coefficients_of(Terms const& terms, FittedTerms
 }
 
 SegmentSimulation WholeDictionary::simulation(Terms const& terms, FitConditions const& conditions) const {
-  return simulation(terms, {}, {}, conditions, records_);
+  return simulation(terms, {}, {}, conditions, records_, segments(conditions.halved));
+}
+
+SegmentSimulation WholeDictionary::simulation(FittedTerms const& fitted, std::vector<Segment> const& parts,
+                                              FitConditions const& conditions, std::vector<Experiment> const& records) const {
+  return simulation({}, fitted.terms, fitted.fit.point.coefficients, conditions, records, parts);
 }
 
 // held: terms at these values. All that is neither is out.
 SegmentSimulation WholeDictionary::simulation(Terms const& terms, Terms const& held, Eigen::VectorXd const& values,
-                                              FitConditions const& conditions, std::vector<Experiment> const& records) const {
+                                              FitConditions const& conditions, std::vector<Experiment> const& records,
+                                              std::vector<Segment> const& parts) const {
   SegmentSimulation::Settings settings{
       {}, model_.others, 0, model_.solver, source_.execution, pool_, model_.centres, conditions.noise};
   settings.solver.substeps = conditions.substeps;
@@ -125,7 +140,7 @@ SegmentSimulation WholeDictionary::simulation(Terms const& terms, Terms const& h
     settings.others[static_cast<std::size_t>(columns_[static_cast<std::size_t>(held[i])].parameter)] =
         values(static_cast<Eigen::Index>(i));
   for (int const j : terms) settings.fitted.push_back(columns_[static_cast<std::size_t>(j)].parameter);
-  return SegmentSimulation(model_.compiled, records, segments(conditions.halved), std::move(settings));
+  return SegmentSimulation(model_.compiled, records, parts, std::move(settings));
 }
 
 std::vector<SegmentSlopes> WholeDictionary::residuals(FittedTerms const& fitted, FitConditions const& conditions) const {
@@ -134,19 +149,13 @@ std::vector<SegmentSlopes> WholeDictionary::residuals(FittedTerms const& fitted,
 
 std::vector<SegmentSlopes> WholeDictionary::residuals(FittedTerms const& fitted, FitConditions const& conditions,
                                                       std::vector<Experiment> const& records) const {
-  return simulation({}, fitted.terms, fitted.fit.point.coefficients, conditions, records)
+  return simulation(fitted, segments(conditions.halved), conditions, records)
       .residuals({Eigen::VectorXd(), fitted.fit.point.starts});
 }
 
 double WholeDictionary::log_prior(Terms const& terms) const {
-  std::vector<int> offered(source_.dictionary.equations.size(), 0), taken = offered;
-  for (Column const& each : columns_) offered[each.equation] += each.always ? 0 : 1;
-  for (int const j : terms) {
-    Column const& each = columns_[static_cast<std::size_t>(j)];
-    taken[each.equation] += each.always ? 0 : 1;
-  }
   double sum = 0;
-  for (std::size_t e = 0; e < offered.size(); ++e) sum += log_structure_prior(offered[e], taken[e]);
+  for (int const j : terms) sum += columns_[static_cast<std::size_t>(j)].log_odds;
   return sum;
 }
 
@@ -163,7 +172,7 @@ FittedTerms WholeDictionary::fitted(Terms const& terms, Eigen::VectorXd const& c
   ShootingPoint point{Eigen::VectorXd(), model_.starts(segments(conditions.halved), guess_)};
   std::vector<double> noise;
   for (std::size_t const c : model_.channels) noise.push_back(source_.discovery.noise_sd[c]);
-  fit_starts(simulation({}, terms, coefficients, conditions, records_), point, noise, interrupted_);
+  fit_starts(simulation({}, terms, coefficients, conditions, records_, segments(conditions.halved)), point, noise, interrupted_);
   point.coefficients = coefficients;
   return fitted(terms, std::move(point), conditions);
 }

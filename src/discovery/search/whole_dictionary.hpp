@@ -4,6 +4,8 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "discovery/found_source.hpp"
@@ -35,7 +37,8 @@ class WholeDictionary {
   struct Column {
     std::size_t equation, term;
     int parameter;
-    bool always;  // part of the target
+    bool always;      // part of the target
+    double log_odds;  // of `log_term_odds`
   };
 
   WholeDictionary(FoundSource const& source, std::function<bool()> const& interrupted);
@@ -60,6 +63,9 @@ class WholeDictionary {
 
   /// Of the terms that are fitted; all others are out.
   SegmentSimulation simulation(Terms const& terms, FitConditions const& conditions) const;
+  /// Of starts alone, over other segments: coefficients are held at those of a fit.
+  SegmentSimulation simulation(FittedTerms const& fitted, std::vector<Segment> const& parts, FitConditions const& conditions,
+                               std::vector<Experiment> const& records) const;
   /// What a fit leaves, with its coefficients held; of other records of the same rows.
   std::vector<SegmentSlopes> residuals(FittedTerms const& fitted, FitConditions const& conditions) const;
   std::vector<SegmentSlopes> residuals(FittedTerms const& fitted, FitConditions const& conditions,
@@ -69,6 +75,9 @@ class WholeDictionary {
   /// From these coefficients, and starts from the record.
   FittedTerms fitted(Terms const& terms, Eigen::VectorXd const& coefficients, FitConditions const& conditions);
   FittedTerms fitted(FoundStructure const& structure, FitConditions const& conditions);
+  /// The channel of the model that measures a state; nothing where none does. state: the dictionary's, with its order.
+  std::optional<std::size_t> channel_of(std::pair<int, int> const& state) const;
+  FoundSource const& source() const { return source_; }
   /// Of what is part of the targets alone.
   FittedTerms fitted_without_terms(FitConditions const& conditions);
 
@@ -77,7 +86,8 @@ class WholeDictionary {
   bool every_state_measured() const;
   double log_prior(Terms const& terms) const;
   SegmentSimulation simulation(Terms const& terms, Terms const& held, Eigen::VectorXd const& values,
-                               FitConditions const& conditions, std::vector<Experiment> const& records) const;
+                               FitConditions const& conditions, std::vector<Experiment> const& records,
+                               std::vector<Segment> const& parts) const;
 
   FoundSource const& source_;
   std::function<bool()> const& interrupted_;

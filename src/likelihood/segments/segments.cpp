@@ -76,7 +76,7 @@ SegmentSimulation::SegmentSimulation(std::shared_ptr<CompiledModel const> compil
         bool const counts = !part.measured[c].empty() && part.scored[row] != 0 && std::isfinite(part.measured[c][row]);
         samples.push_back(counts ? part.measured[c][row] : std::numeric_limits<double>::quiet_NaN());
         if (counts) ++counted, ++per_channel_[c];
-        if (settings_.noise.relative.empty()) continue;
+        if (settings_.noise.relative.empty() || settings_.noise.carried) continue;
         double const relative =
             settings_.noise
                 .relative[static_cast<std::size_t>(segment.experiment)][c][static_cast<std::size_t>(segment.first) + row];
@@ -84,9 +84,35 @@ SegmentSimulation::SegmentSimulation(std::shared_ptr<CompiledModel const> compil
         if (counts) log_relative_[c] += elementary::log(relative);
       }
     samples_.push_back(std::move(samples));
-    if (!settings_.noise.relative.empty()) weights_.push_back(std::move(weights));
+    if (!weights.empty()) weights_.push_back(std::move(weights));
     per_segment_.push_back(counted);
   }
+  if (settings_.noise.carried) whiten();
+}
+
+void SegmentSimulation::whiten() {
+  for (std::size_t s = 0; s < segments_.size(); ++s) {
+    int const rows = counted_rows(static_cast<int>(s));
+    whiteners_.emplace_back((*settings_.noise.carried)[static_cast<std::size_t>(segments_[s].experiment)], segments_[s].first, rows,
+                            [&](int row) { return measured(static_cast<int>(s), row); });
+    std::vector<double> weights;
+    for (std::size_t row = 0; row < samples_[s].size(); ++row) {
+      std::size_t const c = row / static_cast<std::size_t>(rows);
+      double const relative = whiteners_.back().sds()[row] / settings_.noise.floor[c];
+      bool const counts = !std::isnan(samples_[s][row]);
+      weights.push_back(counts ? 1 / relative : 1);
+      if (counts) log_relative_[c] += elementary::log(relative);
+    }
+    weights_.push_back(std::move(weights));
+  }
+}
+
+void SegmentSimulation::in_relative_noise(int segment, Eigen::Ref<Eigen::MatrixXd> columns) const {
+  auto const s = static_cast<std::size_t>(segment);
+  if (!whiteners_.empty()) whiteners_[s].apply(columns);
+  if (!weights_.empty())
+    columns.array().colwise() *=
+        Eigen::Map<Eigen::ArrayXd const>(weights_[s].data(), static_cast<Eigen::Index>(weights_[s].size()));
 }
 
 double SegmentSimulation::least_noise(int channel) const {
@@ -153,10 +179,9 @@ std::vector<SegmentSlopes> SegmentSimulation::run(ShootingPoint const& at, Eigen
         for (int x = 0; x < d; ++x) slopes.by_start(row, x) = out[s](place, 1 + k + x) - here;
       }
     if (!weights_.empty()) {
-      auto const weights = Eigen::Map<Eigen::ArrayXd const>(weights_[s].data(), size);
-      slopes.residual.array() *= weights;
-      slopes.by_coefficient.array().colwise() *= weights;
-      slopes.by_start.array().colwise() *= weights;
+      in_relative_noise(static_cast<int>(s), slopes.residual);
+      in_relative_noise(static_cast<int>(s), slopes.by_coefficient);
+      in_relative_noise(static_cast<int>(s), slopes.by_start);
     }
     // A lane that failed is not a number in every row, measured or not.
     if (!outcome[s].front().ok) slopes.residual.setConstant(std::numeric_limits<double>::quiet_NaN());

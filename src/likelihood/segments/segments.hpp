@@ -9,6 +9,7 @@
 #include "core/numeric/lanes.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "likelihood/first_rows.hpp"
+#include "likelihood/segments/carried_errors.hpp"
 #include "simulate/simulator.hpp"
 
 namespace sysid {
@@ -34,8 +35,8 @@ struct ShootingPoint {
 /// The simulations of a model that record the centre of each channel and nothing else.
 std::shared_ptr<SimulationProgram const> compile_centres(CompiledModel const& compiled);
 
-/// A segment at a point. Rows are channel by channel, in each sample by sample; 0 where nothing is measured. All are divided by the
-/// relative noise of their sample.
+/// A segment at a point. Rows are channel by channel, in each sample by sample; 0 where nothing is measured. All are made
+/// independent of each other where inputs carry errors, and divided by the relative noise of their sample.
 struct SegmentSlopes {
   Eigen::VectorXd residual;        // simulated - measured
   Eigen::MatrixXd by_coefficient;  // [rows x k]: change by the perturbation of each coefficient
@@ -49,6 +50,9 @@ struct NoiseShape {
   std::vector<std::vector<std::vector<double>>> relative;
   /// Per channel, SI: the sd is at least this (digits of the file, error of the integrator); empty: 0.
   std::vector<double> floor;
+  /// Per experiment; null: samples are independent. Else `relative` is not read: rows are made independent, and their sds are in
+  /// relation to the floor, which is set.
+  std::shared_ptr<std::vector<CarriedErrors> const> carried;
 };
 
 class SegmentSimulation {
@@ -87,6 +91,8 @@ class SegmentSimulation {
   bool smooth() const { return settings_.solver.fixed_step(); }
   /// Whether a row of a segment's slopes is measured.
   bool measured(int segment, int row) const;
+  /// Changes of what is simulated, in rows of slopes, as slopes have them: independent rows over their relative noise. In place.
+  void in_relative_noise(int segment, Eigen::Ref<Eigen::MatrixXd> columns) const;
   /// Rows of a segment's slopes that belong to one channel.
   int rows_of_channel(int segment) const { return counted_rows(segment); }
 
@@ -96,6 +102,7 @@ class SegmentSimulation {
   std::vector<SegmentSlopes> residuals(ShootingPoint const& at) const;
 
  private:
+  void whiten();
   int counted_rows(int segment) const;
   std::vector<SegmentSlopes> run(ShootingPoint const& at, Eigen::VectorXd const* step, Eigen::MatrixXd const* start_step) const;
 
@@ -105,6 +112,7 @@ class SegmentSimulation {
   std::vector<Simulator> simulators_;
   std::vector<std::vector<double>> samples_;  // [segments][rows of slopes]; NaN: nothing measured
   std::vector<std::vector<double>> weights_;  // the same rows: 1 / relative noise; empty: all 1
+  std::vector<RowWhitener> whiteners_;        // [segments]; empty: rows are independent
   std::vector<double> log_relative_;          // per channel
   std::vector<int> per_channel_, per_segment_;
   std::vector<double> size_;

@@ -48,7 +48,7 @@ struct Planted {
             {.samples = 60,
              .floor = 1e-12,
              .signal = 300,
-             .equations = {0, 0, 0, 0, 0, 1, 1, 1, 1},
+             .log_odds = std::vector<double>(9, -1.0),
              .always = {1, 0, 0, 0, 0, 0, 0, 0, 0}}};
   }
   /// Squares that terms leave, with the best starts.
@@ -125,4 +125,17 @@ TEST_CASE("a coefficient whose perturbation is not finite is not offered") {
   CHECK_FALSE(motion.usable(2));
   for (WeighedTerms const& each : best_terms(motion, {{0, 3}}))
     CHECK(std::find(each.terms.begin(), each.terms.end(), 2) == each.terms.end());
+}
+
+TEST_CASE("sets that are built up begin with what is given, and reach what moves from many wrong terms do not") {
+  Planted const planted(2);
+  LinearisedMotion const motion = planted.motion();
+  std::vector<Terms> const sets = built_up(motion, {0}, 2);
+  CHECK(sets.front() == Terms{0});
+  CHECK(std::find(sets.begin(), sets.end(), Terms{0, 2, 5}) != sets.end());
+  for (Terms const& each : sets) {
+    CHECK(each.size() <= 3);
+    CHECK(each.front() == 0);
+    CHECK(std::is_sorted(each.begin(), each.end()));
+  }
 }

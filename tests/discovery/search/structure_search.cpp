@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -60,13 +61,22 @@ struct Trial {
     return text;
   }
 
-  json found(std::string const& terms) const {
+  json found(std::string const& terms) const { return answer(terms).at("discovery").at("judged").at("structures").at(0); }
+
+  /// Whether a discovery has a finding.
+  bool finds(std::string const& terms, std::string const& code) const {
+    json const summary = answer(terms);
+    return std::any_of(summary.at("findings").begin(), summary.at("findings").end(),
+                       [&](json const& each) { return each.at("code") == code; });
+  }
+
+  json answer(std::string const& terms) const {
     std::string const text = "dictionary d {\nstate x = x, y = y\ntarget = x', y'\nterms = " + terms +
                              "\n}\ndata record { file \"record.csv\"; time t; measure x = x; measure y = y }\n"
                              "found = discover d from record with seed = 1\n";
     DiscoveryAnswer const answer = run_with(text, {{"record.csv", csv()}});
     REQUIRE_MESSAGE(answer.summary.contains("discovery"), answer.said);
-    return answer.summary.at("discovery").at("judged").at("structures").at(0);
+    return answer.summary;
   }
 };
 
@@ -113,4 +123,49 @@ TEST_CASE("terms that the regression exchanges for others are found by simulatio
     Trial const record{.rates = competing, .start = {0.5, 0.4}, .length = 12, .proportional = 0.001, .seed = seed};
     CHECK(record.found(narrow).at("terms") == "x': x, x^2, x*y; y': y, x*y, y^2");
   }
+}
+
+TEST_CASE("an equation that terms of the dictionary only imitate is warned of, and not when its terms are offered") {
+  // Morse's potential, as powers, sin and cos imitate it.
+  Rates const morse = [](Pair const& s) { return Pair{s[1], -0.1 * s[1] - 2 * std::exp(-s[0]) * (1 - std::exp(-s[0]))}; };
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    Trial const record{.rates = morse, .start = {1.2, 0}, .length = 20, .proportional = 0.01, .seed = seed};
+    CHECK(record.finds(narrow, "other_terms_fit"));
+    CHECK_FALSE(record.finds(narrow + ", exp(-x), exp(-2*x)", "other_terms_fit"));
+    Trial const prey{.rates = hunting, .start = {4, 1.5}, .length = 12, .proportional = 0.01, .seed = seed};
+    CHECK_FALSE(prey.finds(narrow, "other_terms_fit"));
+  }
+}
+
+TEST_CASE("the rounding of an input, which moves all samples after it, brings in no term") {
+  // Duffing's oscillator under two sines, 300 samples; the input is interpolated before it is rounded.
+  constexpr int rows = 300, steps = 20;
+  constexpr double h = 0.2 / steps;
+  auto const force = [](double t) { return 0.8 * std::sin(0.9 * t) + 0.5 * std::sin(2.3 * t + 0.4); };
+  Pair at = {0.5, 0};
+  std::string text = "t,u,x,v\n";
+  for (int i = 0; i < rows; ++i) {
+    double const here = force(0.2 * i), next = force(0.2 * (i + 1));
+    text += fmt::format("{:.7g},{:.7g},{:.7g},{:.7g}\n", 0.2 * i, here, at[0], at[1]);
+    auto const rates = [&](Pair const& s, double part) {
+      return Pair{s[1], here + (next - here) * part - 0.2 * s[1] - s[0] - 0.5 * s[0] * s[0] * s[0]};
+    };
+    auto const plus = [](Pair const& a, double by, Pair const& b) { return Pair{a[0] + by * b[0], a[1] + by * b[1]}; };
+    for (int k = 0; k < steps; ++k) {
+      double const begin = static_cast<double>(k) / steps, middle = begin + 0.5 / steps, end = begin + 1.0 / steps;
+      Pair const k1 = rates(at, begin), k2 = rates(plus(at, h / 2, k1), middle), k3 = rates(plus(at, h / 2, k2), middle),
+                 k4 = rates(plus(at, h, k3), end);
+      for (std::size_t s = 0; s < 2; ++s) at[s] += h / 6 * (k1[s] + 2 * k2[s] + 2 * k3[s] + k4[s]);
+    }
+  }
+  std::string const file =
+      "dictionary d {\ninput u\nstate x = x, v = v\ntarget = x', v'\nterms = polynomial(x, v, degree = 3), 1, sin(x), cos(x), "
+      "sin(v), cos(v), u, u*x, u*v\n}\n"
+      "data record { file \"record.csv\"; time t; input u = u hold linear; measure x = x; measure v = v }\n"
+      "found = discover d from record with seed = 1\n";
+  DiscoveryAnswer const answer = run_with(file, {{"record.csv", text}});
+  json const first = answer.summary.at("discovery").at("judged").at("structures").at(0);
+  CHECK(first.at("terms") == "x': v; v': v, x, x^3, u");
+  for (json const& each : answer.summary.at("findings")) CHECK(each.at("severity") == "note");
 }
