@@ -67,7 +67,7 @@ bool worth(std::span<Work const> work, int ranks) {
     all += each.instructions;
   }
   // So little is decided without looking at who would do what.
-  if (!ranks::worth(all * instruction, 0)) return false;
+  if (!ranks::perhaps_worth(all * instruction)) return false;
   for (int r = 0; r < ranks; ++r) most = std::max(most, instructions(work, lanes_of_rank(work, r, ranks)));
   return ranks::worth((all - most) * instruction / ranks::threads(), bytes_of(work));
 }

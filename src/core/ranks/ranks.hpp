@@ -75,18 +75,11 @@ void wait_for_all();
 /// Whether an interruption was asked for, the same on all ranks; they look for it together about ten times a second. at_once: now.
 bool interrupted(bool at_once = false);
 
-/// Whether work that takes so much longer on one rank than shared [s] is worth the exchange of so many bytes; the same on all
-/// ranks.
-bool worth(double seconds, double bytes);
-
 /// How often results have been exchanged so far.
 std::uint64_t exchanges();
 
-/// [s] of one exchange of nothing, and bytes/s, as measured when they joined.
-struct Costs {
-  double exchange = 0, rate = 1;
-};
-Costs costs();
+/// [s] of one exchange of nothing, as it is expected now.
+double exchange_seconds();
 
 /// The last exchange: the exit code of this rank as it should be returned. said: what a rank that does not lead would have
 /// printed; where it alone has failed the user reads it. parted: in place of an exchange, after Parted.
