@@ -314,6 +314,33 @@ std::string from_leader(std::string mine) {
   return std::move(gather(leads() ? std::string_view(mine) : std::string_view()).front());
 }
 
+std::optional<Difference> difference(std::vector<Alike> const& mine) {
+  if (!together()) return std::nullopt;
+  std::string text;
+  for (Alike const& each : mine) text += each.what + '\0' + each.made_of + '\0';
+  auto const read = [](std::string const& from) {
+    std::vector<Alike> list;
+    for (std::size_t at = 0; at < from.size();) {
+      std::size_t const middle = from.find('\0', at), end = from.find('\0', middle + 1);
+      list.push_back({from.substr(at, middle - at), from.substr(middle + 1, end - middle - 1)});
+      at = end + 1;
+    }
+    return list;
+  };
+  std::vector<std::string> const texts = collect(0, text);
+  std::vector<Alike> const leading = read(texts.front());
+  for (int r = 1; r < all.size; ++r) {
+    if (texts[static_cast<std::size_t>(r)] == texts.front()) continue;
+    std::vector<Alike> const other = read(texts[static_cast<std::size_t>(r)]);
+    for (std::size_t i = 0; i < std::max(leading.size(), other.size()); ++i) {
+      Alike const one = i < leading.size() ? leading[i] : Alike(), two = i < other.size() ? other[i] : Alike();
+      if (one.what != two.what || one.made_of != two.made_of)
+        return Difference{r, fmt::format("rank {} ({})", r, all.places.words(r)), one, two, i};
+    }
+  }
+  return std::nullopt;
+}
+
 void wait_for_all() {
   if (together()) words_of_all(Kind::wait, 0);
 }
