@@ -3,6 +3,7 @@
 
 #include "app/calibration/calibrate.hpp"
 #include "app/calibration/crosscheck.hpp"
+#include "app/session/same_on_ranks.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
 #include "cli/spread.hpp"
@@ -22,6 +23,7 @@ void add_options(CLI::App& verb, ResultOptions& options, std::string& task) {
 
 ExitCode in_session(Messages const& messages, ResultOptions const& options, std::function<ExitCode(Session&)> const& work) {
   return with_checked_file(messages, options.file, [&](Source const& source, CheckedFile const& file, Diagnostics const&) {
+    require_same_text(source);
     std::ostream nowhere(nullptr);
     SilentProgress silent;
     TerminalProgress terminal;

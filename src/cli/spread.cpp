@@ -1,6 +1,9 @@
 // Ranks that do not lead print nothing, but what they would have printed is kept: where one of them alone fails, it has the reason.
 #include "cli/spread.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 #include <optional>
@@ -8,6 +11,7 @@
 #include <streambuf>
 
 #include "core/ranks/ranks.hpp"
+#include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 
 namespace sysid::cli {
@@ -50,6 +54,33 @@ ExitCode unjoined(Messages const& messages, ranks::Unjoined const& unjoined) {
   return ExitCode::io;
 }
 
+/// Without the name of the program, as one would type them, about.
+std::string arguments() {
+  std::string text = read_file("/proc/self/cmdline");
+  text.erase(0, std::min(text.size(), text.find('\0') + 1));
+  if (!text.empty()) text.pop_back();
+  std::replace(text.begin(), text.end(), '\0', ' ');
+  return text;
+}
+
+/// What ranks must have alike before they read a file: where they have not, it is said.
+bool started_alike(Messages const& messages) {
+  auto const other = ranks::difference({{"the version", SYSID_VERSION}, {"the arguments", arguments()}});
+  if (!other) return true;
+  Diagnostics diagnostics;
+  diagnostics.add({Severity::error,
+                   "E6215",
+                   other->place == 0
+                       ? fmt::format("{} is sysid {}, rank 0 is sysid {}", other->who, other->other.made_of, other->leading.made_of)
+                       : fmt::format("{} was started with other arguments than rank 0: `{}`, not `{}`", other->who,
+                                     other->other.made_of, other->leading.made_of),
+                   std::nullopt,
+                   {},
+                   other->place == 0 ? "install the same version on all nodes" : "start all ranks by one command"});
+  messages.show(diagnostics, Source("sysid", ""));
+  return false;
+}
+
 }  // namespace
 
 ExitCode among_ranks(Messages const& messages, int& threads, std::function<ExitCode()> const& work) {
@@ -66,7 +97,7 @@ ExitCode among_ranks(Messages const& messages, int& threads, std::function<ExitC
   bool parted = false;
   auto code = ExitCode::internal;
   try {
-    code = work();
+    code = started_alike(messages) ? work() : ExitCode::usage;
   } catch (ranks::Parted const& others) {
     parted = true;
     code = static_cast<ExitCode>(others.code);

@@ -4,6 +4,7 @@
 
 #include "app/disturbed/fit_disturbed.hpp"
 #include "app/run/pipeline.hpp"
+#include "app/session/same_on_ranks.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
 #include "cli/spread.hpp"
@@ -81,6 +82,7 @@ ExitCode dump(Messages const& messages, TaskOptions const& options) {
 
 ExitCode run_in_order(Messages const& messages, TaskOptions const& options, std::vector<std::string> const& kinds) {
   return with_checked_file(messages, options.file, [&](Source const& source, CheckedFile const& file, Diagnostics const&) {
+    require_same_text(source);
     std::ostream nowhere(nullptr);
     SilentProgress silent;
     TerminalProgress terminal;

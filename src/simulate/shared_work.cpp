@@ -48,8 +48,12 @@ void for_results(std::span<Work const> work, std::vector<LaneRange> const& lanes
 /// What ranks must agree in to understand each other.
 std::uint64_t digest(std::span<Work const> work) {
   std::uint64_t sum = work.size();
-  for (Work const& each : work)
-    sum = 31 * (31 * sum + static_cast<std::uint64_t>(each.width)) + std::bit_cast<std::uint64_t>(each.instructions);
+  auto const add = [&](std::uint64_t number) { sum = 31 * sum + number; };
+  for (Work const& each : work) {
+    add(static_cast<std::uint64_t>(each.width));
+    add(std::bit_cast<std::uint64_t>(each.instructions));
+    for (WrittenLanes const& part : each.written) add(part.rows * part.size);
+  }
   return sum;
 }
 
@@ -67,7 +71,7 @@ bool worth(std::span<Work const> work, int ranks) {
     all += each.instructions;
   }
   // So little is decided without looking at who would do what.
-  if (!ranks::worth(all * instruction, 0)) return false;
+  if (!ranks::perhaps_worth(all * instruction)) return false;
   for (int r = 0; r < ranks; ++r) most = std::max(most, instructions(work, lanes_of_rank(work, r, ranks)));
   return ranks::worth((all - most) * instruction / ranks::threads(), bytes_of(work));
 }
@@ -106,7 +110,11 @@ bool do_share(std::span<Work const> work, ThreadPool* pool) {
     if (r == ranks::rank()) continue;
     std::string const& theirs = all[static_cast<std::size_t>(r)];
     std::size_t from = 0;
-    for_results(work, lanes_of_rank(work, r, ranks), [&](std::byte* at, std::size_t bytes) {
+    std::vector<LaneRange> const lanes = lanes_of_rank(work, r, ranks);
+    for_results(work, lanes, [&](std::byte*, std::size_t bytes) { from += bytes; });
+    if (from != theirs.size()) throw ranks::Parted{70};  // it has done other work
+    from = 0;
+    for_results(work, lanes, [&](std::byte* at, std::size_t bytes) {
       std::memcpy(at, theirs.data() + from, bytes);
       from += bytes;
     });

@@ -59,6 +59,18 @@ class CaseDesk : public Desk {
 
 CaseDesk selection() { return {"bouc_wen", "abc_smc\\([^)]*\\)", "abc_smc(particles = 150, populations = 6)"}; }
 
+/// Each of the first runs in the folder, one more in `other` below it.
+Said with_another(CaseDesk const& desk, int ranks, std::string const& arguments) {
+  return said_by(desk.command(ranks, arguments) + " : -n 1 --wdir '" + desk.path("other").string() + "' '" SYSID_PROGRAM "' " +
+                 arguments);
+}
+
+void copy_into_another(CaseDesk const& desk) {
+  std::filesystem::create_directory(desk.path("other"));
+  for (auto const& entry : std::filesystem::directory_iterator(desk.path(".")))
+    if (entry.is_regular_file()) std::filesystem::copy_file(entry.path(), desk.path("other") / entry.path().filename());
+}
+
 bool have_mpi() {
   if (sanitized) return false;  // what the library does not give back would be reported
   bool const found =
@@ -91,6 +103,7 @@ void check_ranks(CaseDesk const& desk, std::string const& arguments, std::string
     check_same(desk, "alone", folder);
     if (ranks == 1) continue;
     CHECK(desk.timed(folder + "/" + result, "ranks") == ranks);
+    if (static_cast<unsigned>(ranks) > std::thread::hardware_concurrency()) continue;  // that may not be worth it
     CHECK(desk.timed(folder + "/" + result, "exchanges") > 1);
   }
 }
@@ -219,19 +232,53 @@ TEST_CASE("what is wrong is said once") {
 TEST_CASE("what one rank alone cannot do ends all, and its reason is said") {
   if (!have_mpi()) return;
   CaseDesk const desk = selection();
-  Said const said = said_by(desk.command(2, "run case.sysid --no-figures -q") + " : -n 1 '" SYSID_PROGRAM "' run missing.sysid");
+  std::filesystem::create_directory(desk.path("other"));
+  Said const said = with_another(desk, 2, "run case.sysid --no-figures -q");
   CHECK_MESSAGE(said.exit == 74, said.text);
   auto const who = said.text.find("sysid: rank 2 (process ");
   REQUIRE(who != std::string::npos);
-  CHECK(said.text.find("cannot read `missing.sysid`", who) != std::string::npos);
+  CHECK(said.text.find("cannot read `case.sysid`", who) != std::string::npos);
   CHECK(said.text.find("sysid: stopped, as rank 2 has failed") != std::string::npos);
+}
+
+TEST_CASE("ranks with another text, other data or other arguments are named, and nothing is computed") {
+  if (!have_mpi()) return;
+  CaseDesk const desk("duffing", "mh\\([^)]*\\)", "mh(samples = 300, burn_in = 100, thin = 1, chains = 4)");
+  auto const check = [](Said const& said, int exit, std::initializer_list<char const*> words) {
+    CHECK_MESSAGE(said.exit == exit, said.text);
+    std::size_t at = said.text.find("error[E6215]: rank 2 (process ");
+    CHECK_MESSAGE(at != std::string::npos, said.text);
+    for (char const* word : words) CHECK_MESSAGE(said.text.find(word) != std::string::npos, said.text);
+    CHECK(said.text.find("E6215", at + 20) > said.text.find("sysid explain", at));  // once
+  };
+  std::string const run = "run case.sysid --no-figures -o out";
+  auto const replaced = [&](std::string const& name, std::string const& from, std::string const& to) {
+    copy_into_another(desk);
+    std::string text = read_file(desk.path(name));
+    auto const at = text.rfind(from);
+    REQUIRE(at != std::string::npos);
+    write_file(desk.path("other/" + name), text.replace(at, from.size(), to));
+    Said const said = with_another(desk, 2, run);
+    CHECK_FALSE(desk.has("out"));
+    std::filesystem::remove_all(desk.path("other"));
+    return said;
+  };
+  check(replaced("case.sysid", "samples = 300", "samples = 301"), 65,
+        {"case.sysid:", "another text of `case.sysid` than rank 0", "the first line that differs", "samples = 300"});
+  check(replaced("duffing_1pct.csv", "1", "2"), 65, {"case.sysid:", "other data in `duffing_1pct.csv` than rank 0"});
+  check(said_by(desk.command(2, run + " --seed 1") + " : -n 1 '" SYSID_PROGRAM "' " + run + " --seed 2"), 2,
+        {"other arguments than rank 0: `run case.sysid", "--seed 2`, not `run case.sysid", "--seed 1`"});
 }
 
 TEST_CASE("ranks that come to different decisions end") {
   if (!have_mpi()) return;
   CaseDesk const desk = selection();
-  Said const said = said_by(desk.command(1, "run case.sysid --no-figures -q --seed 1") + " : -n 1 '" SYSID_PROGRAM
-                                                                                         "' run case.sysid -q --seed 2");
+  copy_into_another(desk);
+  // Results that the other has already, and rank 0 does not see.
+  REQUIRE(said_by("cd '" + desk.path("other").string() + "' && '" SYSID_PROGRAM "' run case.sysid --no-figures -q").exit <= 1);
+  for (auto const& entry : std::filesystem::directory_iterator(desk.path("other/results")))
+    if (entry.path().filename() != "selection") std::filesystem::remove_all(entry.path());
+  Said const said = with_another(desk, 1, "run case.sysid --no-figures -q --resume");
   CHECK_MESSAGE(said.exit == 70, said.text);
   CHECK(said.text.find("the ranks came to different places of the program") != std::string::npos);
 }

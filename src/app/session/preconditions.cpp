@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 
+#include "app/session/same_on_ranks.hpp"
 #include "experiment/experiments.hpp"
 #include "inference/table.hpp"
 #include "likelihood/member_coordinate.hpp"
@@ -184,6 +186,7 @@ Task const* maker(Session const& session, DataBlock const& block) {
 Preconditions check_preconditions(Session& session, std::function<bool(Task const&)> const& wanted) {
   Preconditions result;
   bool only_unreadable = true;
+  std::map<int, std::string> digests;               // of the data that were read
   std::set<std::pair<int, Model const*>> reported;  // data that a message has been said about
   auto const add = [&](Diagnostics const& more, bool unreadable) {
     for (Diagnostic const& each : more.all()) {
@@ -211,6 +214,7 @@ Preconditions check_preconditions(Session& session, std::function<bool(Task cons
         }
         try {
           Record const& record = session.record(use.data, *data.model);
+          digests[use.data] = record.digest;
           for (DataPart const& part : block.parts)  // no task need read them for them to be wrong
             if (auto const wrong = check_rows(record, "range `" + part.name + "`", {part.first, part.last}, part.span))
               add_one(*wrong);
@@ -232,6 +236,7 @@ Preconditions check_preconditions(Session& session, std::function<bool(Task cons
     if (auto const why = task_row(task).refusal(session, task)) add_one(*why);
   }
   result.unreadable = only_unreadable;
+  if (result.diagnostics.all().empty()) require_same_data(session.file, digests);
   return result;
 }
 

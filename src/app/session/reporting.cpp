@@ -191,7 +191,7 @@ void keep_result(Session& session, Task const& task, Report& report) {
   if (ranks::size() > 1) {
     report.timing.emplace_back("ranks", static_cast<std::int64_t>(ranks::size()));
     report.timing.emplace_back("exchanges", static_cast<std::int64_t>(ranks::exchanges()));
-    report.timing.emplace_back("exchange_seconds", ranks::costs().exchange);
+    report.timing.emplace_back("exchange_seconds", ranks::exchange_seconds());
   }
   std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures());
   session.out << terminal_summary(report, session.options.surface);

@@ -46,7 +46,8 @@ std::string place_of_this_process() {
 
 Places::Places(std::span<std::string const> all) : all_(all.begin(), all.end()) {}
 
-int Places::threads() const {
+/// Of the rank that has the fewest; those that several may use are divided.
+double Places::processors() const {
   std::vector<Place> places;
   for (std::string const& each : all_) places.push_back(read(each));
   double least = CPU_SETSIZE;
@@ -60,8 +61,12 @@ int Places::threads() const {
     }
     least = std::min(least, processors);
   }
-  return std::max(1, static_cast<int>(least + 1e-6));
+  return least;
 }
+
+int Places::threads() const { return std::max(1, static_cast<int>(processors() + 1e-6)); }
+
+bool Places::crowded() const { return processors() < 1 - 1e-6; }
 
 int Places::ended(int own) const {
   if (all_.empty()) return -1;

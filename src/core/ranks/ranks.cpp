@@ -18,6 +18,7 @@
 #include "core/ranks/module.hpp"
 #include "core/ranks/node.hpp"
 #include "core/ranks/own.hpp"
+#include "core/ranks/worth.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
 
@@ -39,7 +40,7 @@ constexpr std::int64_t most_at_once = std::int64_t{1} << 30;
 /// Exit codes of the program (app/session/options.hpp) that are decided here.
 constexpr int internal = 70, interrupted_code = 75;
 
-enum class Kind : std::uint32_t { gather = 1, look, end };
+enum class Kind : std::uint32_t { gather = 1, look, end, wait };
 
 struct Word {
   Kind kind;
@@ -47,6 +48,7 @@ struct Word {
   std::uint64_t number, same;
   std::int64_t bytes;  // that follow; of `end` the exit code
   double seconds;      // since the last exchange
+  double whole;        // of the last exchange of results, the work before it included; 0: the last was none
 };
 
 struct All {
@@ -54,11 +56,12 @@ struct All {
   int rank = 0, size = 1, threads = 1;
   std::thread::id thread;
   Places places;
-  Costs costs;
+  Worth worth;
   std::uint64_t exchanges = 0, gathered = 0;
   bool stop = false;  // agreed
   int looks = 0, looks_between = 1;
   Clock::time_point last = Clock::now();
+  double whole = 0, longest = 0, bytes = 0;  // of the last exchange: here; the longest `seconds` of all; of results
   double patience = patience_of_others;
   int ended = -1, ended_code = 0;  // a rank that has ended before the others
 };
@@ -143,11 +146,20 @@ std::string exchange(void const* mine, std::vector<std::int64_t> const& bytes) {
 
 /// The words of all; a request of any to stop is from now on one of all.
 std::vector<Word> words(Kind kind, std::int64_t bytes, std::uint64_t same = 0) {
-  Word const mine{kind, interrupt_heard() ? 1U : 0U, ++all.exchanges, same, bytes, seconds_since(all.last)};
+  Word const mine{kind, interrupt_heard() ? 1U : 0U, ++all.exchanges, same, bytes, seconds_since(all.last), all.whole};
   std::string const text = exchange(&mine, std::vector<std::int64_t>(static_cast<std::size_t>(all.size), sizeof mine));
   std::vector<Word> result(static_cast<std::size_t>(all.size));
   std::memcpy(result.data(), text.data(), text.size());
-  for (Word const& each : result) all.stop = all.stop || each.stop != 0;
+  double longest = 0, whole = 0;
+  for (Word const& each : result) {
+    all.stop = all.stop || each.stop != 0;
+    longest = std::max(longest, each.seconds);
+    whole = std::max(whole, each.whole);
+  }
+  // What went beyond the work of the slowest rank went into messages, or into waiting for a processor.
+  if (whole > 0) all.worth.learn(whole - all.longest, all.bytes);
+  all.longest = longest;
+  all.whole = 0;
   all.last = Clock::now();
   return result;
 }
@@ -165,6 +177,21 @@ std::vector<Word> words_of_all(Kind kind, std::int64_t bytes, std::uint64_t same
     return each.kind == result.front().kind && each.number == result.front().number && each.same == result.front().same;
   });
   if (!alike) throw Parted{internal};
+  return result;
+}
+
+/// What each rank has.
+std::vector<std::string> collect(std::uint64_t same, std::string_view mine) {
+  std::vector<std::int64_t> bytes;
+  for (Word const& each : words_of_all(Kind::gather, static_cast<std::int64_t>(mine.size()), same)) bytes.push_back(each.bytes);
+  std::string const text = exchange(mine.data(), bytes);
+  std::vector<std::string> result;
+  std::size_t from = 0;
+  for (std::int64_t const each : bytes) {
+    result.push_back(text.substr(from, static_cast<std::size_t>(each)));
+    from += static_cast<std::size_t>(each);
+  }
+  all.last = Clock::now();
   return result;
 }
 
@@ -195,7 +222,7 @@ Loaded const& loaded() {
 bool interruption(bool heard) { return all.stop || (heard && own > 0); }
 
 /// The least of a few, as the leader has measured it.
-Costs measure() {
+Worth measure(bool crowded) {
   auto const of_leader = [](double seconds) {
     std::string const text = from_leader({reinterpret_cast<char const*>(&seconds), sizeof seconds});
     std::memcpy(&seconds, text.data(), sizeof seconds);
@@ -213,7 +240,7 @@ Costs measure() {
   constexpr double megabyte = 1 << 20;
   double const empty = least("");
   double const full = least(std::string(static_cast<std::size_t>(megabyte / all.size), 'x'));
-  return {empty, megabyte / std::max(full - empty, 1e-6)};
+  return {empty, megabyte / std::max(full - empty, 1e-6), crowded};
 }
 
 }  // namespace
@@ -238,7 +265,7 @@ void join() {
   if (rank > 0) leave_files_to_another();
   all.places = Places(gather(place_of_this_process()));
   all.threads = all.places.threads();
-  all.costs = measure();
+  all.worth = measure(all.places.crowded());
   all.gathered = 0;
 }
 
@@ -254,7 +281,7 @@ std::string why_no_mpi() { return loaded().why; }
 int rank() { return all.rank; }
 int size() { return all.size; }
 int threads() { return all.threads; }
-Costs costs() { return all.costs; }
+double exchange_seconds() { return all.worth.exchange(); }
 std::uint64_t exchanges() { return all.gathered; }
 
 bool together() { return all.module != nullptr && apart == 0 && own == 0 && std::this_thread::get_id() == all.thread; }
@@ -265,20 +292,20 @@ Own::Own() { ++own; }
 Own::~Own() { --own; }
 bool on_its_own() { return own > 0; }
 
-std::vector<std::string> gather(std::string_view mine) { return gather_about(0, mine); }
+std::vector<std::string> gather(std::string_view mine) {
+  if (!together()) return {std::string(mine)};
+  ++all.gathered;
+  return collect(0, mine);
+}
 
 std::vector<std::string> gather_about(std::uint64_t same, std::string_view mine) {
   if (!together()) return {std::string(mine)};
   ++all.gathered;
-  std::vector<std::int64_t> bytes;
-  for (Word const& each : words_of_all(Kind::gather, static_cast<std::int64_t>(mine.size()), same)) bytes.push_back(each.bytes);
-  std::string const text = exchange(mine.data(), bytes);
-  std::vector<std::string> result;
-  std::size_t from = 0;
-  for (std::int64_t const each : bytes) {
-    result.push_back(text.substr(from, static_cast<std::size_t>(each)));
-    from += static_cast<std::size_t>(each);
-  }
+  Clock::time_point const before = all.last;
+  std::vector<std::string> result = collect(same, mine);
+  all.bytes = 0;
+  for (std::string const& each : result) all.bytes += static_cast<double>(each.size());
+  all.whole = std::chrono::duration<double>(all.last - before).count();
   return result;
 }
 
@@ -287,8 +314,35 @@ std::string from_leader(std::string mine) {
   return std::move(gather(leads() ? std::string_view(mine) : std::string_view()).front());
 }
 
+std::optional<Difference> difference(std::vector<Alike> const& mine) {
+  if (!together()) return std::nullopt;
+  std::string text;
+  for (Alike const& each : mine) text += each.what + '\0' + each.made_of + '\0';
+  auto const read = [](std::string const& from) {
+    std::vector<Alike> list;
+    for (std::size_t at = 0; at < from.size();) {
+      std::size_t const middle = from.find('\0', at), end = from.find('\0', middle + 1);
+      list.push_back({from.substr(at, middle - at), from.substr(middle + 1, end - middle - 1)});
+      at = end + 1;
+    }
+    return list;
+  };
+  std::vector<std::string> const texts = collect(0, text);
+  std::vector<Alike> const leading = read(texts.front());
+  for (int r = 1; r < all.size; ++r) {
+    if (texts[static_cast<std::size_t>(r)] == texts.front()) continue;
+    std::vector<Alike> const other = read(texts[static_cast<std::size_t>(r)]);
+    for (std::size_t i = 0; i < std::max(leading.size(), other.size()); ++i) {
+      Alike const one = i < leading.size() ? leading[i] : Alike(), two = i < other.size() ? other[i] : Alike();
+      if (one.what != two.what || one.made_of != two.made_of)
+        return Difference{r, fmt::format("rank {} ({})", r, all.places.words(r)), one, two, i};
+    }
+  }
+  return std::nullopt;
+}
+
 void wait_for_all() {
-  if (together()) words_of_all(Kind::gather, 0);
+  if (together()) words_of_all(Kind::wait, 0);
 }
 
 bool interrupted(bool at_once) {
@@ -302,7 +356,8 @@ bool interrupted(bool at_once) {
   return all.stop;
 }
 
-bool worth(double seconds, double bytes) { return seconds > 2 * (all.costs.exchange + bytes / all.costs.rate); }
+bool worth(double seconds, double bytes) { return all.worth.worth(seconds, bytes); }
+bool perhaps_worth(double seconds) { return all.worth.perhaps(seconds); }
 
 int end(int code, std::string const& said, bool parted) {
   if (all.module == nullptr) return code;

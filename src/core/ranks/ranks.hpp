@@ -2,7 +2,9 @@
 // computes only its part of large batches, whose results they exchange. Rank 0 leads: it alone writes and prints. In a program that
 // is not started under MPI there is one rank, and nothing here costs anything.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,18 +77,25 @@ void wait_for_all();
 /// Whether an interruption was asked for, the same on all ranks; they look for it together about ten times a second. at_once: now.
 bool interrupted(bool at_once = false);
 
-/// Whether work that takes so much longer on one rank than shared [s] is worth the exchange of so many bytes; the same on all
-/// ranks.
-bool worth(double seconds, double bytes);
-
 /// How often results have been exchanged so far.
 std::uint64_t exchanges();
 
-/// [s] of one exchange of nothing, and bytes/s, as measured when they joined.
-struct Costs {
-  double exchange = 0, rate = 1;
+/// [s] of one exchange of nothing, as it is expected now.
+double exchange_seconds();
+
+/// Something that all ranks must have alike, in words ("`bench.csv`"), and what it is made of or a digest of that.
+struct Alike {
+  std::string what, made_of;
 };
-Costs costs();
+struct Difference {
+  int rank = 0;     // the first that has something other than rank 0
+  std::string who;  // "rank 3 (process 1234 on node07)"
+  Alike leading;    // what rank 0 has in this place,
+  Alike other;      // and what that rank has; empty where it has nothing more
+  std::size_t place = 0;
+};
+/// Of the lists of all ranks; the same answer on all. Nothing outside of `together`.
+std::optional<Difference> difference(std::vector<Alike> const& mine);
 
 /// The last exchange: the exit code of this rank as it should be returned. said: what a rank that does not lead would have
 /// printed; where it alone has failed the user reads it. parted: in place of an exchange, after Parted.
