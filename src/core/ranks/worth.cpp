@@ -7,14 +7,14 @@ namespace sysid::ranks {
 namespace {
 
 /// [s] until a processor is free, where ranks take turns: part of a time slice.
-constexpr double turn = 1e-3;
+constexpr double turn_of_another = 1e-3;
 
-constexpr double weight = 0.125, most_at_once = 8, between_looks = 50;
+constexpr double weight_of_one = 0.125, largest_step = 8, between_looks = 50;
 
 }  // namespace
 
 Worth::Worth(double least, double rate, bool crowded)
-    : least_(least), exchange_(crowded ? std::max(least, turn) : least), rate_(rate) {}
+    : least_(least), exchange_(crowded ? std::max(least, turn_of_another) : least), rate_(rate) {}
 
 bool Worth::worth(double seconds, double bytes) {
   double const sent = bytes / rate_;
@@ -27,8 +27,8 @@ bool Worth::worth(double seconds, double bytes) {
 }
 
 void Worth::learn(double seconds, double bytes) {
-  double const bounded = std::clamp(seconds - bytes / rate_, least_, most_at_once * std::max(exchange_, least_));
-  exchange_ += weight * (bounded - exchange_);
+  double const bounded = std::clamp(seconds - bytes / rate_, least_, largest_step * std::max(exchange_, least_));
+  exchange_ += weight_of_one * (bounded - exchange_);
 }
 
 }  // namespace sysid::ranks
