@@ -1,6 +1,8 @@
 // Equation by equation, term by term.
 #include "app/task/described_discovery.hpp"
 
+#include <fmt/format.h>
+
 #include "discovery/coefficient_names.hpp"
 #include "discovery/excluded_terms.hpp"
 #include "discovery/found_equation.hpp"
