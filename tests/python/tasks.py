@@ -95,8 +95,12 @@ class Bytes(Desk):
         self.assertEqual(fits[0].summary["data"][0]["file"], "bench (arrays)")
         check = sysid.load("decay.sysid", data={"t": T, "d": D}).check(seed=1)
         self.assertIn("bench (arrays): rows 1..30", check.text)
-        with self.assertRaisesRegex(sysid.Error, r"`bench \(arrays\)` row 2 \(line 3\), column `t`: time does not increase"):
+        with self.assertRaisesRegex(sysid.Error, r"`bench \(arrays\)` row 2 \(index 1\), column `t`: time does not increase") as caught:
             sysid.load("decay.sysid", data={"t": T[::-1], "d": D}).fit()
+        self.assertIn("row 2 (index 1)", caught.exception.diagnostics[0]["message"])
+        for text in (str(caught.exception), caught.exception.help):
+            self.assertIn("if there are two runs, give each a data block of its own", text)
+            self.assertNotIn("file", text.partition("help: ")[2])
 
     def test_the_file_of_export(self):
         self.command_line("run", "decay.sysid", "--no-figures", "--quiet")
@@ -108,6 +112,19 @@ class Bytes(Desk):
         self.command_line("run", "decay.sysid", "--no-figures", "--quiet", "--force")
         self.command_line("export", "results")
         self.assertEqual(pathlib.Path("again.nc").read_bytes(), pathlib.Path("results/posterior/posterior.nc").read_bytes())
+
+
+class Words(Desk):
+    def test_advice_is_what_python_has(self):
+        text = DECAY.replace("-rate*y", "-rate").replace("half [s] = log(2)/rate", "half [s] = log(2)*1[s]").replace("[1/s] ~", "[m/s] ~")
+        pathlib.Path("wrong.sysid").write_text(text)
+        fit = sysid.load("wrong.sysid").fit()
+        self.assertIn("sysid explain", fit.text)  # the command line's
+        for shown in (repr(fit), str(fit), repr(fit.findings)):
+            self.assertNotIn("sysid explain", shown)
+            self.assertNotIn("--", shown.replace("---", ""))
+            self.assertNotIn("at the prompt", shown)
+        self.assertIn("more: sysid.explain(", repr(fit))
 
 
 class Results(Desk):

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _display, _engine, _records
 from ._error import Error
-from ._words import in_python
+from ._words import diagnostic_in_python, in_python
 
 if TYPE_CHECKING:
     import pandas
@@ -111,7 +111,7 @@ class Result:
     def findings(self) -> list[dict]:
         """What the checks have found: ``severity``, ``code``, ``names``, ``message``, ``help``."""
         found = self.summary.get("findings", [])
-        return [{**each, "help": in_python(each["help"])} if each.get("help") else each for each in found]
+        return [diagnostic_in_python(each) for each in found]
 
     @property
     def parameters(self) -> dict[str, dict]:
@@ -199,7 +199,7 @@ class Result:
     # ---- how it looks, and how it is kept
 
     def __repr__(self) -> str:
-        return self.text.rstrip("\n") or f"sysid.Result of {self.task}"
+        return in_python(self.text).rstrip("\n") or f"sysid.Result of {self.task}"
 
     def _repr_html_(self) -> str:
         return _display.result(self.summary, self.text, self.interrupted)
