@@ -159,6 +159,14 @@ class Closed(unittest.TestCase):
         self.assertFalse(np.array_equal(made.noisy["d"], self.model.simulate([[2.0, 0.1], [3.0, 0.1]], seed=1).noisy["d"]))
         self.assertEqual(self.model.simulate([2.0, 0.1]).values["d"].shape, (20,))
 
+    def test_texts_and_columns_that_are_none(self):
+        with self.assertRaisesRegex(ValueError, "a character that is no text"):
+            sysid.loads("model q {\ud800}")
+        with self.assertRaisesRegex(TypeError, "is a str, not bytes"):
+            sysid.loads(b"model")
+        with self.assertRaisesRegex(ValueError, "column `u` of the data for `bench` holds a number beyond"):
+            sysid.loads(LINE, data={"u": [10**400] * 20, "d": D})
+
     def test_one_vector(self):
         theta = np.array([0.3, -0.2])
         self.assertIsInstance(self.model.log_density(theta), float)
@@ -232,6 +240,40 @@ class Data(unittest.TestCase):
             model = sysid.loads(LINE, data=data)
             self.assertEqual(model.residual_count, 20)
             self.assertEqual(model.log_density(np.zeros(2)), expected)
+
+    def test_the_index_of_a_frame_is_a_column(self):
+        import pandas
+
+        expected = sysid.loads(LINE, data={"u": U, "d": D}).log_density(np.zeros(2))
+        frame = pandas.DataFrame({"u": U, "d": D})
+        levels = frame.assign(run=1)
+        for data in (frame.set_index("u"), frame.set_index("d"), levels.set_index(["run", "u"])):
+            self.assertEqual(sysid.loads(LINE, data=data).log_density(np.zeros(2)), expected)
+        with self.assertRaisesRegex(sysid.Error, "no column `u`"):
+            sysid.loads(LINE, data=frame.set_index("u").rename_axis(None))
+        dates = pandas.date_range("2024-01-01", periods=20, freq="s")
+        for column in (dates, dates.tz_localize("CET")):
+            with self.assertRaisesRegex(TypeError, "subtract the first, then divide by the unit"):
+                sysid.loads(LINE, data=pandas.DataFrame({"d": D}, index=pandas.Index(column, name="u")))
+
+    def test_frames_of_parameters_are_taken_by_name(self):
+        import pandas
+
+        model = sysid.loads(LINE, data={"u": U, "d": D})
+        values = np.array([[2.0, 0.1], [1.5, 0.3]])
+        expected = model.log_density(values, declared=True)
+        frame = pandas.DataFrame(values, columns=model.names)
+        for given in (frame, frame[["sd", "slope"]], pandas.DataFrame(values)):
+            np.testing.assert_array_equal(model.log_density(given, declared=True), expected)
+        self.assertEqual(model.log_density(frame[["sd", "slope"]].iloc[1], declared=True), expected[1])
+        with self.assertRaisesRegex(ValueError, "expected the parameters slope, sd, not slope, scale"):
+            model.log_density(frame.rename(columns={"sd": "scale"}), declared=True)
+
+    def test_masked_parameters_have_no_density(self):
+        theta = np.ma.masked_array(np.zeros((2, 2)), mask=[[False, True], [False, False]])
+        density = sysid.loads(LINE, data={"u": U, "d": D}).log_density(theta)
+        self.assertEqual(density[0], -np.inf)
+        self.assertTrue(np.isfinite(density[1]))
 
     def test_numbers_that_would_lose_what_they_say(self):
         for column in (D + 1j, D.astype("timedelta64[ms]"), D.astype("datetime64[ms]"), D.astype(complex).astype(object)):

@@ -148,6 +148,12 @@ class Results(Desk):
         self.assertEqual(dict(forecast.predictions.sizes), {"row": 10, "chain": 1, "draw": 20})
         self.assertEqual(list(forecast.predictions.row.values), list(range(31, 41)))
         self.assertFalse(hasattr(forecast, "posterior"))
+        self.assertEqual(list(fit.groups(draws=0)), ["posterior", "sample_stats"])
+        for call in (fit.groups, lambda draws: fit.to_netcdf("none.nc", draws)):
+            with self.assertRaisesRegex(ValueError, "draws is a whole number from 0"):
+                call(draws=-1)
+        with self.assertRaisesRegex(TypeError, "draws is a whole number"):
+            fit.groups(draws=2.5)
         forecast.to_netcdf("forecast.nc")
         again = pickle.loads(pickle.dumps(forecast))
         self.assertTrue(again.predictions.equals(forecast.predictions))
@@ -225,6 +231,8 @@ class Results(Desk):
             sysid.load("decay.sysid", threads=-1)
         with self.assertRaisesRegex(TypeError, "threads is a whole number, not 1.5"):
             sysid.load("decay.sysid", threads=1.5)
+        with self.assertRaisesRegex(TypeError, "figures is True or False, not 'x'"):
+            model.fit(figures="x")
         with self.assertRaisesRegex(ValueError, "checkpoint_interval is a number of seconds"):
             model.fit(checkpoint_interval=-1)
         with self.assertRaisesRegex(TypeError, "at least one result"):

@@ -14,6 +14,7 @@ import numpy as np
 
 from . import _display, _engine, _records
 from ._error import Error
+from ._numbers import whole
 from ._words import diagnostic_in_python, in_python
 
 if TYPE_CHECKING:
@@ -160,7 +161,8 @@ class Result:
 
     def groups(self, draws: int = 200) -> dict[str, "xarray.Dataset"]:
         """All groups by their names; of a prediction ``predictions`` and ``predictions_constant_data``. draws: how many of the stored
-        draws are simulated once more for likelihoods and predictive groups."""
+        draws are simulated once more for likelihoods and predictive groups, all at most; 0: none, and no such groups."""
+        draws = whole(draws, "draws", 10**6)
         if draws not in self._groups:
             found, attributes, _ = self._inference_data(draws)
             # Of a prediction its own; the others are the fit's.
@@ -188,7 +190,7 @@ class Result:
     def to_netcdf(self, path: Union[str, os.PathLike], draws: int = 200) -> None:
         """Writes the groups as one NetCDF-4 file, byte for byte what ``sysid export`` writes; `arviz.from_netcdf` reads it. Of a
         prediction it is the file of its fit."""
-        pathlib.Path(path).write_bytes(self._inference_data(draws)[2])
+        pathlib.Path(path).write_bytes(self._inference_data(whole(draws, "draws", 10**6))[2])
 
     def to_arviz(self, draws: int = 200) -> Any:
         """As arviz.InferenceData; ArviZ must be installed."""
