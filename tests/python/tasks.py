@@ -196,6 +196,12 @@ class Results(Desk):
         self.assertIn("models", check.content)
         fit = model.fit()
         self.assertIn("decay", sysid.compare(fit).text)
+        other = model.fit(seed=2)
+        for shown in (sysid.compare(fit, other).text, json.dumps(sysid.compare(fit, other).content)):
+            self.assertIn("posterior (1)", shown)
+            self.assertIn("posterior (2)", shown)
+            self.assertNotIn(str(fit.folder), shown)
+            self.assertNotIn(str(other.folder), shown)
         with self.assertRaises(sysid.Error):
             sysid.compare("nowhere")
 

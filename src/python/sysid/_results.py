@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pathlib
+import re
 import shutil
 import tempfile
 import weakref
@@ -317,4 +318,19 @@ def compare(*results: Union[Result, str, os.PathLike]) -> Comparison:
     if not results:
         raise TypeError("expected at least one result or folder to compare")
     folders = [str(each.folder) if isinstance(each, Result) else os.fspath(each) for each in results]
-    return Comparison(*_engine.compare(folders))
+    text, content = _engine.compare(folders)
+    for folder, name in _names_of_temporary(results).items():
+        # In a table the column stays as wide as it is.
+        text = re.sub(re.escape(folder) + "(?=  )", lambda found: name.ljust(len(found[0])), text).replace(folder, name)
+        content = content.replace(json.dumps(folder)[1:-1], name)
+    return Comparison(text, content)
+
+
+def _names_of_temporary(results: Sequence[Any]) -> dict[str, str]:
+    """By their folders, whose paths tell a reader nothing: "posterior (2)" is the second of this name among those given."""
+    given: dict[str, str] = {}
+    for each in results:
+        if isinstance(each, Result) and each._run.temporary and str(each.folder) not in given:
+            count = sum(1 for name in given.values() if name.rpartition(" ")[0] == each.task)
+            given[str(each.folder)] = f"{each.task} ({count + 1})"
+    return given
