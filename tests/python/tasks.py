@@ -148,6 +148,10 @@ class Results(Desk):
         self.assertEqual(dict(forecast.predictions.sizes), {"row": 10, "chain": 1, "draw": 20})
         self.assertEqual(list(forecast.predictions.row.values), list(range(31, 41)))
         self.assertFalse(hasattr(forecast, "posterior"))
+        # No more than the draws that there are.
+        many = fit.groups(draws=10**6)
+        self.assertEqual(dict(many["log_likelihood"].sizes)["draw"], 300)
+        self.assertEqual(dict(many["prior"].sizes), {"chain": 1, "draw": 600})
         self.assertEqual(list(fit.groups(draws=0)), ["posterior", "sample_stats"])
         for call in (fit.groups, lambda draws: fit.to_netcdf("none.nc", draws)):
             with self.assertRaisesRegex(ValueError, "draws is a whole number from 0"):
