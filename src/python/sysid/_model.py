@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 import os
 import warnings
 from dataclasses import dataclass
@@ -86,6 +87,24 @@ def _flag(value: Any, what: str) -> bool:
     if not isinstance(value, (bool, np.bool_)):
         raise TypeError(f"{what} is True or False, not {value!r}")
     return bool(value)
+
+
+def _experiment(value: Any, names: Sequence[str]) -> int:
+    """The number of an experiment that is named, or numbered from 0. A block stands for its only part."""
+    told = ", ".join(f"{number}: {name!r}" for number, name in enumerate(names))
+    if isinstance(value, str):
+        found = [number for number, name in enumerate(names) if name == value]
+        found = found or [number for number, name in enumerate(names) if name.split(".")[0] == value]
+        if len(found) != 1:
+            raise KeyError(f"the fit has no single experiment {value!r}; it has {told}")
+        return found[0]
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"experiment is a name or a number, not {value!r}; the fit has {told}") from None
+    if not 0 <= number < len(names):
+        raise IndexError(f"the fit has no experiment {number}; it has {told}")
+    return number
 
 
 def _text(value: Any) -> str:
@@ -251,7 +270,8 @@ class Model:
         """Log of prior times likelihood, all constants kept, [W] for an array [W x P].
 
         theta: unconstrained coordinates; the density is that on R^P, the Jacobian of `constrain` included. With ``declared`` they
-        are values in declared units, and the density is that of the values: -inf outside the prior's support.
+        are values in declared units, and the density is that of the values: -inf outside the prior's support, at its bounds the
+        limit from within, which may be inf.
         part: "both", "prior" or "likelihood". -inf where a simulation fails; never NaN, never an exception.
         """
         if part not in ("both", "prior", "likelihood"):
@@ -262,11 +282,12 @@ class Model:
         return float(out[0]) if one else out
 
     def gradient(self, theta: ArrayLike) -> Array:
-        """Of `log_density` by the unconstrained coordinates: [W x P]; 0 where the density is -inf."""
+        """Of `log_density` by the unconstrained coordinates: [W x P]; NaN where the density is -inf."""
         return self.log_density_and_gradient(theta)[1]
 
     def log_density_and_gradient(self, theta: ArrayLike) -> tuple[Union[Array, float], Array]:
-        """`log_density` [W] and its gradient [W x P] at unconstrained coordinates, at the cost of the gradient."""
+        """`log_density` [W] and its gradient [W x P] at unconstrained coordinates, at the cost of the gradient. NaN where there is
+        no gradient: the density is -inf, or a coordinate is not finite."""
         density = self._density
         batch, one = _one_or_many(theta, density)
         if not len(batch):
@@ -286,7 +307,8 @@ class Model:
         return out[0] if one else out
 
     def residuals_and_jacobian(self, theta: ArrayLike) -> tuple[Array, Array]:
-        """`residuals` [W x R] and their derivatives by the unconstrained coordinates [W x R x P], by differences."""
+        """`residuals` [W x R] and their derivatives by the unconstrained coordinates [W x R x P], by differences; NaN
+        where a residual is not finite."""
         density = self._density
         batch, one = _one_or_many(theta, density)
         if not len(batch):
@@ -316,18 +338,18 @@ class Model:
         """Draws of the prior, unconstrained coordinates [count x P]."""
         return self._density.sample_prior(count, _seed(seed))
 
-    def simulate(self, values: ArrayLike, experiment: int = 0, seed: int = 0) -> Simulation:
+    def simulate(self, values: ArrayLike, experiment: Union[int, str] = 0, seed: int = 0) -> Simulation:
         """What parameter vectors predict along the rows of an experiment of the fit.
 
-        values: [W x P], declared units. experiment: its index in the fit. seed: of the noise in ``noisy``.
+        values: [W x P], declared units. experiment: its name, ``"bench.train"``, or its number in the fit, from 0. seed: of the
+        noise in ``noisy``.
         """
         density = self._density
-        if not 0 <= experiment < density.experiments:
-            raise IndexError(f"the fit has experiments 0 to {density.experiments - 1}, not {experiment}")
+        number = _experiment(experiment, density.experiments)
         batch, one = _one_or_many(values, density)
         # Of no vectors the rows and quantities are those of any vector.
         some = batch if len(batch) else density.constrain(density.sample_prior(1, 0))
-        made = density.simulate(some, experiment, _seed(seed))
+        made = density.simulate(some, number, _seed(seed))
         if one or not len(batch):
             for each in (made["values"], made["noisy"]):
                 for name in each:
