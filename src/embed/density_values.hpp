@@ -15,14 +15,21 @@ enum class Part { prior, likelihood, both };
 std::vector<double> log_density(Target const& target, ConstLanes theta, Part part, Ledger& ledger);
 
 /// Of values [P x W] in declared units: the density of the values. -infinity outside the support of a prior. At a bound of a
-/// support it is the limit from within where that is finite, otherwise -infinity.
+/// support it is the limit of the prior from within, which may be -infinity or +infinity, times the likelihood.
 std::vector<double> declared_log_density(Target const& target, ConstLanes values, Part part, Ledger& ledger);
 
 struct ValueAndGradient {
   std::vector<double> value;  // [W]
-  LaneArray gradient;         // [P x W], 0 where the value is -infinity
+  LaneArray gradient;         // [P x W], NaN where the value is -infinity
 };
 /// Of prior times likelihood at theta [P x W], and its derivatives by theta.
 ValueAndGradient log_density_with_gradient(Target const& target, ConstLanes theta, Ledger& ledger);
+
+struct ResidualsAndJacobian {
+  LaneArray residuals;  // [R x W], infinity where a solve failed
+  LaneArray jacobian;   // [R*P x W], NaN where a residual is not finite
+};
+/// Residuals at theta [P x W], and their derivatives by theta.
+ResidualsAndJacobian residuals_with_jacobian(Target const& target, ConstLanes theta, Ledger& ledger);
 
 }  // namespace sysid::embed

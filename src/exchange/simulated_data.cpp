@@ -186,6 +186,7 @@ void add_simulated(Session& session, int index, StoredResult const& stored, int 
   FitTask const& what = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(index)].what);
   fitted_model(session, index);  // refuses results of another text or other data before anything is added
   add_data(session, what, data);
+  draws = std::min(draws, static_cast<int>(stored_draws(stored).total()));
   if (!session.file.models[static_cast<std::size_t>(what.model)].processes.empty()) {
     add_process_predictive(session, index, stored.seed(), draws, data);
     data.omitted.push_back(

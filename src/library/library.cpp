@@ -25,6 +25,7 @@ using embed::Raised;
 
 thread_local std::string last_error;
 constexpr std::size_t most_vectors = 1'000'000'000;  // lanes are counted as int
+constexpr int most_threads = 4096;                   // as of the Python module: more than any machine has is a mistake
 
 /// 0, or 1 with the error kept. source: what places in messages mean; null: nothing has places.
 template <class Work>
@@ -42,13 +43,21 @@ int kept(Source const* source, Work&& work) {
   return 1;
 }
 
-template <class Work>
-int kept(sysid_model const* model, Work&& work) {
-  return kept(&model->file->source(), std::forward<Work>(work));
-}
-
 [[noreturn]] void refuse(std::string message, std::string help) {
   throw UserError({Severity::error, {}, std::move(message), std::nullopt, {}, std::move(help)});
+}
+
+/// name: of the argument in sysid.h.
+void require(void const* given, char const* name) {
+  if (given == nullptr) refuse(std::string("`") + name + "` is NULL", "see sysid.h for what each function takes");
+}
+
+template <class Work>
+int kept(sysid_model const* model, Work&& work) {
+  return kept(model != nullptr ? &model->file->source() : nullptr, [&] {
+    require(model, "model");
+    work();
+  });
 }
 
 LaneArray lanes_of(sysid_model const* model, std::size_t count, double const* rows) {
@@ -64,13 +73,18 @@ void write(ConstLanes lanes, double* rows) {
     for (int p = 0; p < lanes.rows(); ++p) *rows++ = lanes(p, w);
 }
 
-sysid_model* opened(char const* path, std::optional<std::string> const& text, char const* task, int threads) {
+/// text: that of the file at path; null: it is read.
+sysid_model* opened(char const* path, char const* text, char const* task, int threads) {
   std::unique_ptr<sysid_model> model;
   kept(static_cast<Source const*>(nullptr), [&] {
+    require(path, "path");
+    if (threads < 0 || threads > most_threads)
+      refuse("`threads` is " + std::to_string(threads), "give 0, one for each processor, or up to " + std::to_string(most_threads));
     if (!supported_instruction_set())
       refuse("this processor lacks AVX2 and FMA (x86-64-v3)", "run it on a processor of 2013 or later");
-    auto file = std::make_shared<embed::OpenFile const>(path, text, std::map<std::string, std::string>());
-    model.reset(new sysid_model{file, {file, task != nullptr ? task : "", std::max(threads, 0)}});
+    auto const given = text != nullptr ? std::optional<std::string>(text) : std::nullopt;
+    auto file = std::make_shared<embed::OpenFile const>(path, given, std::map<std::string, std::string>());
+    model.reset(new sysid_model{file, {file, task != nullptr ? task : "", threads}});
   });
   return model.release();
 }
@@ -99,13 +113,16 @@ int counted(sysid_model const* model, std::size_t count, Work&& work) {
 char const* sysid_version(void) { return SYSID_VERSION; }
 char const* sysid_error(void) { return last_error.c_str(); }
 
-sysid_model* sysid_load(char const* path, char const* task, int threads) { return opened(path, std::nullopt, task, threads); }
+sysid_model* sysid_load(char const* path, char const* task, int threads) { return opened(path, nullptr, task, threads); }
 sysid_model* sysid_load_text(char const* text, char const* path, char const* task, int threads) {
-  return opened(path, std::string(text), task, threads);
+  if (kept(static_cast<Source const*>(nullptr), [&] { require(text, "text"); }) != 0) return nullptr;
+  return opened(path, text, task, threads);
 }
 void sysid_free(sysid_model* model) { delete model; }
 
-size_t sysid_dimension(sysid_model const* model) { return static_cast<std::size_t>(model->target().dimension()); }
+size_t sysid_dimension(sysid_model const* model) {
+  return model != nullptr ? static_cast<std::size_t>(model->target().dimension()) : 0;
+}
 char const* sysid_name(sysid_model const* model, size_t parameter) {
   return parameter < sysid_dimension(model) ? model->target().parameters()[parameter].name.c_str() : nullptr;
 }
@@ -121,6 +138,8 @@ int sysid_prepare(sysid_model* model, uint64_t seed) {
 
 int sysid_constrain(sysid_model const* model, size_t count, double const* theta, double* values) {
   return counted(model, count, [&](Ledger&) {
+    require(theta, "theta");
+    require(values, "values");
     LaneArray declared(model->target().dimension(), static_cast<int>(count));
     model->target().constrain(lanes_of(model, count, theta), declared);
     write(declared, values);
@@ -129,6 +148,8 @@ int sysid_constrain(sysid_model const* model, size_t count, double const* theta,
 
 int sysid_unconstrain(sysid_model const* model, size_t count, double const* values, double* theta) {
   return counted(model, count, [&](Ledger&) {
+    require(values, "values");
+    require(theta, "theta");
     LaneArray coordinates(model->target().dimension(), static_cast<int>(count));
     model->target().unconstrain(lanes_of(model, count, values), coordinates);
     write(coordinates, theta);
@@ -137,6 +158,7 @@ int sysid_unconstrain(sysid_model const* model, size_t count, double const* valu
 
 int sysid_sample_prior(sysid_model const* model, size_t count, uint64_t seed, double* theta) {
   return counted(model, count, [&](Ledger&) {
+    require(theta, "theta");
     LaneArray drawn(model->target().dimension(), static_cast<int>(count));
     model->target().sample_prior({seed, Purpose::prior, 0, 0}, drawn);
     write(drawn, theta);
@@ -145,6 +167,8 @@ int sysid_sample_prior(sysid_model const* model, size_t count, uint64_t seed, do
 
 int sysid_log_density(sysid_model const* model, size_t count, double const* theta, double* density) {
   return counted(model, count, [&](Ledger& ledger) {
+    require(theta, "theta");
+    require(density, "density");
     std::vector<double> const found = embed::log_density(model->target(), lanes_of(model, count, theta), embed::Part::both, ledger);
     std::copy(found.begin(), found.end(), density);
   });
@@ -152,13 +176,18 @@ int sysid_log_density(sysid_model const* model, size_t count, double const* thet
 
 int sysid_log_density_gradient(sysid_model const* model, size_t count, double const* theta, double* density, double* gradient) {
   return counted(model, count, [&](Ledger& ledger) {
+    require(theta, "theta");
+    require(density, "density");
+    require(gradient, "gradient");
     embed::ValueAndGradient const found = embed::log_density_with_gradient(model->target(), lanes_of(model, count, theta), ledger);
     std::copy(found.value.begin(), found.value.end(), density);
     write(found.gradient, gradient);
   });
 }
 
-size_t sysid_experiments(sysid_model const* model) { return static_cast<std::size_t>(model->density.density().experiments()); }
+size_t sysid_experiments(sysid_model const* model) {
+  return model != nullptr ? static_cast<std::size_t>(model->density.density().experiments()) : 0;
+}
 
 size_t sysid_rows(sysid_model const* model, size_t experiment) {
   return experiment < sysid_experiments(model) ? model->density.density().time(static_cast<int>(experiment)).size() : 0;
@@ -166,6 +195,7 @@ size_t sysid_rows(sysid_model const* model, size_t experiment) {
 
 int sysid_time(sysid_model const* model, size_t experiment, double* time) {
   return kept(model, [&] {
+    require(time, "time");
     if (experiment >= sysid_experiments(model)) refuse("there is no experiment " + std::to_string(experiment), "count them from 0");
     std::vector<double> const& rows = model->density.density().time(static_cast<int>(experiment));
     std::copy(rows.begin(), rows.end(), time);
@@ -175,6 +205,9 @@ int sysid_time(sysid_model const* model, size_t experiment, double* time) {
 int sysid_simulate(sysid_model const* model, size_t experiment, char const* quantity, size_t count, double const* values,
                    double* out) {
   return counted(model, count, [&](Ledger&) {
+    require(quantity, "quantity");
+    require(values, "values");
+    require(out, "out");
     FitDensity::Simulated const made = simulated(model, experiment, lanes_of(model, count, values));
     std::string known;
     for (std::size_t q = 0; q < made.quantities.size(); ++q) {

@@ -2,8 +2,8 @@
  *
  * Parameter vectors are rows: of arrays double[count][dimension], one vector behind the other. `theta` are unconstrained
  * coordinates, any numbers; `values` are in the units that the file declares. Functions that return int return 0, or 1 where
- * something went wrong, which sysid_error describes. A model may be used by several threads at once, sysid_prepare and sysid_free
- * excepted. Names and numbers of this header are kept from version to version. */
+ * something went wrong, which sysid_error describes, be it NULL for an argument that is needed. A model may be used by several
+ * threads at once, sysid_prepare and sysid_free excepted. Names and numbers of this header are kept from version to version. */
 #ifndef SYSID_H
 #define SYSID_H
 
@@ -22,7 +22,7 @@ typedef struct sysid_model sysid_model;
 SYSID_API const char* sysid_version(void);
 
 /* Opens a file of the language and reads the data of one of its fits. task: the name of the fit; NULL: the first. threads: 0: one
- * for each processor. NULL where it fails. */
+ * for each processor; at most 4096. NULL where it fails. */
 SYSID_API sysid_model* sysid_load(const char* path, const char* task, int threads);
 /* The same of a text; path: the file that it would be, from whose folder paths of data and modules are relative. */
 SYSID_API sysid_model* sysid_load_text(const char* text, const char* path, const char* task, int threads);
@@ -50,7 +50,7 @@ SYSID_API int sysid_sample_prior(const sysid_model* model, size_t count, uint64_
 /* log prior + log likelihood of theta[count][dimension], the Jacobian of sysid_constrain included: density[count]. -infinity where a
  * simulation fails. */
 SYSID_API int sysid_log_density(const sysid_model* model, size_t count, const double* theta, double* density);
-/* The same, and its derivatives by theta: gradient[count][dimension]. */
+/* The same, and its derivatives by theta: gradient[count][dimension], NaN where the density is -inf. */
 SYSID_API int sysid_log_density_gradient(const sysid_model* model, size_t count, const double* theta, double* density,
                                          double* gradient);
 

@@ -64,12 +64,8 @@ Array residuals(OpenDensity& of, Array const& theta_array) {
 py::tuple residuals_with_jacobian(OpenDensity& of, Array const& theta_array) {
   LaneArray const theta = lanes_of(theta_array, of.target().dimension());
   int const rows = of.target().residual_count();
-  auto const found = counted(of, [&](Ledger& ledger) {
-    LaneArray out(rows, theta.width()), jacobian(rows * theta.rows(), theta.width());
-    of.target().residuals_with_jacobian(theta, out, jacobian, ledger);
-    return std::pair(std::move(out), std::move(jacobian));
-  });
-  return py::make_tuple(array_of(found.first), array_of(found.second).reshape({theta.width(), rows, theta.rows()}));
+  auto const found = counted(of, [&](Ledger& ledger) { return embed::residuals_with_jacobian(of.target(), theta, ledger); });
+  return py::make_tuple(array_of(found.residuals), array_of(found.jacobian).reshape({theta.width(), rows, theta.rows()}));
 }
 
 Array constrain(OpenDensity& of, Array const& theta_array) {
@@ -173,7 +169,12 @@ void bind_density(py::module_& module) {
            py::arg("file"), py::arg("task"), py::arg("threads"), py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("dimension", [](OpenDensity const& of) { return of.target().dimension(); })
       .def_property_readonly("residual_count", [](OpenDensity const& of) { return of.target().residual_count(); })
-      .def_property_readonly("experiments", [](OpenDensity const& of) { return of.density().experiments(); })
+      .def_property_readonly("experiments",
+                             [](OpenDensity const& of) {
+                               std::vector<std::string> names;
+                               for (int e = 0; e < of.density().experiments(); ++e) names.push_back(of.density().name(e));
+                               return names;
+                             })
       .def_property_readonly(
           "solver",
           [](OpenDensity const& of) { return of.density().integrated() ? accuracy(of.density().solver()) : std::string(); })

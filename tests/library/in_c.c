@@ -11,6 +11,30 @@ static void require(int holds, char const* what) {
   exit(1);
 }
 
+static void refused(int failed, char const* message) { require(failed && strstr(sysid_error(), message) != NULL, message); }
+
+/* What is NULL and must not be is an error. */
+static void refused_null(sysid_model* model, double* theta, double* density) {
+  double out[500];
+  refused(sysid_load(NULL, NULL, 0) == NULL, "`path` is NULL");
+  refused(sysid_load_text(NULL, "x.sysid", NULL, 0) == NULL, "`text` is NULL");
+  refused(sysid_load_text("", NULL, NULL, 0) == NULL, "`path` is NULL");
+  refused(sysid_log_density(model, 1, NULL, density), "`theta` is NULL");
+  refused(sysid_log_density(model, 1, theta, NULL), "`density` is NULL");
+  refused(sysid_log_density(NULL, 1, theta, density), "`model` is NULL");
+  refused(sysid_log_density_gradient(model, 1, theta, density, NULL), "`gradient` is NULL");
+  refused(sysid_constrain(model, 1, theta, NULL), "`values` is NULL");
+  refused(sysid_unconstrain(model, 1, NULL, theta), "`values` is NULL");
+  refused(sysid_sample_prior(model, 1, 1, NULL), "`theta` is NULL");
+  refused(sysid_simulate(model, 0, NULL, 1, theta, out), "`quantity` is NULL");
+  refused(sysid_time(model, 0, NULL), "`time` is NULL");
+  refused(sysid_prepare(NULL, 1), "`model` is NULL");
+  require(sysid_dimension(NULL) == 0 && sysid_name(NULL, 0) == NULL && sysid_experiments(NULL) == 0 && sysid_rows(NULL, 0) == 0,
+          "no model has no parameters and no experiments");
+  refused(sysid_load("nowhere.sysid", NULL, -1) == NULL, "`threads` is -1");
+  refused(sysid_load("nowhere.sysid", NULL, 100000) == NULL, "`threads` is 100000");
+}
+
 int main(int argc, char** argv) {
   require(argc == 2, "the path of a file is given");
   sysid_model* model = sysid_load(argv[1], NULL, 0);
@@ -40,6 +64,11 @@ int main(int argc, char** argv) {
   require(fabs((ahead - behind) / (2 * step) / gradient[1][0] - 1) < 1e-4, "the gradient is the slope");
   require(sysid_log_density(model, 0, NULL, NULL) == 0, "no vectors are no work");
 
+  double const nowhere[5] = {NAN, 0, 0, 0, 0};
+  double slope[5] = {0};
+  require(sysid_log_density_gradient(model, 1, nowhere, again, slope) == 0 && isinf(again[0]) && isnan(slope[0]) && isnan(slope[4]),
+          "where there is no density there is no gradient");
+
   require(sysid_experiments(model) == 1 && sysid_rows(model, 0) == 500 && sysid_rows(model, 1) == 0, "one experiment of 500 rows");
   double* time = malloc(500 * sizeof(double));
   double* made = malloc(2 * 500 * sizeof(double));
@@ -55,6 +84,7 @@ int main(int argc, char** argv) {
   double drawn[2][5];
   require(sysid_sample_prior(model, 2, 1, &drawn[0][0]) == 0 && drawn[0][0] != drawn[1][0], "the prior is drawn");
   require(sysid_prepare(model, 1) == 0, "the modes are found");
+  refused_null(model, &theta[0][0], density);
   sysid_free(model);
   sysid_free(NULL);
 

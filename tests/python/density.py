@@ -27,6 +27,7 @@ data bench {
 }
 posterior = fit line to bench with mh, seed = 1
 """
+PURE = LINE.replace("slope [m/V]", "slope").replace("slope*u", "slope*(1 [m/V])*u")
 U = np.linspace(-1, 1, 20)
 D = 1e3 * (2 * U + 0.1 * np.cos(37 * U))  # [mm]
 
@@ -98,10 +99,18 @@ class Closed(unittest.TestCase):
             "exponential(rate = 2)": [(0.0, np.log(2))],
             "gamma(shape = 2, rate = 1)": [(0.0, -np.inf)],  # the density is 0 there
             "log_normal(median = 1, log_sd = 0.5)": [(0.0, -np.inf)],
+            "gamma(shape = 0.5, rate = 3)": [(0.0, np.inf), (-1e-9, -np.inf)],
+            "beta(2, 3)": [(0.0, -np.inf), (1.0, -np.inf)],
+            "beta(0.5, 0.5)": [(0.0, np.inf), (1.0, np.inf)],
+            "beta(1, 3)": [(0.0, np.log(3)), (1.0, -np.inf)],
+            "beta(3, 1)": [(0.0, -np.inf), (1.0, np.log(3))],
+            "beta(1e5, 1)": [(1.0, np.log(1e5))],
+            "beta(1, 1)": [(0.0, 0.0), (1.0, 0.0)],
             "uniform(0, 1)": [(0.0, 0.0), (1.0, 0.0), (np.inf, -np.inf)],
         }
         for prior, expected in priors.items():
-            model = sysid.loads(LINE.replace("normal(0, sd = 10)", prior), data={"u": U, "d": D})
+            text = PURE if "beta" in prior else LINE
+            model = sysid.loads(text.replace("normal(0, sd = 10)", prior), data={"u": U, "d": D})
             values = [[value, 0.1] for value, _ in expected]
             density = model.log_density(values, declared=True, part="prior")
             other = -np.log(0.1) - np.log(np.log(1000))  # of sd
@@ -110,7 +119,24 @@ class Closed(unittest.TestCase):
                     if np.isfinite(density_of_prior):
                         self.assertAlmostEqual(found, density_of_prior + other, places=6)
                     else:
-                        self.assertEqual(found, -np.inf)
+                        self.assertEqual(found, density_of_prior)
+
+    def test_a_density_without_bound_is_still_zero_where_another_factor_is(self):
+        text = PURE.replace("normal(0, sd = 10)", "beta(0.5, 0.5)").replace("~ log_uniform(0.01, 10)", "~ gamma(shape = 2, rate = 1)")
+        model = sysid.loads(text, data={"u": U, "d": D})
+        values = [[0.0, 0.5], [0.0, 0.0], [0.5, 0.0], [0.0, -1.0]]
+        self.assertEqual(list(model.log_density(values, declared=True, part="prior")), [np.inf, -np.inf, -np.inf, -np.inf])
+        self.assertEqual(model.log_density(values[0], declared=True), np.inf)
+        self.assertTrue(np.isfinite(model.log_density(values[0], declared=True, part="likelihood")))
+
+    def test_no_gradient_where_a_coordinate_is_not_finite(self):
+        theta = np.array([[np.nan, 0.0], [0.5, 0.0], [np.inf, 0.0]])
+        value, gradient = self.model.log_density_and_gradient(theta)
+        self.assertEqual([value[0], value[2]], [-np.inf, -np.inf])
+        self.assertTrue(np.isnan(gradient[[0, 2]]).all() and np.isfinite(gradient[1]).all())
+        residuals, jacobian = self.model.residuals_and_jacobian(theta)
+        self.assertTrue(np.isnan(jacobian[[0, 2]]).all() and np.isfinite(jacobian[1]).all())
+        self.assertFalse(np.isfinite(residuals[[0, 2]]).any())
 
     def test_empty_batches(self):
         model, none = self.model, np.zeros((0, 2))
@@ -158,6 +184,28 @@ class Closed(unittest.TestCase):
         self.assertEqual(made.noisy["d"].shape, (2, 20))
         self.assertFalse(np.array_equal(made.noisy["d"], self.model.simulate([[2.0, 0.1], [3.0, 0.1]], seed=1).noisy["d"]))
         self.assertEqual(self.model.simulate([2.0, 0.1]).values["d"].shape, (20,))
+
+    def test_an_experiment_has_a_name_and_a_number(self):
+        by_number = self.model.simulate([2.0, 0.1], 0).values["d"]
+        for experiment in ("bench", np.int64(0)):
+            np.testing.assert_array_equal(self.model.simulate([2.0, 0.1], experiment).values["d"], by_number)
+        with self.assertRaisesRegex(KeyError, "no single experiment 'hall'; it has 0: 'bench'"):
+            self.model.simulate([2.0, 0.1], "hall")
+        with self.assertRaisesRegex(IndexError, "no experiment 1; it has 0: 'bench'"):
+            self.model.simulate([2.0, 0.1], 1)
+        with self.assertRaisesRegex(TypeError, "a name or a number, not 0.5"):
+            self.model.simulate([2.0, 0.1], 0.5)
+        part = sysid.loads(LINE.replace("[mm]\n}", "[mm]\n  split   train = rows 1..15\n}").replace("to bench", "to bench.train"), data={"u": U, "d": D})
+        self.assertEqual(part.simulate([2.0, 0.1], "bench.train").experiment, "bench.train")
+        self.assertEqual(part.simulate([2.0, 0.1], "bench").experiment, "bench.train")
+
+    def test_texts_and_columns_that_are_none(self):
+        with self.assertRaisesRegex(ValueError, "a character that is no text"):
+            sysid.loads("model q {\ud800}")
+        with self.assertRaisesRegex(TypeError, "is a str, not bytes"):
+            sysid.loads(b"model")
+        with self.assertRaisesRegex(ValueError, "column `u` of the data for `bench` holds a number beyond"):
+            sysid.loads(LINE, data={"u": [10**400] * 20, "d": D})
 
     def test_one_vector(self):
         theta = np.array([0.3, -0.2])
@@ -232,6 +280,40 @@ class Data(unittest.TestCase):
             model = sysid.loads(LINE, data=data)
             self.assertEqual(model.residual_count, 20)
             self.assertEqual(model.log_density(np.zeros(2)), expected)
+
+    def test_the_index_of_a_frame_is_a_column(self):
+        import pandas
+
+        expected = sysid.loads(LINE, data={"u": U, "d": D}).log_density(np.zeros(2))
+        frame = pandas.DataFrame({"u": U, "d": D})
+        levels = frame.assign(run=1)
+        for data in (frame.set_index("u"), frame.set_index("d"), levels.set_index(["run", "u"])):
+            self.assertEqual(sysid.loads(LINE, data=data).log_density(np.zeros(2)), expected)
+        with self.assertRaisesRegex(sysid.Error, "no column `u`"):
+            sysid.loads(LINE, data=frame.set_index("u").rename_axis(None))
+        dates = pandas.date_range("2024-01-01", periods=20, freq="s")
+        for column in (dates, dates.tz_localize("CET")):
+            with self.assertRaisesRegex(TypeError, "subtract the first, then divide by the unit"):
+                sysid.loads(LINE, data=pandas.DataFrame({"d": D}, index=pandas.Index(column, name="u")))
+
+    def test_frames_of_parameters_are_taken_by_name(self):
+        import pandas
+
+        model = sysid.loads(LINE, data={"u": U, "d": D})
+        values = np.array([[2.0, 0.1], [1.5, 0.3]])
+        expected = model.log_density(values, declared=True)
+        frame = pandas.DataFrame(values, columns=model.names)
+        for given in (frame, frame[["sd", "slope"]], pandas.DataFrame(values)):
+            np.testing.assert_array_equal(model.log_density(given, declared=True), expected)
+        self.assertEqual(model.log_density(frame[["sd", "slope"]].iloc[1], declared=True), expected[1])
+        with self.assertRaisesRegex(ValueError, "expected the parameters slope, sd, not slope, scale"):
+            model.log_density(frame.rename(columns={"sd": "scale"}), declared=True)
+
+    def test_masked_parameters_have_no_density(self):
+        theta = np.ma.masked_array(np.zeros((2, 2)), mask=[[False, True], [False, False]])
+        density = sysid.loads(LINE, data={"u": U, "d": D}).log_density(theta)
+        self.assertEqual(density[0], -np.inf)
+        self.assertTrue(np.isfinite(density[1]))
 
     def test_numbers_that_would_lose_what_they_say(self):
         for column in (D + 1j, D.astype("timedelta64[ms]"), D.astype("datetime64[ms]"), D.astype(complex).astype(object)):
@@ -321,7 +403,20 @@ posterior = fit growth to bench with mh, seed = 1
         self.assertEqual(list(density[1:]), [-np.inf, -np.inf])
         self.assertEqual(sum(each["count"] for each in model.failures), 2)
         self.assertIn("`y^3` (./text.sysid:5:", model.failures[0]["where"])
-        np.testing.assert_array_equal(model.gradient(model.unconstrain([[500.0]])), [[0.0]])
+        self.assertTrue(np.isnan(model.gradient(model.unconstrain([[500.0]]))).all())
+        residuals, jacobian = model.residuals_and_jacobian(model.unconstrain([[-1.0], [500.0]]))
+        self.assertTrue(np.isfinite(residuals[0]).all() and np.isfinite(jacobian[0]).all())
+        self.assertTrue(np.isinf(residuals[1]).all() and np.isnan(jacobian[1]).all())
+        # An optimiser does not report success there.
+        import scipy.optimize
+
+        def negative(theta):
+            value, gradient = model.log_density_and_gradient(theta)
+            return -value, -gradient
+
+        with np.errstate(all="ignore"):
+            found = scipy.optimize.minimize(negative, model.unconstrain([500.0]), jac=True, method="BFGS")
+        self.assertFalse(found.success)
         self.assertTrue(np.all(np.isinf(model.residuals(model.unconstrain([500.0])))))
         self.assertTrue(np.all(np.isnan(model.simulate([500.0]).values["y"])))
 

@@ -54,6 +54,9 @@ class Display(unittest.TestCase):
             fit.figures["posterio"]
         with tempfile.TemporaryDirectory() as folder:
             figure.save(pathlib.Path(folder, "a.svg"))
+            with self.assertRaisesRegex(ValueError, "as SVG, not as .png: name the file a.svg"):
+                figure.save(pathlib.Path(folder, "a.png"))
+            self.assertFalse(pathlib.Path(folder, "a.png").exists())
             self.assertEqual(pathlib.Path(folder, "a.svg").read_text(), figure.svg)
         forecast = well_formed(model.predict()._repr_html_())
         self.assertRegex(forecast, r"displacement on bench.test</td><td>0.00945</td>")

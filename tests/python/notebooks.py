@@ -149,6 +149,25 @@ class Cells(unittest.TestCase):
         self.assertEqual(third[0][1][0], "sysid: error: there is no variable `nothing`")
         self.assertEqual(fourth[0][1][0], "sysid: error: `1st` is no name for a variable")
 
+    def test_wrong_options_are_one_line(self):
+        cells = [CELL.replace("%%sysid decay", "%%sysid decay " + option) for option in ("--seed -1", "--threads 100000", "--data TABLE", "--force")]
+        names = [CELL.replace("%%sysid decay", f"%%sysid {name}") for name in ("sysid", "list", "os")]
+        shown = self.run_cells("TABLE = 'abc'; import os", *cells, *names, allow_errors=True)[1:]
+        said = [cell[-1][1] for cell in shown]
+        self.assertEqual(said[0], ["sysid: error: --seed is a whole number from 0 to 18446744073709551615, not -1"])
+        self.assertEqual(said[1], ["sysid: error: --threads is a whole number from 0 to 4096, not 100000"])
+        self.assertEqual(said[2], ["sysid: error: data are a mapping from names to columns, a pandas frame or an xarray data set, not str"])
+        self.assertEqual(said[3], ["sysid: error: there is no folder whose results could be replaced", "help: name it: --output DIR"])
+        self.assertEqual([each[0].split(",")[0] for each in said[4:]], ["sysid: error: `sysid` is a module", "sysid: error: `list` is a name of Python", "sysid: error: `os` is a module"])
+
+    def test_a_task_takes_no_name_that_a_notebook_would_miss(self):
+        text = CELL.replace("posterior", "list").replace("forecast ", "decay ")
+        cell, names = self.run_cells(text, "print(list is type([]), type(decay).__name__, *decay.results)")
+        told = "".join(each[1] for each in cell if isinstance(each, tuple))
+        self.assertIn("`list` is a name of Python and stays so; the result of the task is in decay.results['list']", told)
+        self.assertIn("`decay` is the name of the model and stays so", told)
+        self.assertEqual(names[0][1].split(), ["True", "Model", "list", "decay"])
+
     def test_progress_is_a_bar_that_gives_way_to_the_result(self):
         code = """
 import sysid._notebook, sysid._progress

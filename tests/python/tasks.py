@@ -95,8 +95,12 @@ class Bytes(Desk):
         self.assertEqual(fits[0].summary["data"][0]["file"], "bench (arrays)")
         check = sysid.load("decay.sysid", data={"t": T, "d": D}).check(seed=1)
         self.assertIn("bench (arrays): rows 1..30", check.text)
-        with self.assertRaisesRegex(sysid.Error, r"`bench \(arrays\)` row 2 \(line 3\), column `t`: time does not increase"):
+        with self.assertRaisesRegex(sysid.Error, r"`bench \(arrays\)` row 2 \(index 1\), column `t`: time does not increase") as caught:
             sysid.load("decay.sysid", data={"t": T[::-1], "d": D}).fit()
+        self.assertIn("row 2 (index 1)", caught.exception.diagnostics[0]["message"])
+        for text in (str(caught.exception), caught.exception.help):
+            self.assertIn("if there are two runs, give each a data block of its own", text)
+            self.assertNotIn("file", text.partition("help: ")[2])
 
     def test_the_file_of_export(self):
         self.command_line("run", "decay.sysid", "--no-figures", "--quiet")
@@ -108,6 +112,19 @@ class Bytes(Desk):
         self.command_line("run", "decay.sysid", "--no-figures", "--quiet", "--force")
         self.command_line("export", "results")
         self.assertEqual(pathlib.Path("again.nc").read_bytes(), pathlib.Path("results/posterior/posterior.nc").read_bytes())
+
+
+class Words(Desk):
+    def test_advice_is_what_python_has(self):
+        text = DECAY.replace("-rate*y", "-rate").replace("half [s] = log(2)/rate", "half [s] = log(2)*1[s]").replace("[1/s] ~", "[m/s] ~")
+        pathlib.Path("wrong.sysid").write_text(text)
+        fit = sysid.load("wrong.sysid").fit()
+        self.assertIn("sysid explain", fit.text)  # the command line's
+        for shown in (repr(fit), str(fit), repr(fit.findings)):
+            self.assertNotIn("sysid explain", shown)
+            self.assertNotIn("--", shown.replace("---", ""))
+            self.assertNotIn("at the prompt", shown)
+        self.assertIn("more: sysid.explain(", repr(fit))
 
 
 class Results(Desk):
@@ -131,6 +148,16 @@ class Results(Desk):
         self.assertEqual(dict(forecast.predictions.sizes), {"row": 10, "chain": 1, "draw": 20})
         self.assertEqual(list(forecast.predictions.row.values), list(range(31, 41)))
         self.assertFalse(hasattr(forecast, "posterior"))
+        # No more than the draws that there are.
+        many = fit.groups(draws=10**6)
+        self.assertEqual(dict(many["log_likelihood"].sizes)["draw"], 300)
+        self.assertEqual(dict(many["prior"].sizes), {"chain": 1, "draw": 600})
+        self.assertEqual(list(fit.groups(draws=0)), ["posterior", "sample_stats"])
+        for call in (fit.groups, lambda draws: fit.to_netcdf("none.nc", draws)):
+            with self.assertRaisesRegex(ValueError, "draws is a whole number from 0"):
+                call(draws=-1)
+        with self.assertRaisesRegex(TypeError, "draws is a whole number"):
+            fit.groups(draws=2.5)
         forecast.to_netcdf("forecast.nc")
         again = pickle.loads(pickle.dumps(forecast))
         self.assertTrue(again.predictions.equals(forecast.predictions))
@@ -173,6 +200,12 @@ class Results(Desk):
         self.assertIn("models", check.content)
         fit = model.fit()
         self.assertIn("decay", sysid.compare(fit).text)
+        other = model.fit(seed=2)
+        for shown in (sysid.compare(fit, other).text, json.dumps(sysid.compare(fit, other).content)):
+            self.assertIn("posterior (1)", shown)
+            self.assertIn("posterior (2)", shown)
+            self.assertNotIn(str(fit.folder), shown)
+            self.assertNotIn(str(other.folder), shown)
         with self.assertRaises(sysid.Error):
             sysid.compare("nowhere")
 
@@ -208,6 +241,8 @@ class Results(Desk):
             sysid.load("decay.sysid", threads=-1)
         with self.assertRaisesRegex(TypeError, "threads is a whole number, not 1.5"):
             sysid.load("decay.sysid", threads=1.5)
+        with self.assertRaisesRegex(TypeError, "figures is True or False, not 'x'"):
+            model.fit(figures="x")
         with self.assertRaisesRegex(ValueError, "checkpoint_interval is a number of seconds"):
             model.fit(checkpoint_interval=-1)
         with self.assertRaisesRegex(TypeError, "at least one result"):

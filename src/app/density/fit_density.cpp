@@ -83,6 +83,11 @@ std::vector<PriorInfo> FitDensity::priors() const {
   return sampled;
 }
 
+std::string FitDensity::name(int e) const {
+  auto const& use = data_[static_cast<std::size_t>(e)].use;
+  return data_name(session_.file.data[static_cast<std::size_t>(use.data)], use.part);
+}
+
 std::vector<double> const& FitDensity::time(int e) const { return data_[static_cast<std::size_t>(e)].experiment.time; }
 
 FitDensity::Simulated FitDensity::simulate(int e, ConstLanes declared, std::uint64_t seed) const {
@@ -94,9 +99,7 @@ FitDensity::Simulated FitDensity::simulate(int e, ConstLanes declared, std::uint
   space.select(space.values_of_declared(declared), e, parameters);
   Trajectory const trajectory(compiled_, experiment, preparation_.solver, start_rows(what_.start), session_.interruptible(),
                               [this](NodeId node, Graph const& graph) { return session_.describe(what_.model, graph, node); });
-  return {data_name(session_.file.data[static_cast<std::size_t>(data_[static_cast<std::size_t>(e)].use.data)],
-                    data_[static_cast<std::size_t>(e)].use.part),
-          experiment.time, trajectory.quantities(), trajectory.run(parameters, prediction_noise(seed, e))};
+  return {name(e), experiment.time, trajectory.quantities(), trajectory.run(parameters, prediction_noise(seed, e))};
 }
 
 }  // namespace sysid

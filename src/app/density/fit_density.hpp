@@ -41,6 +41,8 @@ class FitDensity {
     Trajectory::Result result;
   };
   int experiments() const { return static_cast<int>(data_.size()); }
+  /// As the file refers to it, "bench.train".
+  std::string name(int experiment) const;
   /// Of the rows of an experiment, [N] s.
   std::vector<double> const& time(int experiment) const;
   /// declared [P x W]: values of the sampled parameters, declared units. seed: of the noise. UserError (E6212) for models with

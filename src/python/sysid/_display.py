@@ -242,7 +242,10 @@ class Figure:
         return f"<img alt='{_escaped(self.name)}'{width} style='max-width:100%' src='data:image/svg+xml;base64,{picture}'>"
 
     def save(self, path: Any) -> None:
-        """Writes the picture, an SVG."""
+        """Writes the picture, an SVG: ValueError for a name that says otherwise."""
+        suffix = pathlib.Path(path).suffix
+        if suffix.lower() not in ("", ".svg"):
+            raise ValueError(f"figures are saved as SVG, not as {suffix}: name the file {pathlib.Path(path).stem}.svg")
         pathlib.Path(path).write_text(self.svg, encoding="utf-8")
 
     def __repr__(self) -> str:

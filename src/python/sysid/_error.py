@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from ._words import in_python
+from ._words import diagnostic_in_python, in_python
 
 
 class Error(Exception):
@@ -22,7 +22,7 @@ class Error(Exception):
     def diagnostics(self) -> list[dict]:
         """All messages: ``file``, ``severity``, ``code``, ``message``, ``help``, and ``primary`` with its ``line`` and ``column``."""
         found = [json.loads(line) for line in self._details.splitlines() if line.strip()]
-        return [{**each, "help": in_python(each["help"])} if each.get("help") else each for each in found]
+        return [diagnostic_in_python(each) for each in found]
 
     def _first(self, key: str):
         found = self.diagnostics

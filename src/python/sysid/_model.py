@@ -7,13 +7,14 @@ import operator
 import os
 import warnings
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _display, _engine, _progress, _records
 from ._error import Error, ModelWarning
+from ._numbers import whole
 from ._results import Check, Folder, Result, keep_apart, placed, stamp, take_along
 from ._words import in_python
 
@@ -54,11 +55,25 @@ class Simulation:
     units: dict[str, str]  #: by quantity
 
 
-def _one_or_many(given: ArrayLike, dimension: int) -> tuple[Array, bool]:
-    """An array [W x P], and whether one vector [P] was given."""
+def _by_names(given: Any, names: Sequence[str]) -> Any:
+    """A pandas frame or series in the order of the parameters that it names."""
+    labels = list(getattr(given, "columns", getattr(given, "index", []))) if hasattr(given, "to_numpy") else []
+    if not labels or not all(isinstance(each, str) for each in labels):
+        return given
+    if sorted(labels) != sorted(names):
+        raise ValueError(f"expected the parameters {', '.join(names)}, not {', '.join(labels)}")
+    return given[list(names)]
+
+
+def _one_or_many(given: ArrayLike, density: _engine.Density) -> tuple[Array, bool]:
+    """An array [W x P], and whether one vector [P] was given. What is masked is NaN."""
+    dimension = density.dimension
+    if hasattr(given, "to_numpy"):
+        given = _by_names(given, [each[0] for each in density.parameters])
     if np.asarray(given).dtype.kind in "cmM":
         raise TypeError(f"expected real numbers, not {np.asarray(given).dtype}")
-    array = np.asarray(given, dtype=np.float64)
+    masked = np.ma.isMaskedArray(given)
+    array = given.astype(np.float64).filled(np.nan) if masked else np.asarray(given, dtype=np.float64)
     if array.ndim == 2 and len(array) == 0 and array.shape[1] != dimension:
         raise ValueError(f"expected an array [W x {dimension}], one parameter vector in each row, not {array.shape}")
     if array.ndim == 1:
@@ -68,18 +83,42 @@ def _one_or_many(given: ArrayLike, dimension: int) -> tuple[Array, bool]:
     return array, False
 
 
-def _whole(value: Any, what: str, most: int) -> int:
+def _flag(value: Any, what: str) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{what} is True or False, not {value!r}")
+    return bool(value)
+
+
+def _experiment(value: Any, names: Sequence[str]) -> int:
+    """The number of an experiment that is named, or numbered from 0. A block stands for its only part."""
+    told = ", ".join(f"{number}: {name!r}" for number, name in enumerate(names))
+    if isinstance(value, str):
+        found = [number for number, name in enumerate(names) if name == value]
+        found = found or [number for number, name in enumerate(names) if name.split(".")[0] == value]
+        if len(found) != 1:
+            raise KeyError(f"the fit has no single experiment {value!r}; it has {told}")
+        return found[0]
     try:
         number = operator.index(value)
     except TypeError:
-        raise TypeError(f"{what} is a whole number, not {value!r}") from None
-    if not 0 <= number <= most:
-        raise ValueError(f"{what} is a whole number from 0 to {most}, not {number}")
+        raise TypeError(f"experiment is a name or a number, not {value!r}; the fit has {told}") from None
+    if not 0 <= number < len(names):
+        raise IndexError(f"the fit has no experiment {number}; it has {told}")
     return number
 
 
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"the text of a model is a str, not {type(value).__name__}")
+    try:
+        value.encode()
+    except UnicodeEncodeError as error:
+        raise ValueError(f"the text of a model has a character that is no text, {value[error.start]!r} at {error.start}") from None
+    return value
+
+
 def _seed(value: Any) -> int:
-    return _whole(value, "seed", 2**64 - 1)
+    return whole(value, "seed", 2**64 - 1)
 
 
 class Model:
@@ -102,7 +141,7 @@ class Model:
         task: Optional[str] = None,
         threads: int = 0,
     ) -> None:
-        threads = _whole(threads, "threads", 4096)
+        threads = whole(threads, "threads", 4096)
         self._state = {"path": os.fspath(path), "task": task, "threads": threads, "from": os.getcwd()}
         self._prepared: Optional[int] = None
         self._folder: Optional[Folder] = None
@@ -231,24 +270,26 @@ class Model:
         """Log of prior times likelihood, all constants kept, [W] for an array [W x P].
 
         theta: unconstrained coordinates; the density is that on R^P, the Jacobian of `constrain` included. With ``declared`` they
-        are values in declared units, and the density is that of the values: -inf outside the prior's support.
+        are values in declared units, and the density is that of the values: -inf outside the prior's support, at its bounds the
+        limit from within, which may be inf.
         part: "both", "prior" or "likelihood". -inf where a simulation fails; never NaN, never an exception.
         """
         if part not in ("both", "prior", "likelihood"):
             raise ValueError(f"part is 'both', 'prior' or 'likelihood', not {part!r}")
         density = self._density
-        batch, one = _one_or_many(theta, density.dimension)
+        batch, one = _one_or_many(theta, density)
         out = density.log_density(batch, declared, part) if len(batch) else np.zeros(0)
         return float(out[0]) if one else out
 
     def gradient(self, theta: ArrayLike) -> Array:
-        """Of `log_density` by the unconstrained coordinates: [W x P]; 0 where the density is -inf."""
+        """Of `log_density` by the unconstrained coordinates: [W x P]; NaN where the density is -inf."""
         return self.log_density_and_gradient(theta)[1]
 
     def log_density_and_gradient(self, theta: ArrayLike) -> tuple[Union[Array, float], Array]:
-        """`log_density` [W] and its gradient [W x P] at unconstrained coordinates, at the cost of the gradient."""
+        """`log_density` [W] and its gradient [W x P] at unconstrained coordinates, at the cost of the gradient. NaN where there is
+        no gradient: the density is -inf, or a coordinate is not finite."""
         density = self._density
-        batch, one = _one_or_many(theta, density.dimension)
+        batch, one = _one_or_many(theta, density)
         if not len(batch):
             return np.zeros(0), batch
         value, gradient = density.value_and_gradient(batch)
@@ -261,14 +302,15 @@ class Model:
         simulation fails.
         """
         density = self._density
-        batch, one = _one_or_many(theta, density.dimension)
+        batch, one = _one_or_many(theta, density)
         out = density.residuals(batch) if len(batch) else np.zeros((0, density.residual_count))
         return out[0] if one else out
 
     def residuals_and_jacobian(self, theta: ArrayLike) -> tuple[Array, Array]:
-        """`residuals` [W x R] and their derivatives by the unconstrained coordinates [W x R x P], by differences."""
+        """`residuals` [W x R] and their derivatives by the unconstrained coordinates [W x R x P], by differences; NaN
+        where a residual is not finite."""
         density = self._density
-        batch, one = _one_or_many(theta, density.dimension)
+        batch, one = _one_or_many(theta, density)
         if not len(batch):
             return np.zeros((0, density.residual_count)), np.zeros((0, density.residual_count, density.dimension))
         out, jacobian = density.residuals_with_jacobian(batch)
@@ -277,7 +319,7 @@ class Model:
     def constrain(self, theta: ArrayLike) -> Array:
         """Values [W x P] in declared units at unconstrained coordinates [W x P]."""
         density = self._density
-        batch, one = _one_or_many(theta, density.dimension)
+        batch, one = _one_or_many(theta, density)
         out = density.constrain(batch) if len(batch) else batch
         return out[0] if one else out
 
@@ -288,7 +330,7 @@ class Model:
         to scale, such as L-BFGS-B, want coordinates divided by the square roots of the diagonal of ``modes[0].covariance``.
         """
         density = self._density
-        batch, one = _one_or_many(values, density.dimension)
+        batch, one = _one_or_many(values, density)
         out = density.unconstrain(batch) if len(batch) else batch
         return out[0] if one else out
 
@@ -296,18 +338,18 @@ class Model:
         """Draws of the prior, unconstrained coordinates [count x P]."""
         return self._density.sample_prior(count, _seed(seed))
 
-    def simulate(self, values: ArrayLike, experiment: int = 0, seed: int = 0) -> Simulation:
+    def simulate(self, values: ArrayLike, experiment: Union[int, str] = 0, seed: int = 0) -> Simulation:
         """What parameter vectors predict along the rows of an experiment of the fit.
 
-        values: [W x P], declared units. experiment: its index in the fit. seed: of the noise in ``noisy``.
+        values: [W x P], declared units. experiment: its name, ``"bench.train"``, or its number in the fit, from 0. seed: of the
+        noise in ``noisy``.
         """
         density = self._density
-        if not 0 <= experiment < density.experiments:
-            raise IndexError(f"the fit has experiments 0 to {density.experiments - 1}, not {experiment}")
-        batch, one = _one_or_many(values, density.dimension)
+        number = _experiment(experiment, density.experiments)
+        batch, one = _one_or_many(values, density)
         # Of no vectors the rows and quantities are those of any vector.
         some = batch if len(batch) else density.constrain(density.sample_prior(1, 0))
-        made = density.simulate(some, experiment, _seed(seed))
+        made = density.simulate(some, number, _seed(seed))
         if one or not len(batch):
             for each in (made["values"], made["noisy"]):
                 for name in each:
@@ -366,6 +408,7 @@ class Model:
         checkpoint_interval: float = 30,
     ) -> Result:
         seed = None if seed is None else _seed(seed)
+        force, resume, figures = _flag(force, "force"), _flag(resume, "resume"), _flag(figures, "figures")
         if not checkpoint_interval >= 0:
             raise ValueError(f"checkpoint_interval is a number of seconds, at least 0, not {checkpoint_interval}")
         names = [name for name, of in self.tasks if of == verb]
@@ -446,4 +489,4 @@ def load(path: Union[str, os.PathLike], data: Any = None, task: Optional[str] = 
 
 def loads(text: str, folder: Union[str, os.PathLike] = ".", data: Any = None, task: Optional[str] = None, threads: int = 0) -> Model:
     """As `load`, of a text instead of a file. folder: from which paths of tables and modules are relative."""
-    return Model(os.path.join(os.fspath(folder), "text.sysid"), text, data, task, threads)
+    return Model(os.path.join(os.fspath(folder), "text.sysid"), _text(text), data, task, threads)

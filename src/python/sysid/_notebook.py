@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import builtins
 import keyword
 import os
+import sys
+import types
 from typing import Any, Optional
 
 from IPython.core.magic import Magics, cell_magic, magics_class
@@ -13,6 +16,8 @@ from IPython.display import display
 from . import _language, _progress
 from ._error import Error
 from ._model import Model
+from ._numbers import whole
+from ._results import Result
 
 _MAGIC = "%%sysid"
 
@@ -31,8 +36,19 @@ class CellInterrupt(KeyboardInterrupt):
         return ["interrupted"]
 
 
+class _Mistake(Exception):
+    """In the options of a cell."""
+
+
 def _bindable(name: str) -> bool:
     return name.isidentifier() and not keyword.iskeyword(name)
+
+
+def _taken(name: str, variables: dict) -> str:
+    """What a name stands for that a notebook would miss; "" where nothing."""
+    if hasattr(builtins, name):
+        return "a name of Python"
+    return "a module" if name == "sysid" or isinstance(variables.get(name), types.ModuleType) else ""
 
 
 @magics_class
@@ -63,12 +79,27 @@ class SysidMagics(Magics):
         asked = parse_argstring(self.sysid, line)
         if asked.name and not _bindable(asked.name):
             raise CellError(f"sysid: error: `{asked.name}` is no name for a variable\nhelp: write `%%sysid NAME`")
+        if asked.name and (taken := _taken(asked.name, self.shell.user_ns)):
+            raise CellError(f"sysid: error: `{asked.name}` is {taken}, which the model would replace\nhelp: choose another name")
+        if asked.force and not asked.output:
+            raise CellError("sysid: error: there is no folder whose results could be replaced\nhelp: name it: --output DIR")
         try:
             self._run(asked, cell)
         except Error as error:
             raise CellError(str(error), error._details) from None
+        except _Mistake as error:
+            raise CellError(f"sysid: error: {error}") from None
         except KeyboardInterrupt:
             raise CellInterrupt from None
+
+    def _bind(self, name: str, result: Result, model: Optional[str]) -> None:
+        """To the name of its task, unless that stands for something that the notebook would miss."""
+        taken = "the name of the model" if name == model else _taken(name, self.shell.user_ns)
+        if _bindable(name) and not taken:
+            self.shell.user_ns[name] = result
+        elif taken:
+            place = f"{model}.results[{name!r}]" if model else "the results of the model, if `%%sysid NAME` names it"
+            print(f"`{name}` is {taken} and stays so; the result of the task is in {place}", file=sys.stderr)
 
     def _run(self, asked: Any, cell: str) -> None:
         data = None
@@ -76,7 +107,13 @@ class SysidMagics(Magics):
             if asked.data not in self.shell.user_ns:
                 raise Error(f"sysid: error: there is no variable `{asked.data}`\nhelp: --data names a variable of the notebook")
             data = self.shell.user_ns[asked.data]
-        model = Model(self.path(asked.name), cell, data, None, asked.threads)
+        try:  # here alone: elsewhere such an exception would be a fault of the module, whose place is of use
+            if asked.seed is not None:
+                whole(asked.seed, "--seed", 2**64 - 1)
+            threads = whole(asked.threads, "--threads", 4096)
+            model = Model(self.path(asked.name), cell, data, None, threads)
+        except (TypeError, ValueError) as error:
+            raise _Mistake(str(error)) from None
         if asked.name:
             self.shell.user_ns[asked.name] = model
         if not model.tasks:
@@ -90,8 +127,7 @@ class SysidMagics(Magics):
                 shown.update({"text/plain": ""}, raw=True)
                 raise
             shown.update(result)
-            if _bindable(name):
-                self.shell.user_ns[name] = result
+            self._bind(name, result, asked.name)
             if result.interrupted:
                 break
 

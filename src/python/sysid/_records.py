@@ -21,6 +21,17 @@ def _holds_columns(data: Any) -> bool:
     return isinstance(data, dict) or hasattr(data, "columns") or hasattr(data, "data_vars")
 
 
+def _index_names(data: Any) -> list[str]:
+    """Of the levels of a pandas frame's index that have names."""
+    return [str(name) for name in getattr(getattr(data, "index", None), "names", []) if name is not None]
+
+
+def _column(data: Any, name: str) -> Any:
+    if hasattr(data, "columns") and name not in data.columns and name in _index_names(data):
+        return data.index.get_level_values(name)
+    return data[name]
+
+
 def _floats(given: Any, told: str) -> np.ndarray:
     """A column as numbers, NaN for what is missing. TypeError where numbers would not say all that it holds, as of complex ones."""
     masked = np.ma.isMaskedArray(given)
@@ -29,11 +40,18 @@ def _floats(given: Any, told: str) -> np.ndarray:
         missing = [each is None or type(each).__name__ == "NAType" for each in array.flat]
         strange = [each for each, absent in zip(array.flat, missing) if not absent and not isinstance(each, numbers.Real)]
         if strange:
-            raise TypeError(f"{told} holds {type(strange[0]).__name__}, not numbers")
-        values = [np.nan if absent else float(each) for each, absent in zip(array.flat, missing)]
+            dates = ": subtract the first, then divide by the unit of the data block" if hasattr(strange[0], "tzinfo") else ""
+            raise TypeError(f"{told} holds {type(strange[0]).__name__}, not numbers{dates}")
+        try:
+            values = [np.nan if absent else float(each) for each, absent in zip(array.flat, missing)]
+        except OverflowError:
+            raise ValueError(f"{told} holds a number beyond 1.8e308, the largest there is") from None
         array = np.array(values).reshape(array.shape)
     if array.dtype.kind not in "biuf":
-        help = ": divide durations by the unit of the data block first" if array.dtype.kind in "mM" else ""
+        help = {
+            "m": ": divide durations by the unit of the data block first",
+            "M": ": subtract the first, then divide by the unit of the data block, as `(t - t[0]) / numpy.timedelta64(1, 's')`",
+        }.get(array.dtype.kind, "")
         raise TypeError(f"{told} holds {array.dtype}, not numbers{help}")
     return np.where(np.ma.getmaskarray(given), np.nan, array) if masked else array.astype(np.float64)
 
@@ -43,7 +61,8 @@ def _names(data: Any) -> list[str]:
         raise TypeError(f"data are a mapping from names to columns, a pandas frame or an xarray data set, not {type(data).__name__}")
     if hasattr(data, "data_vars"):  # xarray: coordinates are columns, too
         return [str(name) for name in data.variables]
-    return [str(name) for name in (data.keys() if hasattr(data, "keys") else data.columns)]
+    names = [str(name) for name in (data.keys() if hasattr(data, "keys") else data.columns)]
+    return names + [name for name in (_index_names(data) if hasattr(data, "columns") else []) if name not in names]
 
 
 def _text(values: np.ndarray) -> list[str]:
@@ -62,7 +81,7 @@ def _write_table(data: Any, block: str, columns: Sequence[str], path: str) -> No
     arrays = []
     for name in columns:
         told = f"column `{name}` of the data for `{block}`"
-        array = _floats(data[name], told)
+        array = _floats(_column(data, name), told)
         if array.ndim != 1:
             raise ValueError(f"{told} has shape {array.shape}; columns have one axis")
         arrays.append(array)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pathlib
+import re
 import shutil
 import tempfile
 import weakref
@@ -14,7 +15,8 @@ import numpy as np
 
 from . import _display, _engine, _records
 from ._error import Error
-from ._words import in_python
+from ._numbers import whole
+from ._words import diagnostic_in_python, in_python
 
 if TYPE_CHECKING:
     import pandas
@@ -111,7 +113,7 @@ class Result:
     def findings(self) -> list[dict]:
         """What the checks have found: ``severity``, ``code``, ``names``, ``message``, ``help``."""
         found = self.summary.get("findings", [])
-        return [{**each, "help": in_python(each["help"])} if each.get("help") else each for each in found]
+        return [diagnostic_in_python(each) for each in found]
 
     @property
     def parameters(self) -> dict[str, dict]:
@@ -160,7 +162,8 @@ class Result:
 
     def groups(self, draws: int = 200) -> dict[str, "xarray.Dataset"]:
         """All groups by their names; of a prediction ``predictions`` and ``predictions_constant_data``. draws: how many of the stored
-        draws are simulated once more for likelihoods and predictive groups."""
+        draws are simulated once more for likelihoods and predictive groups, all at most; 0: none, and no such groups."""
+        draws = whole(draws, "draws", 10**6)
         if draws not in self._groups:
             found, attributes, _ = self._inference_data(draws)
             # Of a prediction its own; the others are the fit's.
@@ -188,7 +191,7 @@ class Result:
     def to_netcdf(self, path: Union[str, os.PathLike], draws: int = 200) -> None:
         """Writes the groups as one NetCDF-4 file, byte for byte what ``sysid export`` writes; `arviz.from_netcdf` reads it. Of a
         prediction it is the file of its fit."""
-        pathlib.Path(path).write_bytes(self._inference_data(draws)[2])
+        pathlib.Path(path).write_bytes(self._inference_data(whole(draws, "draws", 10**6))[2])
 
     def to_arviz(self, draws: int = 200) -> Any:
         """As arviz.InferenceData; ArviZ must be installed."""
@@ -199,7 +202,7 @@ class Result:
     # ---- how it looks, and how it is kept
 
     def __repr__(self) -> str:
-        return self.text.rstrip("\n") or f"sysid.Result of {self.task}"
+        return in_python(self.text).rstrip("\n") or f"sysid.Result of {self.task}"
 
     def _repr_html_(self) -> str:
         return _display.result(self.summary, self.text, self.interrupted)
@@ -315,4 +318,19 @@ def compare(*results: Union[Result, str, os.PathLike]) -> Comparison:
     if not results:
         raise TypeError("expected at least one result or folder to compare")
     folders = [str(each.folder) if isinstance(each, Result) else os.fspath(each) for each in results]
-    return Comparison(*_engine.compare(folders))
+    text, content = _engine.compare(folders)
+    for folder, name in _names_of_temporary(results).items():
+        # In a table the column stays as wide as it is.
+        text = re.sub(re.escape(folder) + "(?=  )", lambda found: name.ljust(len(found[0])), text).replace(folder, name)
+        content = content.replace(json.dumps(folder)[1:-1], name)
+    return Comparison(text, content)
+
+
+def _names_of_temporary(results: Sequence[Any]) -> dict[str, str]:
+    """By their folders, whose paths tell a reader nothing: "posterior (2)" is the second of this name among those given."""
+    given: dict[str, str] = {}
+    for each in results:
+        if isinstance(each, Result) and each._run.temporary and str(each.folder) not in given:
+            count = sum(1 for name in given.values() if name.rpartition(" ")[0] == each.task)
+            given[str(each.folder)] = f"{each.task} ({count + 1})"
+    return given
