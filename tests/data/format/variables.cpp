@@ -185,6 +185,36 @@ TEST_CASE("variables of NetCDF files of every kind are read by their paths, scal
   }
 }
 
+TEST_CASE("a MATLAB file that was cut is refused, at whatever place, and a whole one is not") {
+  for (matio_compression const how : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
+    Scratch const path("cut.mat");
+    mat_t* const file = Mat_CreateVer(path.path.c_str(), nullptr, MAT_FT_MAT5);
+    REQUIRE(file != nullptr);
+    Numbers values;
+    for (int i = 0; i < 2000; ++i) values.push_back(std::sin(i));
+    for (char const* const name : {"t", "y"}) {
+      matvar_t* const variable = doubles(name, values.size(), 1, values.data());
+      Mat_VarWrite(file, variable, how);
+      Mat_VarFree(variable);
+    }
+    Mat_Close(file);
+    std::string const whole = read_file(path.path);
+    CHECK(open_record(path.path, {})->numbers("y") == values);
+    for (std::size_t const left :
+         {whole.size() - 1, whole.size() * 3 / 4, whole.size() / 2 + 8, whole.size() / 3, std::size_t{130}}) {
+      CAPTURE(left);
+      std::ofstream(path.path, std::ios::binary | std::ios::trunc).write(whole.data(), static_cast<std::streamsize>(left));
+      std::string code;
+      try {
+        open_record(path.path, {});
+      } catch (UserError const& error) {
+        code = error.diagnostic().code;
+      }
+      CHECK(code == "E4023");
+    }
+  }
+}
+
 TEST_CASE("damaged MATLAB and NetCDF files are refused or read, and end no program") {
   Scratch const five("five.mat"), seven("seven.mat"), classic("classic.nc"), four("four.nc");
   write_matlab(five.path, MAT_FT_MAT5);
