@@ -185,6 +185,35 @@ TEST_CASE("variables of NetCDF files of every kind are read by their paths, scal
   }
 }
 
+TEST_CASE("a NetCDF variable is read without its sign and within its valid range, and not with a scale that is text") {
+  Scratch const path("valid.nc");
+  int file = -1, rows = -1, id = -1;
+  REQUIRE(nc_create(path.path.c_str(), NC_CLOBBER, &file) == NC_NOERR);
+  nc_def_dim(file, "row", 3, &rows);
+  nc_def_var(file, "byte", NC_BYTE, 1, &rows, &id);
+  nc_put_att_text(file, id, "_Unsigned", 4, "true");
+  nc_def_var(file, "ranged", NC_DOUBLE, 1, &rows, &id);
+  double const range[] = {-100, 100}, most = 2;
+  nc_put_att_double(file, id, "valid_range", NC_DOUBLE, 2, range);
+  nc_def_var(file, "limited", NC_DOUBLE, 1, &rows, &id);
+  nc_put_att_double(file, id, "valid_max", NC_DOUBLE, 1, &most);
+  nc_def_var(file, "scaled", NC_DOUBLE, 1, &rows, &id);
+  nc_put_att_text(file, id, "scale_factor", 3, "0.1");
+  nc_enddef(file);
+  signed char const bytes[] = {0, 100, -36};
+  double const values[] = {-100, 2, 1e20};
+  nc_put_var_schar(file, 0, bytes);
+  for (int variable = 1; variable <= 3; ++variable) nc_put_var_double(file, variable, values);
+  nc_close(file);
+  auto const record = open_record(path.path, {});
+  CHECK(record->numbers("byte") == Numbers{0, 100, 220});
+  for (char const* const name : {"ranged", "limited"}) {
+    Numbers const read = record->numbers(name);
+    CHECK((read[0] == -100 && read[1] == 2 && std::isnan(read[2])));
+  }
+  CHECK(contains(refusal(*record, "scaled").message, "has a `scale_factor` that is no number"));
+}
+
 TEST_CASE("a MATLAB file that was cut is refused, at whatever place, and a whole one is not") {
   for (matio_compression const how : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
     Scratch const path("cut.mat");
