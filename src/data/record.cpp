@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/text/words.hpp"
 #include "data/format/open_record.hpp"
 #include "data/rounded_times.hpp"
 #include "data/table/file_errors.hpp"
@@ -29,17 +30,36 @@ void to_si(std::vector<double>& values, ColumnRequest const& request) {
   for (double& value : values) value = convert(value, unit, *declared) * declared->scale;
 }
 
+bool same_unit(Unit const& a, Unit const& b) {
+  auto const same = [](double x, double y) { return std::fabs(x - y) <= 1e-9 * std::max(std::fabs(x), std::fabs(y)); };
+  return a.dimension == b.dimension && same(a.scale, b.scale) && same(a.offset, b.offset);
+}
+
+/// `F [kN]` that the data block has in N. What is no unit of the kind that is wanted may be no unit at all, as in `sensor (A)` and
+/// `T (C)`; two letters in square brackets are one.
+void refuse_other_unit_in_name(RecordFile const& file, std::string const& column, Unit const& stated, std::optional<Span> mention) {
+  auto const split = split_name(column);
+  std::optional<Unit> unit = split ? unit_of_text(split->unit) : std::nullopt;
+  if (!unit) return;
+  // Of an acceleration `g` is no gram.
+  if (auto const gravity = unit_atom("g_n"); split->unit == "g" && gravity && gravity->dimension == stated.dimension)
+    unit = gravity;
+  bool const surely = trimmed(column).ends_with(']') && split->unit.size() > 1;
+  if (same_unit(*unit, stated) || (unit->dimension != stated.dimension && !surely)) return;
+  throw UserError(data_errors::unit_differs_from_name(file.name(), {column, split->name}, {stated.text, split->unit},
+                                                      file.row_count().has_value(), mention));
+}
+
 /// With the unit that the file states, where the data block has it read and gives none itself; the two must agree.
 template <class Request>
 Request with_unit_of_file(RecordFile const& file, Request request) {
   std::optional<std::string> const text = file.unit(request.column);
+  if (!text && request.unit) refuse_other_unit_in_name(file, request.column, *request.unit, request.mention);
   if (!text) return request;
   std::optional<Unit> const unit = unit_of_text(*text);
   if (request.unit) {
-    Unit const& stated = *request.unit;
-    auto const same = [](double a, double b) { return std::fabs(a - b) <= 1e-9 * std::max(std::fabs(a), std::fabs(b)); };
-    if (unit && (unit->dimension != stated.dimension || !same(unit->scale, stated.scale) || !same(unit->offset, stated.offset)))
-      throw UserError(data_errors::unit_differs(file.name(), request.column, stated.text, unit->text, request.mention));
+    if (unit && !same_unit(*unit, *request.unit))
+      throw UserError(data_errors::unit_differs(file.name(), request.column, request.unit->text, unit->text, request.mention));
     return request;
   }
   if (!unit && !text->empty()) throw UserError(data_errors::unit_unknown(file.name(), request.column, {}, request.mention));

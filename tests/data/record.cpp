@@ -240,3 +240,26 @@ TEST_CASE("an experiment without the channel in its data has no samples of it") 
   CHECK(experiment.measured[0].size() == 2);
   CHECK(experiment.measured[1].empty());
 }
+
+TEST_CASE("a unit in the name of a column goes against another one of the data block") {
+  TemporaryFile const file("t,F [kN],sensor (A),T (C),x in mm,acc (g)\n0,1,2,3,4,1\n1,2,3,4,5,2\n");
+  auto const with = [&](std::string name, std::string_view unit) {
+    RecordRequest wanted = request(file.path(), {}, {});
+    wanted.measured.push_back(column(std::move(name), atom(unit), atom(unit)));
+    return wanted;
+  };
+  auto const refused = errors(with("F [kN]", "N"));
+  REQUIRE(refused.size() == 1);
+  CHECK(refused[0].code == "E4026");
+  for (char const* const cure : {"`[kN]`", "read units = names", "`F` without a unit", "read columns"}) {
+    CAPTURE(cure);
+    CHECK(refused[0].help.find(cure) != std::string::npos);
+  }
+  CHECK(errors(with("F [kN]", "m")).size() == 1);
+  CHECK(errors(with("x in mm", "m")).size() == 1);
+  CHECK(loaded(with("F [kN]", "kN")).measured[0][1] == 2000);
+  CHECK(loaded(with("sensor (A)", "V")).measured[0][1] == 3);
+  CHECK(loaded(with("T (C)", "degC")).rows() == 2);
+  CHECK(loaded(with("acc (g)", "g_n")).rows() == 2);
+  CHECK(loaded(request(file.path(), {}, {"F [kN]"})).measured[0][1] == 2);
+}

@@ -7,6 +7,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "data/format/matlab_elements.hpp"
+#include "data/table/record_bytes.hpp"
+
 namespace sysid {
 namespace {
 
@@ -66,7 +69,15 @@ void describe(matvar_t* variable, std::string const& path, int depth, std::vecto
     describe(Mat_VarGetStructFieldByIndex(variable, f, 0), fmt::format("{}.{}", path, names[f]), depth + 1, all);
 }
 
+/// Of versions 5 to 7; the library of version 7.3, HDF5, looks itself.
+void check_elements(std::string const& path) {
+  std::string const bytes = read_record_bytes(path);
+  bool const older = bytes.size() > 125 && (bytes[124] == 1 || bytes[125] == 1);
+  if (older && !matlab_elements_are_whole(bytes)) throw std::runtime_error("cut or damaged");
+}
+
 std::vector<Variable> list_matlab(std::string const& path) {
+  check_elements(path);
   MatFile const file = opened(path);
   std::vector<Variable> all;
   while (Read const variable{Mat_VarReadNextInfo(file.get())})

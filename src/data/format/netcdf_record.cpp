@@ -3,11 +3,13 @@
 
 #include <netcdf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace sysid {
 namespace {
@@ -50,6 +52,37 @@ std::optional<double> number_attribute(int group, int variable, char const* name
   if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR || length != 1 || type == NC_CHAR || type == NC_STRING)
     return std::nullopt;
   return nc_get_att_double(group, variable, name, &value) == NC_NOERR ? std::optional(value) : std::nullopt;
+}
+
+/// Several numbers, as `valid_range` is; empty where there are none.
+std::vector<double> numbers_attribute(int group, int variable, char const* name) {
+  nc_type type = 0;
+  std::size_t length = 0;
+  if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR || length > 1000 || type == NC_CHAR || type == NC_STRING)
+    return {};
+  std::vector<double> values(length);
+  if (length == 0 || nc_get_att_double(group, variable, name, values.data()) != NC_NOERR) return {};
+  return values;
+}
+
+/// What `scale_factor` and the like must not be.
+std::string attribute_refusal(int group, int variable) {
+  for (char const* const name : {"scale_factor", "add_offset", "valid_range", "valid_min", "valid_max"}) {
+    std::size_t const wanted = std::string_view(name) == "valid_range" ? 2 : 1;
+    nc_type type = 0;
+    std::size_t length = 0;
+    if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR) continue;
+    if (numbers_attribute(group, variable, name).size() != wanted)
+      return std::string("has a `") + name + "` that is " + (wanted == 1 ? "no number" : "no pair of numbers");
+  }
+  return {};
+}
+
+/// What CF says of integers that are stored with a sign and have none: 2 to the number of their bits.
+double unsigned_wrap(int group, int variable, nc_type type) {
+  std::string const text = text_attribute(group, variable, "_Unsigned");
+  if (text != "true" && text != "TRUE" && text != "True") return 0;
+  return type == NC_BYTE ? 256.0 : type == NC_SHORT ? 65536.0 : type == NC_INT ? 4294967296.0 : 0;
 }
 
 /// Calls visit(path, group, variable) for each variable, until it returns false.
@@ -96,7 +129,9 @@ std::vector<Variable> list_netcdf(std::string const& path) {
   each_variable(file.id, "", 0, [&](std::string const& name, int group, int variable) {
     nc_type type = 0;
     if (nc_inq_vartype(group, variable, &type) != NC_NOERR) throw std::runtime_error("no type");
-    all.push_back({name, size_of(group, variable), netcdf_refusal(type), text_attribute(group, variable, "units")});
+    std::string refused = netcdf_refusal(type);
+    if (refused.empty()) refused = attribute_refusal(group, variable);
+    all.push_back({name, size_of(group, variable), std::move(refused), text_attribute(group, variable, "units")});
     return true;
   });
   return all;
@@ -126,6 +161,28 @@ std::optional<double> usual_fill(nc_type type) {
   }
 }
 
+/// `valid_range`, `valid_min` and `valid_max`: of the numbers as stored where they have their type, else of the scaled ones.
+struct ValidRange {
+  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
+  bool scaled = false;
+
+  ValidRange(int group, int variable, nc_type type, double wrap) {
+    auto const bound = [&](char const* name, std::size_t index, double& to) {
+      std::vector<double> const values = numbers_attribute(group, variable, name);
+      if (values.size() <= index) return;
+      nc_type stored = 0;
+      nc_inq_atttype(group, variable, name, &stored);
+      scaled = stored != type;
+      to = values[index] < 0 && !scaled ? values[index] + wrap : values[index];
+    };
+    bound("valid_min", 0, least);
+    bound("valid_max", 0, most);
+    bound("valid_range", 0, least);
+    bound("valid_range", 1, most);
+  }
+  bool has(double stored, double value) const { return !((scaled ? value : stored) < least || (scaled ? value : stored) > most); }
+};
+
 std::vector<double> numbers_of(int group, int variable) {
   nc_type type = 0;
   if (nc_inq_vartype(group, variable, &type) != NC_NOERR || !netcdf_refusal(type).empty()) throw std::runtime_error("no numbers");
@@ -135,14 +192,16 @@ std::vector<double> numbers_of(int group, int variable) {
   if (count > 0 && nc_get_var_double(group, variable, values.data()) != NC_NOERR) throw std::runtime_error("no data");
   auto fill = number_attribute(group, variable, "_FillValue");
   if (!fill) fill = usual_fill(type);
-  auto const missing = number_attribute(group, variable, "missing_value");
+  std::vector<double> const missing = numbers_attribute(group, variable, "missing_value");
   double const scale = number_attribute(group, variable, "scale_factor").value_or(1);
   double const offset = number_attribute(group, variable, "add_offset").value_or(0);
+  double const wrap = unsigned_wrap(group, variable, type);
+  ValidRange const valid(group, variable, type, wrap);
   for (double& value : values) {
-    if ((fill && value == *fill) || (missing && value == *missing))
-      value = std::numeric_limits<double>::quiet_NaN();
-    else
-      value = value * scale + offset;
+    bool const absent = (fill && value == *fill) || std::find(missing.begin(), missing.end(), value) != missing.end();
+    double const stored = value < 0 ? value + wrap : value;
+    value = stored * scale + offset;
+    if (absent || !valid.has(stored, value)) value = std::numeric_limits<double>::quiet_NaN();
   }
   return values;
 }

@@ -52,7 +52,10 @@ bool keeps_increasing(std::vector<double> const& values) {
 
 Chosen choose_rules(std::string const& path, std::string const& text, RecordLook& look) {
   auto proposal = propose(text, {});
-  if (!proposal) return {};
+  if (!proposal) {
+    if (int const line = broken_line(text)) throw UserError(data_errors::broken_table(path, line, std::nullopt));
+    return {};
+  }
   // Stamps are looked for in the column that has them.
   Layout const& layout = proposal->layout;
   for (std::size_t c = 0; c < layout.columns.size(); ++c)

@@ -160,6 +160,11 @@ Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int
       "a missing value is an empty cell between separators; numbers with a decimal comma need a separator other than the comma");
 }
 
+Diagnostic broken_table(std::string const& file, int line, Mention mention) {
+  return error("E4010", mention, fmt::format("line {} of `{}` is no row of values as the lines above and below it are", line, file),
+               "correct the line or delete it; `read values` reads the lines before or behind it alone");
+}
+
 Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention) {
   return error("E4006", mention, fmt::format("{} is a comment", place(file, row, line)),
                "comments are allowed only above the header");
@@ -257,10 +262,9 @@ Diagnostic points_or_groups(Cell const& cell, std::string_view text, Mention men
 Diagnostic doubtful_sample(Cell const& cell, double value, int times, Mention mention) {
   return error(
       "E4022", mention,
-      fmt::format("{}: {:.10g} is far from all other samples ({}), as a mark for missing ones is", place(cell), value,
+      fmt::format("{}: {} is far from all other samples ({}), as a mark for missing ones is", place(cell), value,
                   times == 1 ? "once" : fmt::format("{} times", times)),
-      fmt::format("add this line to the data block: `read missing = \"{:.10g}\"`; or, if it is a sample, `read missing = none`",
-                  value));
+      fmt::format("add this line to the data block: `read missing = \"{}\"`; or, if it is a sample, `read missing = none`", value));
 }
 
 Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention) {
@@ -275,6 +279,20 @@ Diagnostic unit_differs(std::string const& file, std::string const& column, std:
                         Mention mention) {
   return error("E4026", mention, fmt::format("column `{}` is in [{}] here, but in `{}` as {}", shown(column), stated, file, found),
                "one of the two is wrong: write the unit that its numbers have, or none to take that of the file");
+}
+
+Diagnostic unit_differs_from_name(std::string const& file, NamedUnit const& name, TwoUnits const& units, bool is_text,
+                                  Mention mention) {
+  std::string help = fmt::format("one of the two is wrong: write the unit that its numbers have, `[{}]`", as_unit(units.found));
+  if (is_text)
+    help += fmt::format(
+        ", or add `read units = names` and write `{}` without a unit; where the name is wrong, name the columns with `read "
+        "columns`",
+        shown(name.bare));
+  return error("E4026", mention,
+               fmt::format("column `{}` is in [{}] here, but by its name in `{}` in {}", shown(name.column), units.stated, file,
+                           shown(units.found)),
+               std::move(help));
 }
 
 Diagnostic unit_unknown(std::string const& file, std::string const& column, std::string const& found, Mention mention) {

@@ -41,6 +41,8 @@ Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Me
 Diagnostic damaged(std::string const& file, std::string const& what, Mention mention);
 Diagnostic open_quote(std::string const& file, int line, Mention mention);
 Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
+/// E4010: a line between the rows that is none.
+Diagnostic broken_table(std::string const& file, int line, Mention mention);
 Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention);
 Diagnostic too_many_rows(std::string const& file, int most, Mention mention);
 Diagnostic too_few_rows(std::string const& file, int rows, Mention mention);
@@ -71,6 +73,16 @@ Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string cons
 /// E4026. stated: in the data block; found: in the file.
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,
                         Mention mention);
+/// Such as `F [kN]`, a name with its unit.
+struct NamedUnit {
+  std::string column, bare;
+};
+struct TwoUnits {
+  std::string stated, found;  // in the data block, in the file
+};
+/// E4026. is_text: `read` can be said of the file.
+Diagnostic unit_differs_from_name(std::string const& file, NamedUnit const& name, TwoUnits const& units, bool is_text,
+                                  Mention mention);
 Diagnostic unit_unknown(std::string const& file, std::string const& column, std::string const& found, Mention mention);
 Diagnostic unit_of_another_kind(std::string const& file, std::string const& column, std::string const& found,
                                 std::string const& wanted, Mention mention);

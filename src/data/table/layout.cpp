@@ -75,6 +75,7 @@ class Cut {
     std::size_t below = end_;
     while (below < lines_.size() && trimmed(lines_[below]).empty()) ++below;
     layout.more_below = below < lines_.size();
+    layout.broken = broken_line();
     find_names(layout);
     std::size_t const wide = layout.columns.size();
     for (std::size_t i = begin_; i < end_; ++i) {
@@ -156,6 +157,24 @@ class Cut {
         count = 0;
       }
     }
+  }
+
+  /// The line that ends the longest run of rows and has rows below it, or stands before it and has some above; counted from 1. What
+  /// stands above a table has few lines that look like its rows.
+  int broken_line() const {
+    constexpr long enough = 3;
+    for (std::size_t i = end_; i < lines_.size(); ++i)
+      if (is_row(i)) {
+        std::size_t line = end_;
+        while (trimmed(lines_[line]).empty()) ++line;
+        return static_cast<int>(line) + 1;
+      }
+    long above = 0;
+    for (std::size_t i = 0; i < begin_; ++i) above += is_row(i) && looks_[i].size() == width_;
+    if (above < enough || width_ < 2) return 0;
+    std::size_t line = begin_;
+    while (line > 0 && (is_row(line - 1) || trimmed(lines_[line - 1]).empty())) --line;
+    return static_cast<int>(line);
   }
 
   /// The cells of a line above the rows that may name columns; empty where it does not. above_units: names may be numbers there.

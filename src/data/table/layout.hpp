@@ -17,6 +17,7 @@ struct Layout {
   int names = 0, units = 0;                    // lines; 0: there is none
   int first = 0, last = 0;                     // lines with values; last = 0: the file was too long to be looked at to its end
   bool more_below = false;                     // lines that are no values follow the last one
+  int broken = 0;                              // a line within the table that is none of its rows; 0: there is none
   bool ragged = false;                         // rows have other numbers of cells than the names
   char comments = 0;                           // begins lines between the rows
   std::vector<std::string> columns;            // names where there are any; else `column_1`, ...

@@ -48,6 +48,7 @@ std::optional<std::string> in_plain_notation(std::string_view cell, NumberNotati
       out += cell[at++];
     } else if (std::size_t const sign = width()) {
       if (group == 0 || group > 3 || (grouped && group != 3)) return std::nullopt;
+      if (!grouped && out[out.size() - group] == '0') return std::nullopt;  // 0.500 has no thousands
       grouped = true;
       group = 0;
       at += sign;

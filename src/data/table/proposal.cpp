@@ -77,6 +77,36 @@ void add_notation(Layout const& layout, Alternatives& all) {
   }
 }
 
+/// Words without digits, `OVLD`, in at most a quarter of the cells.
+std::vector<std::string> few_words(std::vector<std::string> const& cells) {
+  constexpr std::size_t longest = 16, share = 4;
+  std::vector<std::string> words;
+  for (std::string const& cell : cells)
+    if (!cell.empty() && cell != "NA" && cell.size() <= longest && cell.find_first_of("0123456789") == std::string::npos)
+      words.push_back(cell);
+  if (words.size() * share > cells.size()) return {};
+  std::sort(words.begin(), words.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
+  return words;
+}
+
+/// The same of lines beyond those that were looked at.
+void add_words_below(std::string const& bytes, Layout const& layout, ReadingRules& rules) {
+  if (layout.last != 0 || !refuse(rules).empty()) return;
+  std::size_t constexpr most_words = 6;
+  try {
+    Table const table = Table::parse_as_told("record", bytes, rules);
+    for (std::size_t c = 0; c < layout.columns.size() && c < table.columns().size(); ++c) {
+      if (layout.looks[c] != CellLook::number) continue;
+      for (std::string const& word : few_words(table.texts(static_cast<int>(c), table.rows())))
+        if (std::find(rules.missing.begin(), rules.missing.end(), word) == rules.missing.end() && rules.missing.size() < most_words)
+          rules.missing.push_back(word), rules.asked_for_missing = true;
+    }
+  } catch (UserError const&) {
+    return;  // what cannot be read so is not proposed
+  }
+}
+
 /// Words in place of numbers, as they are written.
 void add_missing(Layout const& layout, ReadingRules& rules) {
   constexpr std::size_t most_words = 6;
@@ -87,6 +117,12 @@ void add_missing(Layout const& layout, ReadingRules& rules) {
   each_number(layout, [&](std::string const& cell) {
     if (look_of(cell) == CellLook::gap && cell != "NA") add(cell);
   });
+  for (std::size_t c = 0; c < layout.columns.size(); ++c) {
+    if (layout.looks[c] != CellLook::number) continue;
+    std::vector<std::string> cells;
+    for (std::vector<std::string> const& row : layout.rows) cells.push_back(row[c]);
+    for (std::string const& word : few_words(cells)) add(word);
+  }
   if (!rules.asked_for_missing) {
     NumberNotation const notation{rules.decimal, rules.thousands, words};
     for (std::size_t c = 0; c < layout.columns.size(); ++c) {
@@ -96,7 +132,10 @@ void add_missing(Layout const& layout, ReadingRules& rules) {
         double value = 0;
         values.push_back(parse_cell(row[c], notation, value) == CellKind::number ? value : std::nan(""));
       }
-      if (auto const word = doubtful_number(values)) add(fmt::format("{:.10g}", *word));
+      for (auto word = doubtful_number(values); word; word = doubtful_number(values)) {
+        add(fmt::format("{}", *word));
+        std::replace(values.begin(), values.end(), *word, std::nan(""));
+      }
     }
   }
   if (words.empty()) return;
@@ -249,22 +288,45 @@ std::vector<std::string> distinct_names(std::vector<std::string> const& names) {
   return made;
 }
 
+namespace {
+
+/// A mark above all samples: further above them than they are apart, and they are not of one value, as those of a switch are.
+std::optional<double> doubtful_largest(std::vector<double> const& values) {
+  constexpr double marks[] = {999,   9999,       99999, 999.25, 999.9, 9999.9, 9999.99, 7999,    32767,
+                              65535, 2147483647, 1e20,  1e30,   1e31,  1e35,   9.9e37,  9.91e37, 3.4e38};
+  constexpr double beyond_measure = 1e29, times = 5;
+  double const infinity = std::numeric_limits<double>::infinity();
+  double most = -infinity, next = -infinity, least = infinity;
+  for (double const value : values)
+    if (!std::isnan(value)) most = std::max(most, value), least = std::min(least, value);
+  for (double const value : values)
+    if (value < most) next = std::max(next, value);
+  bool const far = next < most / times && most - next > times * (next - least) && next > least;
+  bool const mark = std::find(std::begin(marks), std::end(marks), most) != std::end(marks);
+  if (!far || (!mark && (most < beyond_measure || std::max(next, -least) > most * 1e-6))) return std::nullopt;
+  return most;
+}
+
+}  // namespace
+
 std::optional<double> doubtful_number(std::vector<double> const& values) {
   constexpr double marks[] = {-9999, -99999, -999, -999.25, -999.9, -9999.9, -9999.99, -32768, -1e30, -1e20};
   double least = std::numeric_limits<double>::infinity();
   for (double const value : values)
     if (!std::isnan(value)) least = std::min(least, value);
-  if (std::find(std::begin(marks), std::end(marks), least) == std::end(marks)) return std::nullopt;
+  if (std::find(std::begin(marks), std::end(marks), least) == std::end(marks)) return doubtful_largest(values);
   double next = std::numeric_limits<double>::infinity();
   for (double const value : values)
     if (value > least) next = std::min(next, value);
-  if (std::isinf(next) || next < least / 5) return std::nullopt;
+  if (std::isinf(next) || next < least / 5) return doubtful_largest(values);
   return least;
 }
 
 std::optional<Proposal> propose(std::string const& utf8, ReadingRules const& current) {
   std::optional<Layout> layout = find_layout(utf8);
   if (!layout || layout->rows.size() < 2) return std::nullopt;
+  // Half of a record is not proposed: whoever means it says which lines.
+  if (layout->broken != 0 && current.first_value == 0 && current.last_value == 0) return std::nullopt;
   if (current.units == UnitsPlace::names)
     for (std::string& column : layout->columns)
       if (auto const split = split_name(column)) column = split->name;
@@ -275,6 +337,7 @@ std::optional<Proposal> propose(std::string const& utf8, ReadingRules const& cur
   add_lines(utf8, *layout, all.rules.front());
   add_notation(*layout, all);
   for (ReadingRules& rules : all.rules) add_missing(*layout, rules);
+  for (ReadingRules& rules : all.rules) add_words_below(utf8, *layout, rules);
   add_stamps(*layout, proposal, all);
   std::erase_if(all.rules, [&](ReadingRules const& rules) { return !works(utf8, *layout, rules); });
   if (all.rules.empty()) return std::nullopt;
@@ -300,6 +363,11 @@ std::string advice(std::vector<ReadingRules> const& rules, ReadingRules const& c
 }
 
 }  // namespace
+
+int broken_line(std::string const& utf8) {
+  auto const layout = find_layout(utf8);
+  return layout && layout->rows.size() >= 2 ? layout->broken : 0;
+}
 
 std::string proposed_help(ProposalRequest const& request) {
   auto proposal = propose(request.bytes, request.rules);

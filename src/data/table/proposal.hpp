@@ -29,6 +29,9 @@ struct ProposalRequest {
 /// "add this line to the data block: `read decimal = ","`"; empty where other rules do not help.
 std::string proposed_help(ProposalRequest const& request);
 
+/// The line in the middle of a table that is none of its rows, for which nothing is proposed; 0: there is none.
+int broken_line(std::string const& utf8);
+
 /// The encoding in which bytes that are no UTF-8 would be read as a record.
 std::optional<std::string> proposed_encoding(std::string const& bytes, ReadingRules const& rules);
 

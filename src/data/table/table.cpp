@@ -213,7 +213,8 @@ std::vector<double> Table::numbers_as_told(std::string const& column, std::optio
 }
 
 int Table::row_of_doubtful_points(int column) const {
-  if (rules_.decimal_given || rules_.thousands != 0 || separator_ == ',') return 0;
+  if (rules_.decimal_given || rules_.thousands != 0) return 0;
+  if (separator_ == ',' && bytes_.find('"') == std::string::npos) return 0;  // no other cell has a decimal comma
   int points = 0, whole = 0, first = 0;
   for (int row = 1; row <= rows_; ++row) {
     NotationEvidence const evidence = notation_of(cell(row, column));
@@ -222,8 +223,19 @@ int Table::row_of_doubtful_points(int column) const {
     whole += evidence.plain_digits;
     if (evidence.either == '.' && first == 0) first = row;
   }
-  constexpr int enough = 3;
-  return points >= enough && whole > 0 ? first : 0;
+  if (points == 0 || whole == 0) return 0;
+  constexpr int many = 3;  // then nothing but the column itself decides
+  if (points >= many && separator_ != ',') return first;
+  // Of fewer, what other columns have: `0.25` decides for points, `0,25` for groups; between commas
+  // there are points.
+  bool comma = false;
+  for (int row = 1; row <= rows_; ++row)
+    for (int other = 0; other < static_cast<int>(columns_.size()); ++other) {
+      NotationEvidence const evidence = notation_of(cell(row, other));
+      if (evidence.number && evidence.decimal == '.') return 0;
+      comma = comma || (evidence.number && (evidence.decimal == ',' || evidence.either == ','));
+    }
+  return separator_ != ',' || comma ? first : 0;
 }
 
 std::vector<double> Table::times_as_told(std::string const& column, std::optional<Span> mention) const {

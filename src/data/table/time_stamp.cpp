@@ -272,10 +272,10 @@ bool is_time_stamp(std::string_view text) {
 }
 
 std::vector<std::string> patterns_of(std::vector<std::string> const& cells) {
-  static constexpr std::string_view dates[] = {"",           "YYYY-MM-DD", "YYYY/MM/DD",  "YYYY.MM.DD",  "DD.MM.YYYY",
-                                               "DD/MM/YYYY", "MM/DD/YYYY", "DD-MM-YYYY",  "MM-DD-YYYY",  "DD.MM.YY",
-                                               "DD/MM/YY",   "MM/DD/YY",   "YY/MM/DD",    "DD-MMM-YYYY", "DD MMM YYYY",
-                                               "DD-MMM-YY",  "YYYY-DDD",   "MMM DD YYYY", "YYYYMMDD"};
+  static constexpr std::string_view dates[] = {"",           "YYYY-MM-DD", "YYYY/MM/DD", "YYYY.MM.DD",  "DD.MM.YYYY",
+                                               "DD/MM/YYYY", "MM/DD/YYYY", "DD-MM-YYYY", "MM-DD-YYYY",  "DD.MM.YY",
+                                               "DD/MM/YY",   "MM/DD/YY",   "YY/MM/DD",   "DD-MMM-YYYY", "DD MMM YYYY",
+                                               "DD-MMM-YY",  "YYYY-DDD",   "YYYY-DD-MM", "MMM DD YYYY", "YYYYMMDD"};
   static constexpr std::string_view between[] = {" ", "T", ", ", "-", "_", ","};
   static constexpr std::string_view times[] = {"",           "hh:mm:ss",    "hh:mm:ss.f",    "hh:mm:ss,f",
                                                "hh:mm:ss:f", "hh:mm:ss AP", "hh:mm:ss.f AP", "hh:mm",
@@ -288,13 +288,20 @@ std::vector<std::string> patterns_of(std::vector<std::string> const& cells) {
     return std::all_of(cells.begin(), cells.end(), [&](std::string const& cell) { return pattern->read(cell).has_value(); });
   };
   if (fits(std::string(iso))) return {std::string(iso)};
+  // `2024-13` is no thirteenth day of a year.
+  auto const digit = [](std::string const& cell, std::size_t at) { return at < cell.size() && is_decimal_digit(cell[at]); };
+  bool const days_of_year = std::all_of(cells.begin(), cells.end(), [&](std::string const& cell) {
+    return digit(cell, 5) && digit(cell, 6) && digit(cell, 7) && !digit(cell, 8);
+  });
   for (std::string_view const date : dates) {
     bool taken = false;
+    if ((date == "YYYY-DDD" && !days_of_year) || (date == "YYYY-DD-MM" && !found.empty())) continue;
     for (std::string_view const time : times) {
       if (date.empty() && (time.empty() || time == "hhmmss")) continue;
       for (std::string_view const joint : between) {
         if ((date.empty() || time.empty()) && joint != between[0]) continue;
-        for (std::string_view const zone : {"", "zone"}) {
+        for (std::string_view const zone : {std::string_view(), std::string_view("zone")}) {
+          if (time.empty() && !zone.empty()) continue;  // `-04` behind a date is no zone
           std::string text = fmt::format("{}{}{}{}", date, date.empty() || time.empty() ? "" : joint, time, zone);
           if (taken || !fits(text)) continue;
           // `mm:ss.f` reads what `hh:mm` may have meant; the longer pattern comes first.

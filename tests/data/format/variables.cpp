@@ -185,6 +185,65 @@ TEST_CASE("variables of NetCDF files of every kind are read by their paths, scal
   }
 }
 
+TEST_CASE("a NetCDF variable is read without its sign and within its valid range, and not with a scale that is text") {
+  Scratch const path("valid.nc");
+  int file = -1, rows = -1, id = -1;
+  REQUIRE(nc_create(path.path.c_str(), NC_CLOBBER, &file) == NC_NOERR);
+  nc_def_dim(file, "row", 3, &rows);
+  nc_def_var(file, "byte", NC_BYTE, 1, &rows, &id);
+  nc_put_att_text(file, id, "_Unsigned", 4, "true");
+  nc_def_var(file, "ranged", NC_DOUBLE, 1, &rows, &id);
+  double const range[] = {-100, 100}, most = 2;
+  nc_put_att_double(file, id, "valid_range", NC_DOUBLE, 2, range);
+  nc_def_var(file, "limited", NC_DOUBLE, 1, &rows, &id);
+  nc_put_att_double(file, id, "valid_max", NC_DOUBLE, 1, &most);
+  nc_def_var(file, "scaled", NC_DOUBLE, 1, &rows, &id);
+  nc_put_att_text(file, id, "scale_factor", 3, "0.1");
+  nc_enddef(file);
+  signed char const bytes[] = {0, 100, -36};
+  double const values[] = {-100, 2, 1e20};
+  nc_put_var_schar(file, 0, bytes);
+  for (int variable = 1; variable <= 3; ++variable) nc_put_var_double(file, variable, values);
+  nc_close(file);
+  auto const record = open_record(path.path, {});
+  CHECK(record->numbers("byte") == Numbers{0, 100, 220});
+  for (char const* const name : {"ranged", "limited"}) {
+    Numbers const read = record->numbers(name);
+    CHECK((read[0] == -100 && read[1] == 2 && std::isnan(read[2])));
+  }
+  CHECK(contains(refusal(*record, "scaled").message, "has a `scale_factor` that is no number"));
+}
+
+TEST_CASE("a MATLAB file that was cut is refused, at whatever place, and a whole one is not") {
+  for (matio_compression const how : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
+    Scratch const path("cut.mat");
+    mat_t* const file = Mat_CreateVer(path.path.c_str(), nullptr, MAT_FT_MAT5);
+    REQUIRE(file != nullptr);
+    Numbers values;
+    for (int i = 0; i < 2000; ++i) values.push_back(std::sin(i));
+    for (char const* const name : {"t", "y"}) {
+      matvar_t* const variable = doubles(name, values.size(), 1, values.data());
+      Mat_VarWrite(file, variable, how);
+      Mat_VarFree(variable);
+    }
+    Mat_Close(file);
+    std::string const whole = read_file(path.path);
+    CHECK(open_record(path.path, {})->numbers("y") == values);
+    for (std::size_t const left :
+         {whole.size() - 1, whole.size() * 3 / 4, whole.size() / 2 + 8, whole.size() / 3, std::size_t{130}}) {
+      CAPTURE(left);
+      std::ofstream(path.path, std::ios::binary | std::ios::trunc).write(whole.data(), static_cast<std::streamsize>(left));
+      std::string code;
+      try {
+        open_record(path.path, {});
+      } catch (UserError const& error) {
+        code = error.diagnostic().code;
+      }
+      CHECK(code == "E4023");
+    }
+  }
+}
+
 TEST_CASE("damaged MATLAB and NetCDF files are refused or read, and end no program") {
   Scratch const five("five.mat"), seven("seven.mat"), classic("classic.nc"), four("four.nc");
   write_matlab(five.path, MAT_FT_MAT5);

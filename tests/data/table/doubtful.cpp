@@ -1,0 +1,106 @@
+// What could be read in two ways is asked about, and what is plain is not.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "core/text/diagnostic.hpp"
+#include "data/record.hpp"
+#include "data/table/proposal.hpp"
+#include "data/table/table.hpp"
+#include "data/temporary_file.hpp"
+
+using namespace sysid;
+
+namespace {
+
+Table table_of(std::string bytes, ReadingRules const& rules = {}) {
+  return Table::parse("run.csv", std::move(bytes), std::nullopt, 0, rules);
+}
+
+/// The message about a column, or one without a code.
+Diagnostic said_about(std::string bytes, std::string const& column, ReadingRules const& rules = {}) {
+  try {
+    (void)table_of(std::move(bytes), rules).numbers(column);
+  } catch (UserError const& error) {
+    return error.diagnostic();
+  }
+  return {};
+}
+
+bool has_part(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+
+/// 40 rows, of which row 20 is `odd`.
+std::string rows_with(std::string const& odd) {
+  std::string text = "t,y\n";
+  for (int i = 0; i < 40; ++i) text += i == 20 ? odd + "\n" : std::to_string(i) + "," + std::to_string(i % 7) + ".5\n";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a large mark far above all samples is asked about, and a large sample among others is not") {
+  for (char const* const mark : {"9999", "999", "99999", "7999", "32767", "1e20", "1e30", "9.9E37", "3.4028235e38", "9.91e37"}) {
+    CAPTURE(mark);
+    Diagnostic const asked = said_about(rows_with(std::string("20,") + mark), "y");
+    CHECK(asked.code == "E4022");
+    ReadingRules rules;
+    rules.missing = {mark};
+    rules.asked_for_missing = true;
+    CHECK(std::isnan(table_of(rows_with(std::string("20,") + mark), rules).numbers("y")[20]));
+  }
+  // The line that is proposed does take the sample out.
+  CHECK(has_part(said_about(rows_with("20,3.4028235e38"), "y").help, "3.4028235e+38"));
+  CHECK(said_about("t,y\n0,990\n1,999\n2,980\n", "y").code.empty());
+  CHECK(said_about("t,y\n0,0\n1,9999\n2,0\n3,9999\n", "y").code.empty());  // a switch
+  CHECK(said_about("t,y\n0,1\n1,3\n2,70\n3,1000\n", "y").code.empty());
+  CHECK(said_about("t,y\n0,1\n1,12\n2,170\n3,999\n", "y").code.empty());
+}
+
+TEST_CASE("one point before three digits beside whole numbers is asked about where nothing decides") {
+  CHECK(said_about("t;y\n0;950\n1;975\n2;1.001\n3;960\n", "y").code == "E4021");
+  CHECK(said_about("t;y\n0;-950\n1;-1.050\n2;-990\n", "y").code == "E4021");
+  CHECK(said_about("t,y,z\n0,950,\"0,25\"\n1,1.001,\"0,5\"\n", "y").code == "E4021");
+  CHECK(said_about("t;y\n0;1.234\n1;1.345\n2;2.011\n", "y").code.empty());
+  CHECK(said_about("t;y\n0;950\n1;1.001\n2;3.5\n", "y").code.empty());
+  CHECK(said_about("t;y\n0.25;950\n0.5;1.001\n", "y").code.empty());
+  CHECK(said_about("t,y\n0,950\n1,1.001\n2,960\n", "y").code.empty());
+  ReadingRules german;
+  german.decimal = ',';
+  german.decimal_given = true;
+  german.thousands = '.';
+  CHECK(table_of("t;y\n0;950\n1;1.001\n", german).numbers("y")[1] == 1001);
+  CHECK(said_about("t;y\n0;950\n1;0.500\n", "y", german).code == "E4010");
+}
+
+TEST_CASE("a broken row in the middle does not make half a record, and a footer is left out") {
+  for (char const* const odd : {"ERR,ERR", "Reconnect", "--- buffer overrun, 3 samples lost ---"}) {
+    CAPTURE(odd);
+    CHECK_FALSE(propose(rows_with(odd), {}));
+    CHECK(broken_line(rows_with(odd)) == 22);
+  }
+  std::string const footed = rows_with("20,1.5") + "end of record\n";
+  CHECK(broken_line(footed) == 0);
+  auto const proposal = propose(footed, {});
+  REQUIRE(proposal);
+  CHECK(proposal->rules.front().last_value == 41);
+}
+
+TEST_CASE("a word in a column of numbers is proposed as missing, also far below, and a number with its unit is not") {
+  CHECK(has_part(said_about(rows_with("20,OVLD"), "y").help, "read missing = \"OVLD\""));
+  CHECK_FALSE(has_part(said_about(rows_with("20,1.5 mm"), "y").help, "missing ="));
+  std::string text = "t,y\n";
+  for (int i = 0; i < 25000; ++i) text += std::to_string(i) + "," + (i == 24000 ? "OVLD" : std::to_string(i % 7) + ".5") + "\n";
+  CHECK(has_part(said_about(text, "y").help, "read missing = \"OVLD\""));
+}
+
+TEST_CASE("a date with the day before the month is proposed as one, and no month as a zone") {
+  ReadingRules rules;
+  rules.time_column = "time";
+  auto const proposal = propose("time,y\n2024-13-04,1.5\n2024-14-05,2.25\n2024-15-06,3\n", rules);
+  REQUIRE(proposal);
+  CHECK(proposal->rules.size() == 1);
+  CHECK(proposal->rules.front().stamp == "YYYY-DD-MM");
+  auto const days = propose("time,y\n2024-133 10:00:00,1.5\n2024-134 10:00:00,2.25\n", rules);
+  REQUIRE(days);
+  CHECK(days->rules.front().stamp == "YYYY-DDD hh:mm:ss");
+}
