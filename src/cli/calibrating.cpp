@@ -3,7 +3,6 @@
 
 #include "app/calibration/calibrate.hpp"
 #include "app/calibration/crosscheck.hpp"
-#include "app/session/same_on_ranks.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
 #include "cli/spread.hpp"
@@ -12,6 +11,7 @@
 #include "core/system/progress_terminal.hpp"
 #include "core/text/wrapped.hpp"
 #include "inference/table.hpp"
+#include "load/same_on_ranks.hpp"
 
 namespace sysid::cli {
 namespace {

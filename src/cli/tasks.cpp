@@ -4,7 +4,6 @@
 
 #include "app/disturbed/fit_disturbed.hpp"
 #include "app/run/pipeline.hpp"
-#include "app/session/same_on_ranks.hpp"
 #include "cli/command.hpp"
 #include "cli/options.hpp"
 #include "cli/spread.hpp"
@@ -13,6 +12,7 @@
 #include "core/system/interrupt.hpp"
 #include "core/system/progress_terminal.hpp"
 #include "core/text/wrapped.hpp"
+#include "load/same_on_ranks.hpp"
 
 namespace sysid::cli {
 namespace {

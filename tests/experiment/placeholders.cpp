@@ -1,4 +1,5 @@
-// Numbers written where a sensor gave none, in inputs and in what is measured: `check` names their rows, and so does a fit.
+// Numbers written where a sensor gave none, in inputs and in what is measured: `check` names their rows, and so does a fit. Those
+// that loggers are known to write are asked about before (E4022), unless the data block says that none of them is a mark.
 #include "experiment/placeholders.hpp"
 
 #include <doctest/doctest.h>
@@ -30,7 +31,8 @@ std::string table(Change const& change) {
 std::string const text =
     "model m {\n input u [N]\n state y [m]\n initial y = 0\n parameter c [1/s] ~ log_uniform(0.1, 10)\n"
     " parameter b [m/(N s)] ~ log_uniform(0.01, 10)\n y' = b*u - c*y\n observe z [m] ~ normal(y, sd = 0.001 [m])\n}\n"
-    "data record { file \"record.csv\"; time t [s]; input u = force [mN] hold linear; measure z = level [mm]; split middle = rows "
+    "data record { file \"record.csv\"; read missing = none; time t [s]; input u = force [mN] hold linear; measure z = level [mm]; "
+    "split middle = rows "
     "101..190 }\n"
     "posterior = fit m to record.middle with map, seed = 1\n";
 

@@ -9,11 +9,11 @@
 #include <set>
 #include <string>
 
-#include "app/session/same_on_ranks.hpp"
 #include "experiment/experiments.hpp"
 #include "inference/table.hpp"
 #include "likelihood/member_coordinate.hpp"
 #include "likelihood/simulated_parameters.hpp"
+#include "load/same_on_ranks.hpp"
 #include "model/lags.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"

@@ -1,8 +1,10 @@
 // Ranks that run another text or have other data would come to results that belong to none of them: said before the first task.
 #pragma once
 #include <map>
+#include <string>
 
-#include "app/session/session.hpp"
+#include "check/checked/checked.hpp"
+#include "core/text/source.hpp"
 
 namespace sysid {
 

@@ -1,5 +1,5 @@
 // Digests are compared; of texts that differ, rank 0 has the other too, and shows the first line that is not the same.
-#include "app/session/same_on_ranks.hpp"
+#include "load/same_on_ranks.hpp"
 
 #include <fmt/format.h>
 
