@@ -154,7 +154,7 @@ bool wait_for(std::filesystem::path const& path, double seconds) {
 }
 
 /// What a job is that takes long enough to be stopped, and stores each population.
-CaseDesk long_selection() { return {"bouc_wen", "abc_smc\\([^)]*\\)", "abc_smc(particles = 1500, populations = 6)"}; }
+CaseDesk long_selection() { return {"bouc_wen", "abc_smc\\([^)]*\\)", "abc_smc(particles = 6000, populations = 6)"}; }
 
 }  // namespace
 

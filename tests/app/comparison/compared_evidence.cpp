@@ -91,7 +91,7 @@ TEST_CASE("a Bayes factor is given over half and twice the widths of the priors 
   auto const shared = prior_width_notes({"a", "b"}, fits, {widths("k", 0.6, -0.7), widths("k", 0.6, -0.7)});
   CHECK(shared[0].find("between -2.0 and -2.0") != std::string::npos);
   auto const unknown = prior_width_notes({"a", "b"}, fits, {widths("k", 0.6, nullptr), widths("k", 0.6, -0.7)});
-  CHECK(unknown[0].find("the draws do not show what the prior of `k` does") != std::string::npos);
+  CHECK(unknown[0].find("the draws do not show what effect the prior of `k` has") != std::string::npos);
   fits[1].log_evidence = -30;
   CHECK(prior_width_notes({"a", "b"}, fits, {widths("k3", 0.6, -0.7), widths("k", 0.3, -0.4)}).empty());
   CHECK(prior_width_notes({"a", "a"}, fits, {widths("k3", 0.6, -0.7), widths("k", 0.3, -0.4)}).empty());

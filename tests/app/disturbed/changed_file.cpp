@@ -183,7 +183,7 @@ TEST_CASE("a model that can have no disturbance is refused where it says so") {
   auto const [rows, at_rows] = refused(
       "model line {\n input x\n parameter a ~ normal(0, sd = 1)\n observe d ~ normal(a*x, sd = 1)\n}\n"
       "data b { file \"b.csv\"; input x = x; measure d = y }\npost = fit line to b with map\n");
-  CHECK(has(rows, "the rows of `line` are independent"));
+  CHECK(has(rows, "`line` has no states"));
   CHECK(has(at_rows, "fit"));
   auto const [past, at_past] = refused(
       "model arx {\n time discrete 1 [s]\n input u\n parameter a ~ uniform(-1, 1)\n"

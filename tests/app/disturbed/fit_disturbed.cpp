@@ -117,7 +117,7 @@ TEST_CASE("a fit that does not move says nothing of how large a disturbance may 
     pair.run();
     FAIL("nothing was refused");
   } catch (UserError const& error) {
-    CHECK(contains(error.diagnostic().message, "how large a disturbance may be is not known"));
+    CHECK(contains(error.diagnostic().message, "the size of a disturbance cannot be estimated"));
     CHECK(error.diagnostic().primary);
   }
 }
@@ -160,7 +160,9 @@ TEST_CASE("a fit that would write over the results of another task is left as it
   Pair pair(shaken_record(5, 0.05, 400));
   std::string const both = plain + "post_with_disturbance = fit shaken to bench with map, seed = 2\n";
   pair.run(both);
-  CHECK(contains(pair.notices.str(), "post: fitted without a disturbance only: `post_with_disturbance` would be the name"));
+  CHECK(
+      contains(pair.notices.str(),
+               "post: fitted without a disturbance only: this fit with a disturbance would have the name `post_with_disturbance`"));
   CHECK(pair.summary("post_with_disturbance").at("seed") == 2);
   CHECK(contains(pair.out.str(), "\nunmeasured: "));  // of the other fit
 }

@@ -157,8 +157,8 @@ TEST_CASE("a damaged checkpoint and one of another text are told apart") {
   options.resume = true;
   Answer const other = run("rate", output.path(), {}, options);
   CHECK(other.exit == ExitCode::user_error);
-  CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` belongs to another text, data, seed or verb") !=
-        std::string::npos);
+  CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` belongs to a run with another text of the file, other "
+                            "data, another seed or another command") != std::string::npos);
   for (std::size_t const at : {checkpoint.size() / 4, checkpoint.size() / 2, checkpoint.size() - 1}) {
     std::string flipped = checkpoint;
     flipped[at] = static_cast<char>(flipped[at] ^ 4);
