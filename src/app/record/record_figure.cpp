@@ -1,3 +1,4 @@
+// The columns over time, one panel each.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// For programs.
 #include <nlohmann/json.hpp>
 
 #include "app/record/record_text.hpp"

@@ -1,3 +1,4 @@
+// For people: time, columns, remarks, and the data block.
 #include "app/record/record_text.hpp"
 
 #include <fmt/format.h>

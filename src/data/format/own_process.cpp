@@ -1,3 +1,4 @@
+// A forked child does the work, under limits of memory and time, and its answer comes back through a pipe.
 #include "data/format/own_process.hpp"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// Finds arrays by path, and rows and columns of matrices among them.
 #include "data/format/variables.hpp"
 
 #include <fmt/format.h>

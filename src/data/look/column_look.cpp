@@ -1,3 +1,4 @@
+// One pass over the numbers, and what follows from it.
 #include "data/look/column_look.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Names and units of the file become statements of the language.
 #include "data/look/paste_block.hpp"
 
 #include <fmt/format.h>

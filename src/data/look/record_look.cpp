@@ -1,3 +1,4 @@
+// Which column is the time, and what its steps show.
 #include "data/look/record_look.hpp"
 
 #include <fmt/format.h>

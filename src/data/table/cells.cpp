@@ -1,3 +1,4 @@
+// A line is cut at its separators; what stands in quotes is one cell.
 #include "data/table/cells.hpp"
 
 #include <algorithm>

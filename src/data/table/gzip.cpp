@@ -1,3 +1,4 @@
+// Inflates piece by piece.
 #include "data/table/gzip.hpp"
 
 #include <fmt/format.h>

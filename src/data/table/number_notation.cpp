@@ -1,3 +1,4 @@
+// From cells to numbers, and which notation a cell may have.
 #include "data/table/number_notation.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The size is looked at before the bytes are read.
 #include "data/table/record_bytes.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// From lines to the places of cells, by the rules of the data block.
 #include "data/table/table_parser.hpp"
 
 #include <algorithm>

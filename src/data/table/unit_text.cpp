@@ -1,3 +1,4 @@
+// Spellings of units that the language does not know, and what it calls them.
 #include "data/table/unit_text.hpp"
 
 #include <algorithm>
