@@ -34,8 +34,16 @@ def executed(notebook, folder, **options):
     return notebook
 
 
+def without_numbers(data):
+    return {kind: re.sub(r"[ -]+", " ", re.sub(r"\d+(\.\d+)?(e[+-]\d+)?", "#", text)) for kind, text in data.items()}
+
+
 def shown(cell):
-    """What a cell has printed and shown, without pictures, whose fonts differ from machine to machine, and without progress."""
+    """What a cell has printed and shown, without pictures, whose fonts differ from machine to machine, and without progress.
+
+    Draws of another sampler hang on the last digits of NumPy's functions, which differ from processor to processor: of cells with
+    this tag only the layout is compared, and the cell itself asserts how far its numbers may lie from ours.
+    """
     found = []
     for output in cell.get("outputs", []):
         if output.output_type == "stream":
@@ -47,7 +55,7 @@ def shown(cell):
             if "text/html" in data:
                 data["text/html"] = re.sub("base64,[^']*", "a picture", data["text/html"])
             if data != {"text/plain": ""}:
-                found.append(data)
+                found.append(without_numbers(data) if "draws of emcee" in cell.metadata.get("tags", []) else data)
     return found
 
 
