@@ -54,7 +54,7 @@ constexpr Command commands[] = {
      "sysid manual fit | man -l -\nsysid manual -o ~/.local/share/man/man1"},
     {"completion", looking_up, "print the completion of commands and options for a shell", &declare_completion,
      "source <(sysid completion bash)\nsysid completion fish > ~/.config/fish/completions/sysid.fish"},
-    {"version", looking_up, "print the version and the instruction set in use", &declare_version, ""},
+    {"version", looking_up, "print version, instruction set and MPI library", &declare_version, ""},
 };
 
 void add_verbs(CLI::App& app, Messages const& messages, ExitCode& exit) {

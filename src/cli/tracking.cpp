@@ -93,12 +93,12 @@ Work declare_track(CLI::App& verb) {
       ->type_name("CSV")
       ->check(refuse_no_path);
   verb.add_flag("--follow", track.follow, "wait for rows that are appended to the file, until Ctrl-C");
-  verb.add_flag("--at-rest", track.at_rest, "the states have the model's initial values at the first row");
+  verb.add_flag("--at-rest", track.at_rest, "start at the model's initial values in the first row");
   verb.add_option("--parameters", track.parameters, "parameters to track, separated by commas (default: all in equations)")
       ->delimiter(',')
       ->type_name("NAMES");
   verb.add_option("--drift", options->drift,
-                  "sd of the change of a parameter in 1000 rows, as a fraction of its value; or in a time, such as 0.05/day")
+                  "relative sd of the change of a parameter in 1000 rows, or in a time as in 0.05/day")
       ->type_name("DRIFT")
       ->check([&track](std::string const& text) { return read_drift(text, track.drift); })
       ->default_str("0.01");
@@ -117,7 +117,7 @@ Work declare_track(CLI::App& verb) {
   add_output(verb, options->run.output);
   verb.add_flag("--force", options->run.force, "replace existing results");
   verb.add_flag("-q,--quiet", options->quiet, "print no notices");
-  add_figures(verb, options->run, "write figures as scripts only");
+  add_figures(verb, options->run, "write gnuplot scripts only");
   return [options](Messages const& messages) { return run(messages, *options); };
 }
 

@@ -260,7 +260,7 @@ Diagnostic value_missing(Span span, Names const& parameters) {
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate) {
   return error("E6101", span,
                fmt::format("this multisine reaches {:.6g} Hz, but half the sampling rate is {:.6g} Hz", highest, half_rate),
-               "lower `highest`, or raise `rate`");
+               "reduce `highest` or raise `rate`");
 }
 
 Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr SettingRow rows[] = {
     {"least_ratio", SettingKind::real, "0", 0, 1, "",
-     "smallest error reduction ratio of a term that is taken; 0: the number of terms that has the largest evidence"},
+     "smallest error reduction ratio of a term that is taken; 0: as many terms as maximise the evidence"},
 };
 
 /// Supports offered as candidates beside the chosen one.
