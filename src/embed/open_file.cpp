@@ -30,6 +30,10 @@ void point(CheckedFile& file, std::map<std::string, std::string> const& records)
       unknown(fmt::format("there is no data block `{}` in this file", name), fmt::format("it has {}", names_of(file.data)));
     block->path = path;
     block->shown_path = fmt::format("{} (arrays)", name);
+    // The table of the arrays is plain, however the file is written that it replaces.
+    block->rules = {};
+    block->rules.names = 1;
+    block->rules.separator = ',';
   }
 }
 

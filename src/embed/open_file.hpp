@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <sstream>
 #include <string>
 
@@ -44,6 +45,8 @@ class OpenDensity {
   /// Of all calls so far. Held while another thread adds to it.
   Ledger ledger() const;
   void add(Ledger const& ledger);
+  /// Held shared by whoever uses the density, and alone for FitDensity::prepare, which replaces what the others compute with.
+  std::shared_mutex& in_use() const { return in_use_; }
 
  private:
   std::shared_ptr<OpenFile const> file_;
@@ -53,6 +56,7 @@ class OpenDensity {
   Session session_;
   std::unique_ptr<FitDensity> density_;
   mutable std::mutex mutex_;
+  mutable std::shared_mutex in_use_;
   Ledger ledger_;
 };
 

@@ -3,6 +3,9 @@
 
 #include <pybind11/stl.h>
 
+#include <mutex>
+#include <shared_mutex>
+
 #include "core/numeric/random.hpp"
 #include "diagnostics/tolerance/tolerance.hpp"
 #include "embed/density_values.hpp"
@@ -155,7 +158,29 @@ py::list failures(OpenDensity const& of) {
   return all;
 }
 
+/// The same function for threads beside one that prepares: it waits without the interpreter lock.
+template <class Of, class Result, class... Arguments>
+auto shared(Result (*function)(Of&, Arguments...)) {
+  return [function](Of& of, Arguments... arguments) -> Result {
+    std::shared_lock<std::shared_mutex> lock(of.in_use(), std::defer_lock);
+    {
+      py::gil_scoped_release const released;
+      lock.lock();
+    }
+    return function(of, std::forward<Arguments>(arguments)...);
+  };
+}
+
+int dimension(OpenDensity const& of) { return of.target().dimension(); }
+int residual_count(OpenDensity const& of) { return of.target().residual_count(); }
+std::string solver(OpenDensity const& of) { return of.density().integrated() ? accuracy(of.density().solver()) : std::string(); }
+
 bool prepare(OpenDensity& of, std::uint64_t seed) {
+  std::unique_lock<std::shared_mutex> lock(of.in_use(), std::defer_lock);
+  {
+    py::gil_scoped_release const released;
+    lock.lock();
+  }
   return computed(of, [&] { return of.density().prepare(seed); });
 }
 
@@ -167,29 +192,27 @@ void bind_density(py::module_& module) {
              return interruptible(file->source(), [&] { return std::make_unique<OpenDensity>(file, task, threads); });
            }),
            py::arg("file"), py::arg("task"), py::arg("threads"), py::call_guard<py::gil_scoped_release>())
-      .def_property_readonly("dimension", [](OpenDensity const& of) { return of.target().dimension(); })
-      .def_property_readonly("residual_count", [](OpenDensity const& of) { return of.target().residual_count(); })
+      .def_property_readonly("dimension", shared(&dimension))
+      .def_property_readonly("residual_count", shared(&residual_count))
       .def_property_readonly("experiments",
                              [](OpenDensity const& of) {
                                std::vector<std::string> names;
                                for (int e = 0; e < of.density().experiments(); ++e) names.push_back(of.density().name(e));
                                return names;
                              })
-      .def_property_readonly(
-          "solver",
-          [](OpenDensity const& of) { return of.density().integrated() ? accuracy(of.density().solver()) : std::string(); })
-      .def_property_readonly("parameters", &parameters)
-      .def_property_readonly("modes", &modes)
+      .def_property_readonly("solver", shared(&solver))
+      .def_property_readonly("parameters", shared(&parameters))
+      .def_property_readonly("modes", shared(&modes))
       .def_property_readonly("failures", &failures)
       .def_property_readonly("solves", [](OpenDensity const& of) { return of.ledger().solves(); })
-      .def("log_density", &log_density_of, py::arg("values"), py::arg("declared"), py::arg("part"))
-      .def("value_and_gradient", &value_and_gradient, py::arg("theta"))
-      .def("residuals", &residuals, py::arg("theta"))
-      .def("residuals_with_jacobian", &residuals_with_jacobian, py::arg("theta"))
-      .def("constrain", &constrain, py::arg("theta"))
-      .def("unconstrain", &unconstrain, py::arg("values"))
-      .def("sample_prior", &sample_prior, py::arg("count"), py::arg("seed"))
-      .def("simulate", &simulate, py::arg("values"), py::arg("experiment"), py::arg("seed"))
+      .def("log_density", shared(&log_density_of), py::arg("values"), py::arg("declared"), py::arg("part"))
+      .def("value_and_gradient", shared(&value_and_gradient), py::arg("theta"))
+      .def("residuals", shared(&residuals), py::arg("theta"))
+      .def("residuals_with_jacobian", shared(&residuals_with_jacobian), py::arg("theta"))
+      .def("constrain", shared(&constrain), py::arg("theta"))
+      .def("unconstrain", shared(&unconstrain), py::arg("values"))
+      .def("sample_prior", shared(&sample_prior), py::arg("count"), py::arg("seed"))
+      .def("simulate", shared(&simulate), py::arg("values"), py::arg("experiment"), py::arg("seed"))
       .def("prepare", &prepare, py::arg("seed"));
 }
 

@@ -281,6 +281,44 @@ class Data(unittest.TestCase):
             self.assertEqual(model.residual_count, 20)
             self.assertEqual(model.log_density(np.zeros(2)), expected)
 
+    def test_arrays_are_no_file(self):
+        """How the file is written that they replace says nothing of them, nor do names and rows that a table would need."""
+        expected = sysid.loads(LINE, data={"u": U, "d": D}).log_density(np.zeros(2))
+        for rules in (
+            'decimal = ",", thousands = "."',
+            "values = 4",
+            "units = 2",
+            "missing = 0",
+            'separator = ";"',
+            "encoding = utf16",
+            "names = 3",
+        ):
+            with self.subTest(rules=rules):
+                text = LINE.replace('"nowhere.csv"\n', f'"nowhere.csv"\n  read    {rules}\n')
+                self.assertEqual(sysid.loads(text, data={"u": U, "d": D}).log_density(np.zeros(2)), expected)
+        for name in ("X[:, 2]", "u;;;", "#u", "u, V"):
+            with self.subTest(name=name):
+                text = LINE.replace("u = u [V]", f'u = "{name}" [V]')
+                self.assertEqual(sysid.loads(text, data={name: U, "d": D}).log_density(np.zeros(2)), expected)
+
+    def test_rows_that_are_missing_at_the_end_are_rows(self):
+        text = """model decay {
+  parameter a ~ normal(0, sd = 1)
+  state z
+  z' = -a*z/(1 [s])
+  initial z = 1
+  observe z ~ normal(z, sd = 0.1)
+}
+data bench {
+  file    "nowhere.csv"
+  rate    1 [Hz]
+  measure z = z
+}
+posterior = fit decay to bench with mh, seed = 1
+"""
+        made = sysid.loads(text, data={"z": [1, 0.4, np.nan, np.nan]}).simulate([0.5], seed=1)
+        self.assertEqual(len(made["time"] if isinstance(made, dict) else made.time), 4)
+
     def test_the_index_of_a_frame_is_a_column(self):
         import pandas
 
@@ -422,6 +460,28 @@ posterior = fit growth to bench with mh, seed = 1
 
 
 class Running(unittest.TestCase):
+    def test_a_thread_that_prepares_beside_others(self):
+        model = sysid.load(DUFFING, threads=1)
+        theta = model.sample_prior(8, seed=2)
+        ended = threading.Event()
+        wrong = []
+
+        def compute():
+            while not ended.is_set():
+                if model.log_density(theta).shape != (8,):
+                    wrong.append("shape")
+
+        workers = [threading.Thread(target=compute) for _ in range(2)]
+        for worker in workers:
+            worker.start()
+        for seed in (1, 2):
+            model.prepare(seed=seed)
+        ended.set()
+        for worker in workers:
+            worker.join()
+        self.assertEqual(wrong, [])
+        np.testing.assert_array_equal(model.log_density(theta), model.log_density(theta))
+
     def test_threads_and_forks(self):
         model = sysid.load(DUFFING)
         theta = model.sample_prior(64, seed=2)

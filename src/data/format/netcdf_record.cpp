@@ -137,6 +137,19 @@ std::vector<Variable> list_netcdf(std::string const& path) {
   return all;
 }
 
+/// Whether the NetCDF library wrote the file. HDF5 files of other programs have no numbers that it fills in.
+bool by_netcdf(int file) {
+  int format = 0;
+  std::size_t length = 0;
+  return nc_inq_format(file, &format) == NC_NOERR && ((format != NC_FORMAT_NETCDF4 && format != NC_FORMAT_NETCDF4_CLASSIC) ||
+                                                      nc_inq_attlen(file, NC_GLOBAL, "_NCProperties", &length) == NC_NOERR);
+}
+
+/// A number of an attribute as the variable's type holds it: 1e20 as a float is another double than 1e20.
+double as_stored(double number, nc_type type) {
+  return type == NC_FLOAT ? static_cast<double>(static_cast<float>(number)) : number;
+}
+
 /// What unwritten numbers of a type are, where the file does not say.
 std::optional<double> usual_fill(nc_type type) {
   switch (type) {
@@ -161,29 +174,36 @@ std::optional<double> usual_fill(nc_type type) {
   }
 }
 
-/// `valid_range`, `valid_min` and `valid_max`: of the numbers as stored where they have their type, else of the scaled ones.
+/// `valid_range`, `valid_min` and `valid_max`: of the numbers as stored, but of the scaled ones where stored ones are integers and
+/// the bound is not.
 struct ValidRange {
-  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
-  bool scaled = false;
+  struct Bound {
+    double at;
+    bool scaled = false;
+  };
+  Bound least{-std::numeric_limits<double>::infinity()}, most{std::numeric_limits<double>::infinity()};
 
   ValidRange(int group, int variable, nc_type type, double wrap) {
-    auto const bound = [&](char const* name, std::size_t index, double& to) {
+    auto const bound = [&](char const* name, std::size_t index, Bound& to) {
       std::vector<double> const values = numbers_attribute(group, variable, name);
       if (values.size() <= index) return;
       nc_type stored = 0;
       nc_inq_atttype(group, variable, name, &stored);
-      scaled = stored != type;
-      to = values[index] < 0 && !scaled ? values[index] + wrap : values[index];
+      bool const real = stored == NC_FLOAT || stored == NC_DOUBLE;
+      bool const scaled = real && type != NC_FLOAT && type != NC_DOUBLE;
+      to = {values[index] < 0 && !scaled ? values[index] + wrap : as_stored(values[index], type), scaled};
     };
     bound("valid_min", 0, least);
     bound("valid_max", 0, most);
     bound("valid_range", 0, least);
     bound("valid_range", 1, most);
   }
-  bool has(double stored, double value) const { return !((scaled ? value : stored) < least || (scaled ? value : stored) > most); }
+  bool has(double stored, double value) const {
+    return !((least.scaled ? value : stored) < least.at) && !((most.scaled ? value : stored) > most.at);
+  }
 };
 
-std::vector<double> numbers_of(int group, int variable) {
+std::vector<double> numbers_of(int file, int group, int variable) {
   nc_type type = 0;
   if (nc_inq_vartype(group, variable, &type) != NC_NOERR || !netcdf_refusal(type).empty()) throw std::runtime_error("no numbers");
   std::size_t count = 1;
@@ -191,8 +211,9 @@ std::vector<double> numbers_of(int group, int variable) {
   std::vector<double> values(count);
   if (count > 0 && nc_get_var_double(group, variable, values.data()) != NC_NOERR) throw std::runtime_error("no data");
   auto fill = number_attribute(group, variable, "_FillValue");
-  if (!fill) fill = usual_fill(type);
-  std::vector<double> const missing = numbers_attribute(group, variable, "missing_value");
+  if (!fill && by_netcdf(file)) fill = usual_fill(type);
+  std::vector<double> missing = numbers_attribute(group, variable, "missing_value");
+  for (double& each : missing) each = as_stored(each, type);
   double const scale = number_attribute(group, variable, "scale_factor").value_or(1);
   double const offset = number_attribute(group, variable, "add_offset").value_or(0);
   double const wrap = unsigned_wrap(group, variable, type);
@@ -210,7 +231,7 @@ std::vector<double> read_netcdf(std::string const& path, std::string const& name
   NetcdfFile const file(path);
   std::optional<std::vector<double>> values;
   each_variable(file.id, "", 0, [&](std::string const& each, int group, int variable) {
-    if (each == name) values = numbers_of(group, variable);
+    if (each == name) values = numbers_of(file.id, group, variable);
     return !values;
   });
   if (!values) throw std::runtime_error("no such variable");

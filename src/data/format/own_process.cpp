@@ -14,7 +14,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
+#include <utility>
 
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
@@ -48,6 +50,8 @@ void limit(int resource, rlim_t value) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
+int constexpr answer = STDERR_FILENO + 1;  // where the copy writes to
+
 /// In the copy: default signals, no output, limits; then the work.
 [[noreturn]] void work_and_exit(int out, std::size_t memory, std::function<std::string()> const& work) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -59,10 +63,15 @@ void limit(int resource, rlim_t value) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, 60 + memory / 10'000'000);
   limit(RLIMIT_AS, space_in_use() + memory);
+  // Files of the process that asked are closed, with their locks, and one more can be open at a time: the record. HDF5 would follow
+  // a dataset that says that its numbers lie in another file, whichever it is.
+  if (out != answer) ::dup2(out, answer);
+  ::close_range(answer + 1, ~0U, 0);
+  limit(RLIMIT_NOFILE, answer + 2);
   ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
   try {
     std::string const result = work();
-    ::_exit(write_all(out, "!", 1) && write_all(out, result.data(), result.size()) ? 0 : 1);
+    ::_exit(write_all(answer, "!", 1) && write_all(answer, result.data(), result.size()) ? 0 : 1);
   } catch (...) {
     ::_exit(1);
   }
@@ -78,6 +87,14 @@ class Child {
     wait();
   }
   Child(Child const&) = delete;
+  /// Whether it has used processor time since this was last asked.
+  bool computes() {
+    clockid_t clock{};
+    timespec used{};
+    if (::clock_getcpuclockid(process_, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return true;  // it has ended
+    double const now = static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+    return std::exchange(used_, now) != now;
+  }
   bool ended_well() { return wait() == 0; }
 
  private:
@@ -90,6 +107,7 @@ class Child {
   }
   pid_t process_;
   int in_, status_ = -1;
+  double used_ = -1;  // [s]
   bool waited_ = false;
 };
 
@@ -111,7 +129,6 @@ RecordCopy::~RecordCopy() { ::unlink(path_.c_str()); }
 std::optional<std::string> in_own_process(std::size_t memory, std::function<std::string()> const& work) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) throw IoError("cannot read the record: " + std::string(std::strerror(errno)));
-  std::fflush(nullptr);
   pid_t const process = ::fork();
   if (process < 0) {
     ::close(ends[0]);
@@ -126,10 +143,13 @@ std::optional<std::string> in_own_process(std::size_t memory, std::function<std:
   Child child(process, ends[0]);
   std::string result;
   std::string piece(1U << 20U, '\0');
+  int idle = 0;
   for (;;) {
     stop_if_interrupted();
     pollfd ready{ends[0], POLLIN, 0};
     int const state = ::poll(&ready, 1, 100);
+    // Another thread may have held a lock of the library when the copy was made: such a copy waits for ever, without computing.
+    if (state == 0 && ++idle % 20 == 0 && !child.computes()) return std::nullopt;
     if (state == 0 || (state < 0 && errno == EINTR)) continue;
     ssize_t const got = ::read(ends[0], piece.data(), piece.size());
     if (got < 0 && errno == EINTR) continue;

@@ -66,8 +66,8 @@ def _names(data: Any) -> list[str]:
 
 
 def _text(values: np.ndarray) -> list[str]:
-    # The shortest number that reads back to the same bits; what is missing is an empty cell.
-    return ["" if np.isnan(value) else repr(float(value)) for value in values]
+    # The shortest number that reads back to the same bits. What is missing has a word: an empty line at the end would be no row.
+    return ["NA" if np.isnan(value) else repr(float(value)) for value in values]
 
 
 def _write_table(data: Any, block: str, columns: Sequence[str], path: str) -> None:
@@ -90,7 +90,7 @@ def _write_table(data: Any, block: str, columns: Sequence[str], path: str) -> No
         raise ValueError(f"the columns of the data for `{block}` differ in length: {sorted(lengths)}")
     texts = [_text(array) for array in arrays]
     with open(path, "w", encoding="utf-8") as table:
-        table.write(",".join(columns) + "\n")
+        table.write(",".join('"' + name.replace('"', '""') + '"' for name in columns) + "\n")
         for row in zip(*texts):
             table.write(",".join(row) + "\n")
 

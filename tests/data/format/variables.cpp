@@ -2,6 +2,7 @@
 #include "data/format/variables.hpp"
 
 #include <doctest/doctest.h>
+#include <hdf5.h>
 #include <matio.h>
 #include <netcdf.h>
 #include <unistd.h>
@@ -212,6 +213,53 @@ TEST_CASE("a NetCDF variable is read without its sign and within its valid range
     CHECK((read[0] == -100 && read[1] == 2 && std::isnan(read[2])));
   }
   CHECK(contains(refusal(*record, "scaled").message, "has a `scale_factor` that is no number"));
+}
+
+TEST_CASE("marks and bounds of NetCDF variables are compared as numbers of the variable's type") {
+  Scratch const path("types.nc");
+  int file = -1, rows = -1, packed = -1, single = -1;
+  REQUIRE(nc_create(path.path.c_str(), NC_CLOBBER, &file) == NC_NOERR);
+  nc_def_dim(file, "row", 3, &rows);
+  nc_def_var(file, "packed", NC_SHORT, 1, &rows, &packed);
+  nc_def_var(file, "single", NC_FLOAT, 1, &rows, &single);
+  int const range[] = {100, 30000};
+  double const scale = 0.001, mark = 1e20, most = 0.1;
+  nc_put_att_int(file, packed, "valid_range", NC_INT, 2, range);
+  nc_put_att_double(file, packed, "scale_factor", NC_DOUBLE, 1, &scale);
+  nc_put_att_double(file, single, "missing_value", NC_DOUBLE, 1, &mark);
+  nc_put_att_double(file, single, "valid_max", NC_DOUBLE, 1, &most);
+  nc_enddef(file);
+  short const shorts[] = {99, 100, 30000};
+  float const floats[] = {0.1F, 1e20F, 0};
+  nc_put_var_short(file, packed, shorts);
+  nc_put_var_float(file, single, floats);
+  nc_close(file);
+  auto const record = open_record(path.path, {});
+  Numbers const scaled = record->numbers("packed"), marked = record->numbers("single");
+  CHECK((std::isnan(scaled[0]) && scaled[1] == 100 * 0.001 && scaled[2] == 30000 * 0.001));
+  CHECK((marked[0] == static_cast<double>(0.1F) && std::isnan(marked[1]) && marked[2] == 0));
+}
+
+TEST_CASE("HDF5 files of other programs have no fill values of NetCDF, and show no other file of the machine") {
+  Scratch const path("instrument.h5"), other("other.bin");
+  { std::ofstream(other.path) << "secret"; }
+  hid_t const file = H5Fcreate(path.path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hsize_t const count = 3;
+  hid_t const space = H5Screate_simple(1, &count, nullptr);
+  hid_t const counts = H5Dcreate2(file, "counts", H5T_STD_U16LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  unsigned short const clipped[] = {7, 65535, 65535};
+  H5Dwrite(counts, H5T_NATIVE_USHORT, H5S_ALL, H5S_ALL, H5P_DEFAULT, clipped);
+  hid_t const external = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_external(external, other.path.c_str(), 0, 3);
+  hid_t const bytes = H5Dcreate2(file, "bytes", H5T_STD_U8LE, space, H5P_DEFAULT, external, H5P_DEFAULT);
+  H5Dclose(counts);
+  H5Dclose(bytes);
+  H5Pclose(external);
+  H5Sclose(space);
+  H5Fclose(file);
+  auto const record = open_record(path.path, {});
+  CHECK(record->numbers("counts") == Numbers{7, 65535, 65535});
+  refusal(*record, "bytes");  // throws where there are numbers
 }
 
 TEST_CASE("a MATLAB file that was cut is refused, at whatever place, and a whole one is not") {
