@@ -24,6 +24,9 @@ struct TaskOptions : ResultOptions {
 
 /// Empty where the processor has it.
 std::string refuse_instruction_set(std::string const& name) {
+  if (narrowest_instruction_set == InstructionSet::neon)
+    return name == "neon" ? ""
+                          : fmt::format("this processor has no instruction set `{}`; its own, neon, gives identical results", name);
   if (name != "avx2" && name != "avx512") return fmt::format("`{}` is not an instruction set; choose avx2 or avx512", name);
   if (name == "avx512" && supported_instruction_set() != InstructionSet::avx512)
     return "this processor has no AVX-512 instructions; avx2 gives identical results";
@@ -114,7 +117,7 @@ Work declare_tasks(CLI::App& verb) {
   if (verb.get_name() != "run") kinds.push_back(verb.get_name());
   return [options, kinds](Messages const& messages) {
     if (!options->instruction_set.empty())
-      force_instruction_set(options->instruction_set == "avx2" ? InstructionSet::avx2 : InstructionSet::avx512);
+      force_instruction_set(options->instruction_set == "avx512" ? InstructionSet::avx512 : narrowest_instruction_set);
     return options->dump.empty() ? run(messages, *options, kinds) : dump(messages, *options);
   };
 }

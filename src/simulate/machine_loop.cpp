@@ -32,7 +32,7 @@ double backwards(SimulationProgram const& program) { return body(program.reverse
 /// Whether machine code may use AVX-512: blocks of four lanes too, as it has twice as many registers for their vectors of 256 bits.
 bool uses_avx512() { return instruction_set() == InstructionSet::avx512; }
 
-int vector_lanes(Executor executor) { return executor.width == 1 ? 1 : executor.set == InstructionSet::avx512 ? 8 : 4; }
+int vector_lanes(Executor executor) { return executor.width == 1 ? 1 : vector_lanes(executor.set); }
 int vectors(Executor executor) { return executor.width / vector_lanes(executor); }
 
 native::Loop write_loop(SimulationProgram const& program, SolverSettings const& solver, Executor executor, native::LoopKind kind) {

@@ -39,7 +39,7 @@ UnaryRow const rows[] = {
 
 std::vector<InstructionSet> supported() {
   if (supported_instruction_set() == InstructionSet::avx512) return {InstructionSet::avx2, InstructionSet::avx512};
-  return {InstructionSet::avx2};
+  return {narrowest_instruction_set};
 }
 
 struct Forced {

@@ -36,7 +36,7 @@ bool same_number(double a, double b) {
 /// Of all sets: where a processor has no 512-bit vectors, the compiler makes two of one.
 std::vector<Executor> all_native_executors() {
   std::vector<Executor> all;
-  for (InstructionSet const set : {InstructionSet::avx2, InstructionSet::avx512})
+  for (InstructionSet const set : {narrowest_instruction_set, InstructionSet::avx512})
     for (Executor const& each : native_executors(set))
       if (each.set == set) all.push_back(each);
   return all;

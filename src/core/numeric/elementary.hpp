@@ -31,8 +31,8 @@ using Binary = double (*)(double, double);
 using UnaryLanes = void (*)(double const* x, double* out, int width);
 using BinaryLanes = void (*)(double const* x, double const* y, double* out, int width);
 
-/// The vector form behind a lane form: a function of 4 doubles (of 8: `wide`) in registers, by the C calling convention. Null:
-/// none.
+/// The vector form behind a lane form: a function of 4 doubles (of 2 on AArch64, of 8: `wide`) in registers, by the C calling
+/// convention. Null: none.
 void const* vector_form(void const* lanes, bool wide);
 
 void exp_lanes(double const* x, double* out, int width);

@@ -12,6 +12,14 @@ namespace sysid::elementary {
 #define SYSID_BINARY(name, accuracy)                                   \
   void name(double const* x, double const* y, double* out, int width); \
   void const* name##_form();
+#if defined(__aarch64__)
+namespace neon {  // width: a multiple of 2
+SYSID_ELEMENTARY_UNARY(SYSID_UNARY)
+SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
+}  // namespace neon
+namespace narrow_set = neon;
+namespace wide_set = neon;
+#else
 namespace avx2 {  // width: a multiple of 4
 SYSID_ELEMENTARY_UNARY(SYSID_UNARY)
 SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
@@ -20,6 +28,9 @@ namespace avx512 {  // width: a multiple of 8
 SYSID_ELEMENTARY_UNARY(SYSID_UNARY)
 SYSID_ELEMENTARY_BINARY(SYSID_BINARY)
 }  // namespace avx512
+namespace narrow_set = avx2;
+namespace wide_set = avx512;
+#endif
 #undef SYSID_UNARY
 #undef SYSID_BINARY
 

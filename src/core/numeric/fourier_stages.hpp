@@ -1,4 +1,4 @@
-// Stages of Fourier transforms: what fourier_avx2.cpp offers to fourier.cpp.
+// Stages of Fourier transforms: what fourier_vector.cpp offers to fourier.cpp.
 #pragma once
 
 namespace sysid::fourier_stages {

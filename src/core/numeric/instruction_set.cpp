@@ -25,10 +25,14 @@ std::atomic<int>& forced() {
 }  // namespace
 
 std::optional<InstructionSet> supported_instruction_set() {
+#if defined(__aarch64__)
+  return InstructionSet::neon;
+#else
   __builtin_cpu_init();
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return std::nullopt;
   bool const wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
   return wide ? InstructionSet::avx512 : InstructionSet::avx2;
+#endif
 }
 
 InstructionSet instruction_set() { return static_cast<InstructionSet>(forced().load(std::memory_order_relaxed)); }
@@ -44,6 +48,16 @@ void force_instruction_set(InstructionSet set) {
   forced().store(static_cast<int>(set), std::memory_order_relaxed);
 }
 
-std::string_view name(InstructionSet set) { return set == InstructionSet::avx512 ? "avx512" : "avx2"; }
+std::string_view name(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::neon:
+      return "neon";
+    case InstructionSet::avx2:
+      return "avx2";
+    case InstructionSet::avx512:
+      break;
+  }
+  return "avx512";
+}
 
 }  // namespace sysid

@@ -5,9 +5,19 @@
 
 namespace sysid {
 
-enum class InstructionSet { avx2, avx512 };
+enum class InstructionSet { neon, avx2, avx512 };
 
-/// The best set of this processor; nothing when it lacks even x86-64-v3 (AVX2 and FMA), which sysid needs.
+/// The one that every processor of this build has: AVX2 on x86-64, NEON on AArch64.
+#if defined(__aarch64__)
+inline constexpr InstructionSet narrowest_instruction_set = InstructionSet::neon;
+#else
+inline constexpr InstructionSet narrowest_instruction_set = InstructionSet::avx2;
+#endif
+
+/// Doubles in one vector.
+constexpr int vector_lanes(InstructionSet set) { return set == InstructionSet::avx512 ? 8 : set == InstructionSet::avx2 ? 4 : 2; }
+
+/// The best set of this processor; nothing when it is an x86-64 that lacks AVX2 and FMA (x86-64-v3), which sysid needs.
 std::optional<InstructionSet> supported_instruction_set();
 
 /// The set in force: supported, unless forced. Forcing one that the processor lacks throws UserError.

@@ -1,4 +1,4 @@
-// Sums of products of a sequence with itself, shifted: what lagged_products_avx2.cpp offers to diagnostics of chains.
+// Sums of products of a sequence with itself, shifted: what lagged_products_vector.cpp offers to diagnostics of chains.
 #pragma once
 
 namespace sysid {

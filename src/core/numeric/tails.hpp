@@ -1,4 +1,4 @@
-// The smallest and the largest numbers of several sequences at once: what tails_avx2.cpp offers to bands over draws.
+// The smallest and the largest numbers of several sequences at once: what tails_vector.cpp offers to bands over draws.
 #pragma once
 
 namespace sysid {

@@ -1,7 +1,6 @@
 // SHA-256 after FIPS 180-4, section 6.2; names as printed there.
 #include "core/system/digest.hpp"
 
-#include <cpuid.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -10,6 +9,9 @@
 #include <cstring>
 
 #include "core/system/digest_sha.hpp"
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
 
 namespace sysid {
 namespace {
@@ -46,14 +48,20 @@ void add_block(std::array<std::uint32_t, 8>& H, unsigned char const* block) {
   for (std::size_t i = 0; i < H.size(); ++i) H[i] += working[i];
 }
 
+#if defined(__x86_64__)
 bool has_sha_instructions() {
   unsigned int eax = 0, ebx = 0, ecx = 0, edx = 0;
   return __get_cpuid_count(7, 0, &eax, &ebx, &ecx, &edx) != 0 && (ebx & bit_SHA) != 0;
 }
+#endif
 
 void add_blocks(std::array<std::uint32_t, 8>& H, unsigned char const* data, std::size_t blocks, bool plainly) {
+#if defined(__x86_64__)
   static bool const by_instructions = has_sha_instructions();
   if (by_instructions && !plainly) return add_blocks_by_instructions(H.data(), K.data(), data, blocks);
+#else
+  static_cast<void>(plainly);
+#endif
   for (; blocks > 0; --blocks, data += 64) add_block(H, data);
 }
 

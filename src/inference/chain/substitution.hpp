@@ -1,4 +1,4 @@
-// A step of forward substitution over lanes: what substitution_avx2.cpp offers to mixtures of normal distributions.
+// A step of forward substitution over lanes: what substitution_vector.cpp offers to mixtures of normal distributions.
 #pragma once
 
 namespace sysid::metropolis {

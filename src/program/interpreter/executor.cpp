@@ -8,21 +8,27 @@
 namespace sysid {
 namespace {
 
-constexpr Executor narrow_executors[] = {
-    {InstructionSet::avx2, 4}, {InstructionSet::avx2, 8}, {InstructionSet::avx2, 16}, {InstructionSet::avx2, 32}};
+constexpr InstructionSet narrow = narrowest_instruction_set;
+
+// NEON has no block of 32 lanes: its sixteen vectors would not fit the registers that pass arguments.
+#if defined(__aarch64__)
+constexpr Executor narrow_executors[] = {{narrow, 4}, {narrow, 8}, {narrow, 16}};
+#else
+constexpr Executor narrow_executors[] = {{narrow, 4}, {narrow, 8}, {narrow, 16}, {narrow, 32}};
+#endif
 // Four lanes fill one narrow vector: the wide set gains nothing from them and has no handlers for it.
-constexpr Executor wide_executors[] = {{InstructionSet::avx2, 4},
+constexpr Executor wide_executors[] = {{narrow, 4},
                                        {InstructionSet::avx512, 8},
                                        {InstructionSet::avx512, 16},
                                        {InstructionSet::avx512, 32},
                                        {InstructionSet::avx512, 64}};
 
-constexpr Executor narrow_native[] = {{InstructionSet::avx2, 1, ExecutorKind::native},
-                                      {InstructionSet::avx2, 4, ExecutorKind::native},
-                                      {InstructionSet::avx2, 8, ExecutorKind::native},
-                                      {InstructionSet::avx2, 16, ExecutorKind::native}};
-constexpr Executor wide_native[] = {{InstructionSet::avx2, 1, ExecutorKind::native},
-                                    {InstructionSet::avx2, 4, ExecutorKind::native},
+constexpr Executor narrow_native[] = {{narrow, 1, ExecutorKind::native},
+                                      {narrow, 4, ExecutorKind::native},
+                                      {narrow, 8, ExecutorKind::native},
+                                      {narrow, 16, ExecutorKind::native}};
+constexpr Executor wide_native[] = {{narrow, 1, ExecutorKind::native},
+                                    {narrow, 4, ExecutorKind::native},
                                     {InstructionSet::avx512, 8, ExecutorKind::native},
                                     {InstructionSet::avx512, 16, ExecutorKind::native},
                                     {InstructionSet::avx512, 32, ExecutorKind::native}};
@@ -38,7 +44,7 @@ std::vector<Step> link_for(Code const& code, int uniforms, Executor executor) {
   steps.reserve(code.size() + 1);
   for (Instruction const& i : code) {
     InstructionShape const shape{i.opcode, i.store, i.a.place, i.b.place, i.c.place};
-    Handler const handler = wide ? avx512::handler(shape, executor.width) : avx2::handler(shape, executor.width);
+    Handler const handler = wide ? wide_set::handler(shape, executor.width) : narrow_set::handler(shape, executor.width);
     if (handler == nullptr) throw InternalError(fmt::format("no executor has the instruction `{}`", capability(i.opcode).name));
     Step step{handler, rows + i.target * row, offset(i.a), {{offset(i.b), offset(i.c)}}};
     if (i.opcode == Opcode::call_unary) step.unary = i.function->unary_lanes;
@@ -50,7 +56,7 @@ std::vector<Step> link_for(Code const& code, int uniforms, Executor executor) {
     }
   }
   Step last{};
-  last.handler = wide ? avx512::end(executor.width) : avx2::end(executor.width);
+  last.handler = wide ? wide_set::end(executor.width) : narrow_set::end(executor.width);
   steps.push_back(last);
   return steps;
 }
@@ -88,7 +94,7 @@ std::string_view name(ExecutorKind kind) {
 }
 
 Executor choose_executor(int lanes, int widest, ExecutorKind kind) {
-  if (kind == ExecutorKind::scalar) return {InstructionSet::avx2, 1, kind};
+  if (kind == ExecutorKind::scalar) return {narrow, 1, kind};
   std::span<Executor const> const all =
       kind == ExecutorKind::native ? native_executors(instruction_set()) : executors(instruction_set());
   Executor chosen = all.front();
@@ -124,9 +130,9 @@ void run(LinkedCode const& code, Executor executor, double* file) {
   if (executor.width == 1) return run_scalar(code.code, file, file + uniform_space(code.uniforms));
   Step const* steps = code.steps(executor).data();
   if (executor.set == InstructionSet::avx512)
-    avx512::run(steps, reinterpret_cast<char*>(file), executor.width);
+    wide_set::run(steps, reinterpret_cast<char*>(file), executor.width);
   else
-    avx2::run(steps, reinterpret_cast<char*>(file), executor.width);
+    narrow_set::run(steps, reinterpret_cast<char*>(file), executor.width);
 }
 
 }  // namespace sysid

@@ -21,7 +21,7 @@ std::string_view name(ExecutorKind kind);
 
 /// An executor of `width` lanes at a time, in vectors of one instruction set.
 struct Executor {
-  InstructionSet set = InstructionSet::avx2;
+  InstructionSet set = narrowest_instruction_set;
   int width = 4;
   ExecutorKind kind = ExecutorKind::lanes;
 
@@ -46,7 +46,7 @@ constexpr int uniform_space(int uniforms) { return (uniforms + 7) / 8 * 8; }
 struct LinkedCode {
   Code code;  // as it is, for the oracle
   int uniforms = 0;
-  std::vector<Step> narrow[4], wide[4];  // AVX2 and AVX-512, in the order of `executors`
+  std::vector<Step> narrow[4], wide[4];  // AVX2 (NEON) and AVX-512, in the order of `executors`
   std::vector<Step> const& steps(Executor executor) const;
 };
 

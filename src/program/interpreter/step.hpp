@@ -27,9 +27,19 @@ struct InstructionShape {
   OperandPlace a, b, c;
 };
 
-namespace avx2 {                                     // widths 4, 8, 16, 32
-Handler handler(InstructionShape shape, int width);  // nullptr: there is none
-Handler end(int width);                              // what the last step of every code does: return
+/// Of each instruction set: `handler` is null where there is none; `end` is what the last step of every code does, return.
+#if defined(__aarch64__)
+namespace neon {  // widths 4, 8, 16
+Handler handler(InstructionShape shape, int width);
+Handler end(int width);
+void run(Step const* steps, char* file, int width);
+}  // namespace neon
+namespace narrow_set = neon;
+namespace wide_set = neon;
+#else
+namespace avx2 {  // widths 4, 8, 16, 32
+Handler handler(InstructionShape shape, int width);
+Handler end(int width);
 void run(Step const* steps, char* file, int width);
 }  // namespace avx2
 namespace avx512 {  // widths 8, 16, 32, 64
@@ -37,5 +47,8 @@ Handler handler(InstructionShape shape, int width);
 Handler end(int width);
 void run(Step const* steps, char* file, int width);
 }  // namespace avx512
+namespace narrow_set = avx2;
+namespace wide_set = avx512;
+#endif
 
 }  // namespace sysid

@@ -1,4 +1,5 @@
-// Lanes in vectors, each of which stays in its register for all rows (compiled for AVX2, see CMakeLists.txt).
+// Lanes in vectors, each of which stays in its register for all rows (compiled for the vectors of the processor, see
+// CMakeLists.txt).
 #include "inference/chain/substitution.hpp"
 
 namespace sysid::metropolis {

@@ -1,4 +1,5 @@
-// Stages of Fourier transforms, in loops that the compiler turns into vectors (compiled for AVX2, see CMakeLists.txt).
+// Stages of Fourier transforms, in loops that the compiler turns into vectors (compiled for the vectors of the processor, see
+// CMakeLists.txt).
 #include "core/numeric/fourier_stages.hpp"
 
 namespace sysid::fourier_stages {

@@ -1,4 +1,5 @@
-// Lags side by side, so that each number is read once for all of them (compiled for AVX2, see CMakeLists.txt).
+// Lags side by side, so that each number is read once for all of them (compiled for the vectors of the processor, see
+// CMakeLists.txt).
 #include "core/numeric/lagged_products.hpp"
 
 namespace sysid {
