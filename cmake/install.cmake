@@ -20,10 +20,12 @@ if(TARGET sysid_mpi_module)
   install(TARGETS sysid_mpi_module LIBRARY DESTINATION ${SYSID_PRIVATE_FOLDER} COMPONENT mpi)
 endif()
 
-# Manual pages and completions are made by the program itself, from the tables of its commands.
+# Manual pages and completions are made by the program itself, from the tables of its commands, where it runs.
 set(made ${CMAKE_BINARY_DIR}/made)
-add_custom_command(TARGET sysid POST_BUILD COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:sysid> -DFOLDER=${made}
-                                                   -P ${CMAKE_SOURCE_DIR}/cmake/made.cmake)
+if(NOT CMAKE_CROSSCOMPILING)
+  add_custom_command(TARGET sysid POST_BUILD COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:sysid> -DFOLDER=${made}
+                                                     -P ${CMAKE_SOURCE_DIR}/cmake/made.cmake)
+endif()
 install(DIRECTORY ${made}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)
 install(FILES ${made}/completions/sysid DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
 # Debian keeps the completions of packages apart from those of zsh itself and of its administrator; elsewhere `site-functions`.
