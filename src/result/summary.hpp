@@ -16,7 +16,8 @@ struct Summary {
   std::string name, unit;
   double mean = none, median = none, sd = none, mad = none, q5 = none, q95 = none;
   double rhat = none, ess_bulk = none, ess_tail = none, mcse_mean = none;
-  bool coefficient = false;  // of an unknown function: tables leave it out
+  bool coefficient = false;     // of an unknown function: tables leave it out
+  std::string without_sd = {};  // of a derived quantity of an optimum: why it has no sd
 };
 
 }  // namespace sysid

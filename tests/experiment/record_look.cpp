@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -93,6 +94,23 @@ TEST_CASE("gaps, dead, clipped and drifting channels, coarse steps and frequenci
   CHECK(column(look, "drift").drift == doctest::Approx(40).epsilon(0.01));
   CHECK(column(look, "coarse").quantum == doctest::Approx(0.25));
   CHECK(record_figure(look).script.find("plot") != std::string::npos);
+}
+
+TEST_CASE("the picture of a record names its columns in full, and one line goes through all of a long one") {
+  std::string text = "t,displacement_of_the_second_storey\n", spike = text;
+  for (int i = 0; i < 9001; ++i) spike += fmt::format("{},{}\n", 0.01 * i, i == 4321 ? 50.0 : std::sin(0.01 * i));
+  for (int i = 0; i < 900; ++i) text += fmt::format("{},{}\n", 0.01 * i, std::sin(0.1 * i));
+  TemporaryFile const file(text), longer(spike);
+  auto const rows = [](std::string const& script) {
+    std::size_t const begin = script.find("<< EOD"), end = script.find("\nEOD", begin);
+    return std::count(script.begin() + static_cast<std::ptrdiff_t>(begin), script.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+  };
+  std::string const script = record_figure(look_at_record(file.path())).script;
+  CHECK(script.find("displacement_of_the_second_storey") != std::string::npos);
+  CHECK(rows(script) == 900);  // as they are
+  std::string const of_long = record_figure(look_at_record(longer.path())).script;
+  CHECK((rows(of_long) > 900 && rows(of_long) < 2100));
+  CHECK(of_long.find(" 50") != std::string::npos);  // what one row holds is kept
 }
 
 TEST_CASE("gaps and unequal steps are counted, with the longest gap's place") {

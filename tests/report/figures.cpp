@@ -190,6 +190,25 @@ TEST_CASE("smoothed states have bands, also of an optimum, and a place of their 
   CHECK(figure.caption.find("mean from there to the next") != std::string::npos);
 }
 
+TEST_CASE("a band of a state that the line covers is said to be there, with its width") {
+  Report report = example::duffing(40);
+  PredictedQuantity state = report.predictions[0].quantities[0];
+  state.noisy = {};
+  state.measured.clear();
+  auto const caption = [&](double half_width) {
+    for (std::size_t i = 0; i < state.response.mean.size(); ++i) {
+      state.response.mean[i] = std::sin(0.3 * static_cast<double>(i));
+      state.response.lower[i] = state.response.mean[i] - half_width;
+      state.response.upper[i] = state.response.mean[i] + half_width;
+    }
+    return fit_figure(report.predictions[0], state).caption;
+  };
+  std::string const words = "too narrow to be seen";
+  CHECK(caption(0.2).find(words) == std::string::npos);
+  CHECK(caption(0.001).find("The band is at most 0.0020") != std::string::npos);
+  CHECK(caption(0.001).find(words) != std::string::npos);
+}
+
 TEST_CASE("the numbers over a marginal are in the unit of its axis") {
   Report report = example::duffing(40);
   report.summary.resize(1);

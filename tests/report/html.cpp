@@ -204,6 +204,20 @@ TEST_CASE("a parameter's prior stands beside its posterior, with how much narrow
   CHECK(page.find("aria-label=\"m from 0.900 to 1.10, prior from 0.126 to 7.94\"") != std::string::npos);
 }
 
+TEST_CASE("mean and sd are the first columns of a parameter's row, its prior the last") {
+  std::string const page = report_html(example::duffing(20), {});
+  std::size_t const table = page.find("Posteriors against priors</span>");
+  REQUIRE(table != std::string::npos);
+  std::size_t at = table;
+  for (char const* column : {">parameter<", ">mean<", ">sd<", ">5 %<", ">posterior within prior<", ">prior<"}) {
+    CAPTURE(column);
+    std::size_t const next = page.find(column, at);
+    REQUIRE(next != std::string::npos);
+    at = next;
+  }
+  CHECK(at < page.find("</thead>", table));
+}
+
 TEST_CASE("the page shows model, data, result, failures and how to repeat it") {
   Report report = example::duffing(20);
   report.command = "sysid run 'a b.sysid' -o results_again";
@@ -311,9 +325,8 @@ TEST_CASE("parameters that are fixed stand beside those that are estimated") {
   Report report = example::duffing(20);
   report.fixed = {{"m0", "3.2", "kg"}, {"added[bench]", "500", "g"}};
   std::string page = report_html(report, {});
-  CHECK(page.find("m0 <span class=\"unit\">kg</span></th><td>fixed</td><td></td><td class=\"n\">3.2</td>") != std::string::npos);
-  CHECK(page.find("added[bench] <span class=\"unit\">g</span></th><td>fixed</td><td></td><td class=\"n\">500</td>") !=
-        std::string::npos);
+  CHECK(page.find("m0 <span class=\"unit\">kg</span></th><td class=\"n\">3.2</td>") != std::string::npos);
+  CHECK(page.find("added[bench] <span class=\"unit\">g</span></th><td class=\"n\">500</td>") != std::string::npos);
   CHECK(test::broken_rules(page) == "");
   // A prediction has no summary: they have a table of their own.
   report.summary.clear();

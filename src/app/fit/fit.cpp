@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/fit/advice.hpp"
+#include "app/fit/derived_sds.hpp"
 #include "app/fit/fit_checks.hpp"
 #include "app/fit/fit_criteria.hpp"
 #include "app/fit/fit_preparation.hpp"
@@ -275,6 +276,7 @@ class Fit {
     // Sampling must not be given up on the way, the checks may.
     Target const& target =
         likelihood_->set_target(preparation_.solver, interrupted ? session_.options.execution : session_.interruptible());
+    add_derived_sds(*likelihood_, target, result, report.draws, seed_, report.summary);
     if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
     FinishedFit finished = finished_fit(result, target, report);
     run_fit_checks(finished);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text/number.hpp"
 #include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
 
@@ -12,6 +13,8 @@ namespace sysid {
 namespace {
 
 using namespace plot;
+
+constexpr double line_width = 1.4;
 
 struct Window {
   std::size_t first = 0, count = 0;
@@ -101,7 +104,7 @@ Plot fit_plot(Excerpt const& of, Panel panel) {
   if (of.has_noise) out.series.push_back(band("fit", 5, 6, noise_band));
   out.series.push_back(band("fit", 3, 4, response_band));
   if (of.has_data) out.series.push_back(points("fit", 7, of.point_size(), data));
-  out.series.push_back(line("fit", 2, 1.4, model));
+  out.series.push_back(line("fit", 2, line_width, model));
   return out;
 }
 
@@ -143,6 +146,18 @@ std::string caption_of(Excerpt const& of, std::string const& name) {
                     : "a single trajectory has no band.");
 }
 
+/// Of a figure without residuals: how wide its band is where the line covers all of it; else empty.
+std::string thin_band(Excerpt const& of, std::string const& unit, Panel const& panel) {
+  if (of.has_data || !of.has_band) return "";
+  double widest = 0;
+  for (std::size_t i = 0; i < of.mean.size(); ++i)
+    if (double const width = of.upper[i] - of.lower[i]; std::isfinite(width)) widest = std::max(widest, width);
+  double const pixels = panel.y.scaled_width(widest) / (panel.y.high - panel.y.low) * (panel.top - panel.bottom);
+  if (!(widest > 0) || pixels > line_width) return "";
+  return fmt::format(" The band is at most {}{} wide, too narrow to be seen beside the line.",
+                     pretty_number(significant(widest, 2)), unit_after_number(unit));
+}
+
 std::string samples_excluded(Prediction const& prediction, Window w) {
   if (w.whole) return "";
   auto const begin = prediction.scored.begin() + static_cast<std::ptrdiff_t>(w.first);
@@ -170,6 +185,7 @@ Figure along_record(Prediction const& prediction, PredictedQuantity const& quant
   top.x_numbers = !of.has_data;
   if (top.x_numbers) top.x_label = time_label(prediction, x);
   top.y_label = axis_label(quantity.name, quantity.unit, top.y);
+  std::string const thin = thin_band(of, quantity.unit, top);
   drawing.plots.push_back(fit_plot(of, std::move(top)));
   if (of.has_data) {
     Panel below = panel_at(left, right, 44, 128, x, {});
@@ -178,7 +194,7 @@ Figure along_record(Prediction const& prediction, PredictedQuantity const& quant
   }
   std::string const caption = prediction.smoothed ? caption_of_smoothed(quantity) : caption_of(of, quantity.name);
   return {drawing.name, fmt::format("{}{} on {}", quantity.name, prediction.smoothed ? ", smoothed," : "", prediction.experiment),
-          caption + samples_excluded(prediction, w), script(drawing), prediction.smoothed ? Topic::states : Topic::fit};
+          caption + thin + samples_excluded(prediction, w), script(drawing), prediction.smoothed ? Topic::states : Topic::fit};
 }
 
 }  // namespace

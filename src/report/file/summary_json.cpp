@@ -10,6 +10,7 @@
 #include "report/text/report_text.hpp"
 #include "report/text/states_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -33,7 +34,7 @@ Json score_object(std::vector<Score> const& scores) {
 
 Json parameters(std::vector<Summary> const& summaries) {
   Json out = Json::object();
-  for (Summary const& s : summaries)
+  for (Summary const& s : summaries) {
     out[s.name] = {{"unit", s.unit},
                    {"mean", s.mean},
                    {"median", s.median},
@@ -45,7 +46,19 @@ Json parameters(std::vector<Summary> const& summaries) {
                    {"ess_bulk", s.ess_bulk},
                    {"ess_tail", s.ess_tail},
                    {"mcse_mean", s.mcse_mean}};
+    if (!s.without_sd.empty()) out[s.name]["without_sd"] = s.without_sd;
+  }
   return out;
+}
+
+/// How the sds of an optimum come about; of what has none stands why.
+void add_sd_methods(Report const& report, Json& out) {
+  auto const derived = [&](std::string const& name) {
+    auto const first = report.draws.names.begin() + report.draws.parameter_count;
+    return std::find(first, report.draws.names.end(), name) != report.draws.names.end();
+  };
+  for (Summary const& s : report.summary)
+    if (std::isfinite(s.sd)) out[s.name]["sd_by"] = derived(s.name) ? "delta_method" : "laplace";
 }
 
 /// Where draws were thinned, `parameters` are of all iterations: those of the kept ones, which other programs take from the files.
@@ -252,6 +265,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
   out["lags"] = report.lags;
   out["model"] = report.model_name;
   out["parameters"] = parameters(report.summary);
+  if (report.draws.total() == 1) add_sd_methods(report, out["parameters"]);
   if (thinned(report) && report.draws.total() > 1) out["kept_draws"] = kept_draws(report);
   if (report.selection) {
     out["models"] = models_json(*report.selection);

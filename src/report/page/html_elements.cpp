@@ -71,7 +71,8 @@ std::string html(HtmlTable const& table) {
   auto const row_html = [&](std::vector<std::string> const& row, bool header) {
     std::string out = "<tr>";
     for (std::size_t c = 0; c < row.size(); ++c) {
-      char const* const kind = c < table.words || (table.last_is_words && c + 1 == row.size()) ? "" : " class=\"n\"";
+      char const* const kind =
+          c < table.words || c + table.last_words >= std::max(row.size(), table.header.size()) ? "" : " class=\"n\"";
       if (header && row[c].empty())
         out += fmt::format("<td{}></td>", kind);
       else if (header || c == 0)
@@ -84,7 +85,7 @@ std::string html(HtmlTable const& table) {
   // A region that scrolls can be reached by the keyboard, and says what it is.
   std::string out = fmt::format(
       "<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{0}\"><table{1}>\n<caption><span>{0}</span></caption>\n",
-      escape(table.caption), table.last_is_words ? " class=\"said\"" : "");
+      escape(table.caption), table.last_words == 1 ? " class=\"said\"" : "");
   if (!table.header.empty()) out += "<thead>" + row_html(table.header, true) + "</thead>\n";
   out += "<tbody>\n";
   for (auto const& row : table.rows) out += row_html(row, false);

@@ -9,13 +9,14 @@
 
 namespace sysid {
 
-/// Header and cells are HTML. The first cell of a row is its header; the first `words` columns are words, the others numbers.
+/// Header and cells are HTML. The first cell of a row is its header; the first `words` columns and the last `last_words` are words,
+/// the others numbers.
 struct HtmlTable {
   std::string caption;  // words, not HTML
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
   std::size_t words = 1;
-  bool last_is_words = false;  // the last column, too
+  std::size_t last_words = 0;
 };
 std::string html(HtmlTable const& table);
 

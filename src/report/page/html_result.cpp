@@ -32,50 +32,69 @@ std::string outside_words(PriorInfo const& prior, double middle) {
                      pretty_number(significant(beyond / width, 2)));
 }
 
+/// The prior as it was written, with its 90 % interval.
+std::string prior_cell(PriorInfo const& prior) {
+  std::string out = code(prior.text);
+  if (prior.q5 && prior.q95)
+    out += fmt::format("<br/><span class=\"unit\">{} to {}</span>", pretty_number(significant(*prior.q5, 3)),
+                       pretty_number(significant(*prior.q95, 3)));
+  return out;
+}
+
+/// Where the posterior lies in its prior, as a chart and in words; empty where that is not known.
+std::string within_prior(PriorInfo const& prior, Summary const& s) {
+  auto const ratio = contraction(prior, s);
+  if (!ratio) return "";
+  auto const [low, high] = interval_90(s);
+  std::string out = range_chart(*prior.q5, *prior.q95, low, high, s.mean,
+                                fmt::format("{} from {} to {}, prior from {} to {}", s.name, significant(low, 3),
+                                            significant(high, 3), significant(*prior.q5, 3), significant(*prior.q95, 3)));
+  out += fmt::format(
+      "<br/><span class=\"unit\">{}</span>",
+      *ratio < hardly_narrower ? "hardly narrower" : pretty_number(significant(*ratio, *ratio < 10 ? 2 : 3)) + " times narrower");
+  if (std::string const words = outside_words(prior, s.mean); !words.empty())
+    out += fmt::format("<br/><span class=\"outside\">{}</span>", words);
+  return out;
+}
+
 std::string parameters(Report const& report) {
   if (report.summary.empty()) return "";
   bool const optimum = report.draws.total() == 1;
-  HtmlTable table{"Priors against posteriors", {"parameter", "prior"}, {}, 3};
-  bool const priors = !report.priors.empty();
-  table.header.push_back(priors ? "posterior within prior" : "");
+  // What was found comes first: on a narrow screen it stands there without scrolling.
+  HtmlTable table{"Posteriors against priors", {"parameter"}, {}, 1, 2};
   for (std::string const& column :
        optimum ? std::vector<std::string>{"optimum", "sd"} : std::vector<std::string>{"mean", "sd", "5 %", "median", "95 %"})
     table.header.push_back(column);
+  bool const priors = !report.priors.empty();
+  table.header.push_back(priors ? "posterior within prior" : "");
+  table.header.push_back("prior");
   for (Summary const& s : report.summary) {
     if (s.coefficient) continue;
     SummaryText const t = format_summary(s);
     auto const prior =
         std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& each) { return each.name == s.name; });
     bool const known = prior != report.priors.end();
-    std::vector<std::string> row = {with_unit(s.name, s.unit), known ? code(prior->text) : "derived from the others", ""};
-    if (known && prior->q5 && prior->q95)
-      row[1] += fmt::format("<br/><span class=\"unit\">{} to {}</span>", pretty_number(significant(*prior->q5, 3)),
-                            pretty_number(significant(*prior->q95, 3)));
-    if (auto const ratio = known ? contraction(*prior, s) : std::nullopt) {
-      auto const [low, high] = interval_90(s);
-      row[2] = range_chart(*prior->q5, *prior->q95, low, high, s.mean,
-                           fmt::format("{} from {} to {}, prior from {} to {}", s.name, significant(low, 3), significant(high, 3),
-                                       significant(*prior->q5, 3), significant(*prior->q95, 3))) +
-               fmt::format("<br/><span class=\"unit\">{}</span>",
-                           *ratio < hardly_narrower ? "hardly narrower"
-                                                    : pretty_number(significant(*ratio, *ratio < 10 ? 2 : 3)) + " times narrower");
-      if (std::string const words = outside_words(*prior, s.mean); !words.empty())
-        row[2] += fmt::format("<br/><span class=\"outside\">{}</span>", words);
-    }
+    std::vector<std::string> row = {with_unit(s.name, s.unit)};
     for (std::string const& cell :
          optimum ? std::vector<std::string>{t.mean, t.sd} : std::vector<std::string>{t.mean, t.sd, t.q5, t.median, t.q95})
       row.push_back(pretty_number(cell));
+    row.push_back(known ? within_prior(*prior, s) : "");
+    row.push_back(known ? prior_cell(*prior) : "derived from the others");
     table.rows.push_back(std::move(row));
   }
   for (FixedValue const& each : report.fixed) {
-    table.rows.push_back({with_unit(each.name, each.unit), "fixed", "", number_html(each.value)});
+    table.rows.push_back({with_unit(each.name, each.unit), number_html(each.value)});
     table.rows.back().resize(table.header.size());
+    table.rows.back().back() = "fixed";
   }
   std::string out = html(table) + paragraph(learning_words(report));
+  for (std::string const& each : without_sd_texts(report)) out += paragraph(capitalised(each) + ".", "note");
   return out +
          paragraph(
-             std::string(optimum ? "sd: of the normal approximation at the optimum (Laplace). "
-                                 : "Numbers are rounded to their Monte Carlo error. ") +
+             std::string(optimum
+                             ? "sd: of the normal approximation at the optimum (Laplace); of a quantity that is derived from the "
+                               "others by its first derivatives there (the delta method). "
+                             : "Numbers are rounded to their Monte Carlo error. ") +
                  (priors ? "Below each prior is its 90 % interval. The bar beside it shows the 90 % interval of the posterior "
                            "(dark, with a stroke at the mean) within that of the prior, on a logarithmic scale if the prior's "
                            "interval is positive and spans more than a decade; an arrow marks a posterior that extends beyond it."
@@ -87,6 +106,11 @@ std::string parameters(Report const& report) {
 
 std::string result_html(Report const& report) {
   std::string out = parameters(report);
+  if (std::string const text = likelihood_text(report); !text.empty())
+    out +=
+        paragraph(fmt::format("The model as a whole: {}. It is meaningful only in comparison with another model of the same "
+                              "samples.",
+                              text));
   if (report.evidence)
     if (std::string const text = evidence_text(*report.evidence); !text.empty())
       out += paragraph(fmt::format("The model as a whole: {}. {}", text,

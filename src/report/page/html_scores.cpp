@@ -48,7 +48,7 @@ std::string scores_html(Report const& report) {
   std::string out;
   if (lines.size() == 1) {
     HtmlTable table{fmt::format("Scores of {}", lines[0].what()), {"score", "value", "meaning"}, {}, 1};
-    table.last_is_words = true;
+    table.last_words = 1;
     for (std::string const& name : names)
       table.rows.push_back({score_title(name), cell(lines[0], name), escape(score_words(report, lines, name))});
     out = html(table);

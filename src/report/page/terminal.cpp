@@ -30,7 +30,9 @@ std::string summary_table(Report const& report) {
     std::vector<std::vector<std::string>> rows = {{"", "unit", "optimum", "Laplace sd"}};
     for (Summary const& s : report.summary)
       if (!s.coefficient) rows.push_back({s.name, s.unit, format_summary(s).mean, format_summary(s).sd});
-    return align_columns(rows, 2);
+    std::string out = align_columns(rows, 2);
+    for (std::string const& each : without_sd_texts(report)) out += each + "\n";
+    return out;
   }
   std::vector<std::vector<std::string>> rows = {{"", "unit", "mean", "sd", "q5", "q95", "rhat", "ess_bulk", "ess_tail"}};
   for (Summary const& s : report.summary) {
@@ -96,6 +98,7 @@ std::string terminal_summary(Report const& report, Surface read_at) {
   }
   std::string facts;
   for (FitLine const& line : fit_lines(report)) facts += fmt::format("{}: {}\n", line.what(), scores_line(line));
+  if (std::string const text = likelihood_text(report); !text.empty()) facts += text + "\n";
   facts += evidence_line(report) + ledger_text(report);
   if (!facts.empty()) out += "\n" + facts;
   if (has_verdict(report))

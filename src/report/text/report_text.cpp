@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text/words.hpp"
+
 namespace sysid {
 
 namespace {
@@ -40,6 +42,22 @@ std::string evidence_text(Evidence const& evidence) {
   if (evidence.disagrees_with_laplace()) text += fmt::format("; Laplace's approximation gives {:.1f}", *evidence.laplace);
   if (!evidence.doubt.empty()) text += "; not confirmed: " + evidence.doubt;
   return text + ")";
+}
+
+std::string likelihood_text(Report const& report) {
+  if (!report.evidence || !report.evidence->of_likelihood || report.modes.empty()) return "";
+  std::string text = fmt::format("log likelihood {:.2f} at its maximum", report.modes.front().log_density);
+  if (!report.criteria || !report.criteria->at_mode) return text;
+  ScoreAtMode const& score = *report.criteria->at_mode;
+  auto const parameters = static_cast<std::size_t>(score.parameters), samples = static_cast<std::size_t>(score.samples);
+  return text + fmt::format(" ({}, {})", counted(parameters, "parameter"), counted(samples, "sample"));
+}
+
+std::vector<std::string> without_sd_texts(Report const& report) {
+  std::vector<std::string> out;
+  for (Summary const& each : report.summary)
+    if (!each.without_sd.empty()) out.push_back(fmt::format("no sd of `{}`: {}", each.name, each.without_sd));
+  return out;
 }
 
 std::string_view severity_word(Severity severity) {

@@ -2,9 +2,11 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/text/diagnostic.hpp"
 #include "result/evidence.hpp"
+#include "result/report.hpp"
 
 namespace sysid {
 
@@ -13,6 +15,11 @@ std::string evidence_number(double log_evidence, std::optional<double> error);
 /// "log evidence 293.72 ± 0.02 (importance sampling)"; with what its axes say where that is more than half a nat, or why there is
 /// none. Empty for a fit of the likelihood alone, which nobody expects to have one.
 std::string evidence_text(Evidence const& evidence);
+
+/// "log likelihood 5573.72 at its maximum (5 parameters, 500 samples)"; empty but for a fit of the likelihood alone.
+std::string likelihood_text(Report const& report);
+/// "no sd of ratio: the data leave open a direction along which it changes", of each that has none.
+std::vector<std::string> without_sd_texts(Report const& report);
 
 /// "error", "warning", "note".
 std::string_view severity_word(Severity severity);
