@@ -11,6 +11,7 @@
 #include "data/format/open_record.hpp"
 #include "data/rounded_times.hpp"
 #include "data/table/file_errors.hpp"
+#include "data/table/serial_time.hpp"
 #include "data/table/unit_text.hpp"
 #include "data/table_record.hpp"
 
@@ -39,11 +40,8 @@ bool same_unit(Unit const& a, Unit const& b) {
 /// `T (C)`; two letters in square brackets are one.
 void refuse_other_unit_in_name(RecordFile const& file, std::string const& column, Unit const& stated, std::optional<Span> mention) {
   auto const split = split_name(column);
-  std::optional<Unit> unit = split ? unit_of_text(split->unit) : std::nullopt;
+  std::optional<Unit> const unit = split ? unit_of_text(split->unit, stated) : std::nullopt;
   if (!unit) return;
-  // Of an acceleration `g` is no gram.
-  if (auto const gravity = unit_atom("g_n"); split->unit == "g" && gravity && gravity->dimension == stated.dimension)
-    unit = gravity;
   bool const surely = trimmed(column).ends_with(']') && split->unit.size() > 1;
   if (same_unit(*unit, stated) || (unit->dimension != stated.dimension && !surely)) return;
   throw UserError(data_errors::unit_differs_from_name(file.name(), {column, split->name}, {stated.text, split->unit},
@@ -56,7 +54,8 @@ Request with_unit_of_file(RecordFile const& file, Request request) {
   std::optional<std::string> const text = file.unit(request.column);
   if (!text && request.unit) refuse_other_unit_in_name(file, request.column, *request.unit, request.mention);
   if (!text) return request;
-  std::optional<Unit> const unit = unit_of_text(*text);
+  std::optional<Unit> const& wanted = request.unit ? request.unit : request.declared;
+  std::optional<Unit> const unit = wanted ? unit_of_text(*text, *wanted) : unit_of_text(*text);
   if (request.unit) {
     if (unit && !same_unit(*unit, *request.unit))
       throw UserError(data_errors::unit_differs(file.name(), request.column, request.unit->text, unit->text, request.mention));
@@ -85,6 +84,11 @@ class Columns {
       if (column.unit && column.unit->dimension != unit_atom("s").value().dimension)
         throw UserError(data_errors::unit_of_another_kind(file_.name(), column.column, column.unit->text, "s", column.mention));
       time_unit_ = column.unit;
+      bool const in_plain_seconds = !column.unit || column.unit->scale == 1;
+      // Rows that arrive one by one cannot be read with `stamp`.
+      if (SerialTime const* const counts = seems_serial(written, column.column);
+          counts && in_plain_seconds && whole && file_.row_count() && !request_.independent_rows)
+        throw UserError(data_errors::times_are_dates(file_.place(0, column.column), written.front(), counts->word, column.mention));
     }
     auto const in_seconds = [&](std::vector<double>& time) {
       if (!file_.has_stamps()) to_si(time, column);
@@ -172,6 +176,8 @@ auto collect(Diagnostics& diagnostics, std::optional<Span> mention, Read read) -
 std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics) {
   ReadingRules rules = request.rules;
   if (request.time) rules.time_column = request.time->column;
+  for (InputRequest const& input : request.inputs) rules.complete.push_back(input.column);
+  if (request.time) rules.complete.push_back(request.time->column);
   std::optional<std::unique_ptr<RecordFile>> const file = collect(diagnostics, request.mention, [&] {
     std::unique_ptr<RecordFile> opened = open_record(request.path, rules, request.mention, request.shown_path);
     if (auto const rows = opened->row_count(); rows && *rows < 2)

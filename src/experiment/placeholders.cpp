@@ -1,69 +1,24 @@
-// What loggers and spreadsheets write where a sensor gave nothing. A spike of another size may be a measurement: it is left to the
-// residuals.
+// What loggers and spreadsheets write where a sensor gave nothing, as far as it has not been asked about when the file was read.
 #include "experiment/placeholders.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "data/table/doubtful_number.hpp"
 
 namespace sysid {
 namespace {
 
-// Significant digits of a number as it was written, in whatever decimal multiple of its unit: "9999" of 9.999 and 9999.
-std::string digits(double value) {
-  std::string text = fmt::format("{:.11e}", std::fabs(value));
-  text.resize(text.find('e'));
-  std::erase(text, '.');
-  text.erase(text.find_last_not_of('0') + 1);
-  return text;
-}
-
-bool is_placeholder(double value) {
-  if (!std::isfinite(value)) return false;  // of a channel without samples
-  std::string const written = digits(value);
-  if (written == "32767" || written == "32768" || written == "65535") return true;
-  return written.size() >= 3 && written.find_first_not_of('9') == std::string::npos;
-}
-
-struct Suspect {
-  double value;
-  std::vector<std::size_t> rows;
-};
-
-// Placeholders among `values` (NaN: missing) that are far from all values that are none.
-std::vector<Suspect> suspects(std::vector<double> const& values) {
-  constexpr double far = 10;
-  std::vector<Suspect> found;
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::isnan(values[i])) continue;
-    if (!is_placeholder(values[i])) {
-      least = std::min(least, values[i]);
-      most = std::max(most, values[i]);
-      continue;
-    }
-    auto same = std::find_if(found.begin(), found.end(), [&](Suspect const& each) { return each.value == values[i]; });
-    if (same == found.end()) same = found.insert(found.end(), {values[i], {}});
-    same->rows.push_back(i);
-  }
-  // Where all others are one number nothing tells what is far.
-  std::erase_if(found, [&](Suspect const& each) {
-    return !(most > least) || std::fabs(each.value - (least + most) / 2) <= far * (most - least) / 2;
-  });
-  return found;
-}
-
-Finding finding(ExperimentData const& data, ColumnUse const& column, std::string const& unit, Suspect const& suspect, bool input) {
+Finding finding(ExperimentData const& data, ColumnUse const& column, std::string const& unit, DoubtfulNumber const& suspect,
+                bool input) {
   constexpr std::size_t most_named = 5;
   std::vector<std::string> rows;
-  for (std::size_t const row : suspect.rows) rows.push_back(std::to_string(data.experiment.first_row + static_cast<int>(row)));
+  for (std::size_t const row : suspect.places) rows.push_back(std::to_string(data.experiment.first_row + static_cast<int>(row)));
   return {FindingCode::looks_missing,
           Severity::warning,
           {column.column, data.use.name},
@@ -79,6 +34,7 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
 
 Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, Model const& model) {
   DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  if (block.rules.no_other_mark) return {};
   Experiment const& experiment = data.experiment;
   Findings findings;
   auto const look = [&](ColumnUse const& column, Quantity const& quantity, std::vector<double> values, bool input) {
@@ -88,7 +44,7 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
       unit = column.unit->text;
       for (double& value : values) value = convert(value, *quantity.unit, *column.unit);
     }
-    for (Suspect const& suspect : suspects(values)) findings.push_back(finding(data, column, unit, suspect, input));
+    for (DoubtfulNumber const& suspect : doubtful_numbers(values)) findings.push_back(finding(data, column, unit, suspect, input));
   };
   for (DataInputUse const& column : block.inputs)
     for (std::size_t i = 0; i < model.inputs.size(); ++i) {

@@ -5,10 +5,10 @@
 
 namespace sysid {
 
-/// A warning `looks_missing` for each number that a column holds in the rows that are simulated, written with three nines or more
-/// and nothing else (-999, 9999, 99.99) or at the end of a 16-bit range, that lies far from all others: ten times as far from
-/// their middle as they reach. Of channels only rows that are scored, or that a model in discrete time may go on from. Numbers and
-/// rows are those of the file.
+/// A warning `looks_missing` for each number of the rows that are simulated that `doubtful_numbers` doubts, as it stands in the
+/// file: what E4022 refuses before in a text file whose data block says nothing of missing samples. So it is about files that have
+/// no `read`, about marks beside those that `missing` lists, and about those that stand out of a part of the rows alone. Of
+/// channels only rows that are scored, or that a model in discrete time may go on from. None where the block has `missing = none`.
 Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, Model const& model);
 
 }  // namespace sysid

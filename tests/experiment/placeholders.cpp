@@ -31,7 +31,8 @@ std::string table(Change const& change) {
 std::string const text =
     "model m {\n input u [N]\n state y [m]\n initial y = 0\n parameter c [1/s] ~ log_uniform(0.1, 10)\n"
     " parameter b [m/(N s)] ~ log_uniform(0.01, 10)\n y' = b*u - c*y\n observe z [m] ~ normal(y, sd = 0.001 [m])\n}\n"
-    "data record { file \"record.csv\"; read missing = none; time t [s]; input u = force [mN] hold linear; measure z = level [mm]; "
+    "data record { file \"record.csv\"; read missing = \"NaN\"; time t [s]; input u = force [mN] hold linear; measure z = level "
+    "[mm]; "
     "split middle = rows "
     "101..190 }\n"
     "posterior = fit m to record.middle with map, seed = 1\n";
@@ -65,6 +66,15 @@ TEST_CASE("a 9999 in an input and in a channel is named as it stands in the file
   CHECK(told([](int row, double& force, double& level) {
           if (row == 120) force = -32768, level = 65535;
         }).size() == 2);
+}
+
+TEST_CASE("`missing = none`, alone or behind words, says that no number is a mark") {
+  auto const change = [](int row, double& force, double&) {
+    if (row == 150) force = 9999;
+  };
+  CHECK(told(change).size() == 1);
+  CHECK(told(change, replaced(text, "\"NaN\"", "none")).empty());
+  CHECK(told(change, replaced(text, "\"NaN\"", "(\"NaN\", none)")).empty());
 }
 
 TEST_CASE("two placeholders in one column do not hide each other") {

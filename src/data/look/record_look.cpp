@@ -16,6 +16,7 @@
 #include "data/table/gzip.hpp"
 #include "data/table/proposal.hpp"
 #include "data/table/record_bytes.hpp"
+#include "data/table/serial_time.hpp"
 #include "data/table/table.hpp"
 #include "data/table/unit_text.hpp"
 
@@ -39,10 +40,17 @@ std::string in_small_letters_only(std::string const& name) {
 bool is_time_name(std::string const& name) {
   auto const split = split_name(name);
   std::string const small = in_small_letters_only(split ? split->name : name.substr(name.find_last_of("./") + 1));
-  for (std::string_view const each : {"t", "time", "zeit", "timestamp", "datetime", "date", "uhrzeit", "datum", "xvalue", "xaxis",
-                                      "elapsedtime", "seconds", "sec", "temps", "tiempo", "tid", "zeitstempel"})
+  for (std::string_view const each :
+       {"t",           "time",    "zeit", "timestamp", "datetime", "date", "uhrzeit",     "datum", "xvalue", "xaxis",
+        "elapsedtime", "seconds", "sec",  "temps",     "tiempo",   "tid",  "zeitstempel", "ts",    "epoch",  "unixtime"})
     if (small == each) return true;
   return false;
+}
+
+/// So `g` behind it is no gram.
+bool is_acceleration_name(std::string const& name) {
+  std::string const small = in_small_letters_only(name);
+  return small.starts_with("acc") || small.find("accel") != std::string::npos || small.find("beschl") != std::string::npos;
 }
 
 bool keeps_increasing(std::vector<double> const& values) {
@@ -80,7 +88,9 @@ Chosen choose_rules(std::string const& path, std::string const& text, RecordLook
   if (chosen.rules.units == UnitsPlace::line) {
     Table const table = Table::parse_as_told(path, text, chosen.rules);
     for (std::string const& column : table.columns())
-      if (auto const unit = unit_of_text(table.unit(column).value_or(""))) chosen.units[column] = unit->text;
+      if (std::string const text = table.unit(column).value_or("");
+          auto const unit = is_acceleration_name(column) ? unit_of_text(text, unit_atom("g_n").value()) : unit_of_text(text))
+        chosen.units[column] = unit->text;
     for (ReadingRules& rules : proposal->rules) {
       rules.units = UnitsPlace::none;
       rules.units_line = 0;
@@ -99,7 +109,8 @@ std::string unit_in(std::string const& column, RecordFile const& file, Chosen co
   std::optional<std::string> text = file.unit(column);
   if (!text)
     if (auto const split = split_name(column)) text = split->unit;
-  auto const unit = text ? unit_of_text(*text) : std::nullopt;
+  auto unit = text ? unit_of_text(*text) : std::nullopt;
+  if (is_acceleration_name(column) && text) unit = unit_of_text(*text, unit_atom("g_n").value());
   if (!unit && file.unit(column).value_or("") != "") return "-";  // a unit of the file that is none here: plain numbers
   return unit ? unit->text : std::string();
 }
@@ -206,6 +217,17 @@ class Looking {
       Unit unit = unit_atom("s").value();
       if (auto const stated = unit_of_text(column.unit); stated && stated->dimension == unit.dimension) unit = *stated;
       time.column = column.name;
+      if (SerialTime const* const counts = seems_serial(look_.values[c], column.name);
+          counts && unit.scale == 1 && file_->row_count()) {
+        chosen_.rules.stamp = counts->word;
+        chosen_.rules.time_column = column.name;
+        look_.reading = reading_statement(chosen_.rules);
+        if (!look_.readings.empty()) look_.readings.front() = look_.reading;
+        file_ = open_record(path_, chosen_.rules);
+        time.stamps = true;
+        look_.times = file_->times(column.name);
+        return look_at_time(look_);
+      }
       time.unit = unit.text;
       look_.times = look_.values[c];
       for (double& value : look_.times) value *= unit.scale;

@@ -8,6 +8,7 @@
 #include "core/text/utf8.hpp"
 #include "core/text/words.hpp"
 #include "data/table/cells.hpp"
+#include "data/table/serial_time.hpp"
 #include "data/table/time_stamp.hpp"
 #include "data/table/unit_text.hpp"
 
@@ -267,12 +268,28 @@ Diagnostic doubtful_sample(Cell const& cell, double value, int times, Mention me
       fmt::format("add this line to the data block: `read missing = \"{}\"`; or, if it is a sample, `read missing = none`", value));
 }
 
+Diagnostic stamp_among_numbers(Cell const& cell, std::string_view text, Mention mention) {
+  return error(
+      "E4010", mention, fmt::format("{}: `{}` is not a number", place(cell), shown(text)),
+      "the cells above it are numbers: correct this cell, for a time to seconds or the unit of the column, or delete the line");
+}
+
+Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, Mention mention) {
+  std::string help =
+      fmt::format("add this line to the data block: `read stamp = {}`; times then begin with 0 at the first row", word);
+  if (word == "days") help += "; if they are seconds, `read stamp = seconds`";
+  return error("E4029", mention,
+               fmt::format("{}: {:.15g} as a time in seconds looks like {} since {}", place(cell), value, word,
+                           word == "days" ? "1900 or the year 0, as spreadsheets and MATLAB count them" : "1970"),
+               std::move(help));
+}
+
 Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention) {
   std::string const what = text.empty() ? "the cell is not" : fmt::format("`{}` is not", shown(text));
-  return error(
-      "E4024", mention,
-      fmt::format("{}: {} a time as in `stamp = {}`", place(cell), what, pattern == "iso" ? pattern : "\"" + pattern + "\""),
-      "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
+  return error("E4024", mention,
+               fmt::format("{}: {} a time as in `stamp = {}`", place(cell), what,
+                           pattern == "iso" || find_serial_time(pattern) != nullptr ? pattern : "\"" + pattern + "\""),
+               "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
 }
 
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,

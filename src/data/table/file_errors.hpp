@@ -69,6 +69,10 @@ Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention
 Diagnostic points_or_groups(Cell const& cell, std::string_view text, Mention mention);
 Diagnostic doubtful_sample(Cell const& cell, double value, int times, Mention mention);
 /// text: empty where it may not be shown.
+/// word: what `stamp` would say of them.
+Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, Mention mention);
+/// A date or a time of day below numbers.
+Diagnostic stamp_among_numbers(Cell const& cell, std::string_view text, Mention mention);
 Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention);
 /// E4026. stated: in the data block; found: in the file.
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,

@@ -159,6 +159,19 @@ class Cut {
     }
   }
 
+  /// Where names, rows, one line that is none, and the longest run follow each other: that line, from 1.
+  int only_broken_line_above() const {
+    std::size_t first = 0;
+    while (first < begin_ && !(is_row(first) && looks_[first].size() == width_)) ++first;
+    if (first == 0 || first >= begin_ || heading(first - 1, false).empty()) return 0;
+    int line = 0;
+    for (std::size_t i = first; i < begin_; ++i) {
+      if (is_row(i) || trimmed(lines_[i]).empty()) continue;
+      if (line != 0 || cells_[i].size() != width_ || !heading(i, false).empty()) return 0;
+      line = static_cast<int>(i) + 1;
+    }
+    return line;
+  }
   /// The line that ends the longest run of rows and has rows below it, or stands before it and has some above; counted from 1. What
   /// stands above a table has few lines that look like its rows.
   int broken_line() const {
@@ -169,6 +182,7 @@ class Cut {
         while (trimmed(lines_[line]).empty()) ++line;
         return static_cast<int>(line) + 1;
       }
+    if (int const line = only_broken_line_above()) return line;
     long above = 0;
     for (std::size_t i = 0; i < begin_; ++i) above += is_row(i) && looks_[i].size() == width_;
     if (above < enough || width_ < 2) return 0;
@@ -222,6 +236,8 @@ class Cut {
     if (chosen < headings.size()) {
       layout.names = static_cast<int>(headings[chosen].first) + 1;
       layout.columns = headings[chosen].second;
+      Cells const& written = cells_[headings[chosen].first];
+      layout.ragged = layout.ragged || (written.size() > width_ && written.back().empty());
       return;
     }
     for (std::size_t c = 0; c < width_; ++c) layout.columns.push_back(fmt::format("column_{}", c + 1));

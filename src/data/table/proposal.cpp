@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "core/text/diagnostic.hpp"
 #include "core/text/words.hpp"
 #include "data/table/cells.hpp"
+#include "data/table/doubtful_number.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/number_notation.hpp"
 #include "data/table/table.hpp"
@@ -132,10 +132,7 @@ void add_missing(Layout const& layout, ReadingRules& rules) {
         double value = 0;
         values.push_back(parse_cell(row[c], notation, value) == CellKind::number ? value : std::nan(""));
       }
-      for (auto word = doubtful_number(values); word; word = doubtful_number(values)) {
-        add(fmt::format("{}", *word));
-        std::replace(values.begin(), values.end(), *word, std::nan(""));
-      }
+      for (DoubtfulNumber const& each : doubtful_numbers(values)) add(fmt::format("{}", each.value));
     }
   }
   if (words.empty()) return;
@@ -205,7 +202,9 @@ void add_stamps(Layout const& layout, Proposal& proposal, Alternatives& all) {
       if (date) made.back().date = layout.columns[*date];
     }
   if (patterns.size() > 1)
-    all.question += (all.question.empty() ? "" : "; ") + fmt::format("`{}` may have the day or the month first", cells.front());
+    all.question += (all.question.empty() ? "" : "; ") +
+                    (patterns.front() == "hh:mm" ? fmt::format("`{}` may be hours and minutes or minutes and seconds", cells.back())
+                                                 : fmt::format("`{}` may have the day or the month first", cells.front()));
   all.rules = std::move(made);
 }
 
@@ -228,6 +227,11 @@ Unsaid unsaid(std::string const& bytes) {
   return {};
 }
 
+/// Else the first line is taken for names where `values` does not say otherwise.
+bool all_are_numbers(std::vector<std::string> const& row) {
+  return std::all_of(row.begin(), row.end(), [](std::string const& cell) { return look_of(cell) == CellLook::number; });
+}
+
 void add_lines(std::string const& bytes, Layout const& layout, ReadingRules& rules) {
   Unsaid const plain = unsaid(bytes);
   std::set<std::string> const distinct(layout.columns.begin(), layout.columns.end());
@@ -239,7 +243,7 @@ void add_lines(std::string const& bytes, Layout const& layout, ReadingRules& rul
   }
   int const above = std::max(layout.names, layout.units);
   if (rules.first_value == 0 && (layout.first != above + 1 || short_names || (layout.more_below && layout.last != 0)))
-    if (!(short_names && layout.first == 1)) rules.first_value = layout.first;
+    if (!(short_names && layout.first == 1 && all_are_numbers(layout.rows.front()))) rules.first_value = layout.first;
   if (layout.more_below && layout.last != 0 && rules.last_value == 0) {
     rules.first_value = layout.first;
     rules.last_value = layout.last;
@@ -288,40 +292,6 @@ std::vector<std::string> distinct_names(std::vector<std::string> const& names) {
   return made;
 }
 
-namespace {
-
-/// A mark above all samples: further above them than they are apart, and they are not of one value, as those of a switch are.
-std::optional<double> doubtful_largest(std::vector<double> const& values) {
-  constexpr double marks[] = {999,   9999,       99999, 999.25, 999.9, 9999.9, 9999.99, 7999,    32767,
-                              65535, 2147483647, 1e20,  1e30,   1e31,  1e35,   9.9e37,  9.91e37, 3.4e38};
-  constexpr double beyond_measure = 1e29, times = 5;
-  double const infinity = std::numeric_limits<double>::infinity();
-  double most = -infinity, next = -infinity, least = infinity;
-  for (double const value : values)
-    if (!std::isnan(value)) most = std::max(most, value), least = std::min(least, value);
-  for (double const value : values)
-    if (value < most) next = std::max(next, value);
-  bool const far = next < most / times && most - next > times * (next - least) && next > least;
-  bool const mark = std::find(std::begin(marks), std::end(marks), most) != std::end(marks);
-  if (!far || (!mark && (most < beyond_measure || std::max(next, -least) > most * 1e-6))) return std::nullopt;
-  return most;
-}
-
-}  // namespace
-
-std::optional<double> doubtful_number(std::vector<double> const& values) {
-  constexpr double marks[] = {-9999, -99999, -999, -999.25, -999.9, -9999.9, -9999.99, -32768, -1e30, -1e20};
-  double least = std::numeric_limits<double>::infinity();
-  for (double const value : values)
-    if (!std::isnan(value)) least = std::min(least, value);
-  if (std::find(std::begin(marks), std::end(marks), least) == std::end(marks)) return doubtful_largest(values);
-  double next = std::numeric_limits<double>::infinity();
-  for (double const value : values)
-    if (value > least) next = std::min(next, value);
-  if (std::isinf(next) || next < least / 5) return doubtful_largest(values);
-  return least;
-}
-
 std::optional<Proposal> propose(std::string const& utf8, ReadingRules const& current) {
   std::optional<Layout> layout = find_layout(utf8);
   if (!layout || layout->rows.size() < 2) return std::nullopt;
@@ -364,6 +334,29 @@ std::string advice(std::vector<ReadingRules> const& rules, ReadingRules const& c
 
 }  // namespace
 
+namespace {
+
+bool leaves_gaps(ProposalRequest const& request, ReadingRules const& rules) {
+  if (rules.missing == request.rules.missing) return false;
+  try {
+    std::vector<double> const values = Table::parse_as_told("record", request.bytes, rules).numbers(request.column);
+    return std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
+  } catch (UserError const&) {
+    return false;
+  }
+}
+
+/// Lines below the values, which `values = 7..1006` leaves out.
+std::string left_out(Proposal const& proposal, ProposalRequest const& request) {
+  int const last = proposal.rules.front().last_value;
+  if (last == 0 || last == request.rules.last_value) return {};
+  int below = 0;
+  for (Lines line(request.bytes); line.next();) below += line.number > last && !trimmed(line.text()).empty();
+  return fmt::format("; {} below line {} {} then left out", counted(below, "line"), last, below == 1 ? "is" : "are");
+}
+
+}  // namespace
+
 int broken_line(std::string const& utf8) {
   auto const layout = find_layout(utf8);
   return layout && layout->rows.size() >= 2 ? layout->broken : 0;
@@ -389,9 +382,12 @@ std::string proposed_help(ProposalRequest const& request) {
       for (ReadingRules& rules : proposal->rules) rules.units = UnitsPlace::names, rules.units_line = 0;
   }
   if (proposal->rules.front() == request.rules && proposal->time.empty()) return {};
+  // A line that takes words of an input as missing would be refused next.
+  if (request.complete && leaves_gaps(request, proposal->rules.front())) return {};
   std::string help = advice(proposal->rules, request.rules);
   if (!proposal->question.empty()) help = fmt::format("{}: choose, and {}", proposal->question, help);
   if (!proposal->time.empty()) help += fmt::format("; the time is `time {}`", quoted_text(proposal->time));
+  help += left_out(*proposal, request);
   if (proposal->layout.names == 0 && !proposal->rules.front().columns.empty())
     help += "; put your own names there, in the order of the columns";
   return help;

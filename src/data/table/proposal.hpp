@@ -23,8 +23,9 @@ std::optional<Proposal> propose(std::string const& utf8, ReadingRules const& cur
 struct ProposalRequest {
   std::string const& bytes;  // UTF-8
   ReadingRules const& rules;
-  std::string column;  // that could not be read
-  std::string code;    // of the message
+  std::string column;     // that could not be read
+  std::string code;       // of the message
+  bool complete = false;  // the column needs a number in every row
 };
 /// "add this line to the data block: `read decimal = ","`"; empty where other rules do not help.
 std::string proposed_help(ProposalRequest const& request);
@@ -37,8 +38,5 @@ std::optional<std::string> proposed_encoding(std::string const& bytes, ReadingRu
 
 /// Names that are there twice or empty get others.
 std::vector<std::string> distinct_names(std::vector<std::string> const& names);
-
-/// A number that stands for a missing sample in many files, -9999 and its like, where all others of the column are far from it.
-std::optional<double> doubtful_number(std::vector<double> const& values);
 
 }  // namespace sysid

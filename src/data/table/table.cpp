@@ -11,11 +11,13 @@
 #include "core/system/interrupt.hpp"
 #include "core/text/words.hpp"
 #include "data/table/cells.hpp"
+#include "data/table/doubtful_number.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/file_errors.hpp"
 #include "data/table/gzip.hpp"
 #include "data/table/proposal.hpp"
 #include "data/table/record_bytes.hpp"
+#include "data/table/serial_time.hpp"
 #include "data/table/table_parser.hpp"
 #include "data/table/time_stamp.hpp"
 
@@ -91,9 +93,15 @@ Table Table::parse_as_told(std::string name, std::string bytes, ReadingRules con
 void Table::rethrow_with_proposal(UserError const& error, std::string const& column) const {
   if (!proposes_) throw UserError(error.diagnostic());
   Diagnostic diagnostic = error.diagnostic();
-  std::string help = proposed_help({bytes_, rules_, column, diagnostic.code});
+  bool const complete = std::find(rules_.complete.begin(), rules_.complete.end(), column) != rules_.complete.end();
+  std::string help = proposed_help({bytes_, rules_, column, diagnostic.code, complete});
   if (!help.empty()) diagnostic.help = beside_proposal(diagnostic) + help;
-  if (!help.empty() && diagnostic.code == "E4022") diagnostic.help += "; or, if it is a sample, `read missing = none`";
+  if (help.empty() && complete && diagnostic.code == "E4022")
+    diagnostic.help =
+        "it needs a number in every row: fill the gap, or cut the record there; if it is a sample, add this line to the data "
+        "block: `read missing = none`";
+  else if (!help.empty() && diagnostic.code == "E4022")
+    diagnostic.help += "; or, if it is a sample, `read missing = none`";
   throw UserError(std::move(diagnostic));
 }
 
@@ -197,6 +205,8 @@ std::vector<double> Table::numbers_as_told(std::string const& column, std::optio
       throw UserError(data_errors::row_of_units(where, shown, mention));
     // A model of unknown origin may name any file as data: what is no number of a record is not repeated.
     bool const shows = any || like_a_number(shown) || (like_a_gap(shown) && is_record());
+    if (kind == CellKind::text && any && is_time_stamp(shown))
+      throw UserError(data_errors::stamp_among_numbers(where, shown, mention));
     throw UserError(kind == CellKind::not_finite     ? data_errors::not_finite(where, shown, mention)
                     : kind == CellKind::out_of_range ? data_errors::out_of_range(where, shown, mention)
                                                      : data_errors::not_a_number(where, shown, shows, mention));
@@ -205,10 +215,9 @@ std::vector<double> Table::numbers_as_told(std::string const& column, std::optio
     throw UserError(
         data_errors::points_or_groups(place(static_cast<std::size_t>(row - 1), column), unquoted_cell(cell(row, index)), mention));
   if (!rules_.asked_for_missing)
-    if (auto const word = doubtful_number(values))
-      throw UserError(data_errors::doubtful_sample(
-          place(static_cast<std::size_t>(std::find(values.begin(), values.end(), *word) - values.begin()), column), *word,
-          static_cast<int>(std::count(values.begin(), values.end(), *word)), mention));
+    if (auto const doubtful = doubtful_numbers(values); !doubtful.empty())
+      throw UserError(data_errors::doubtful_sample(place(doubtful.front().places.front(), column), doubtful.front().value,
+                                                   static_cast<int>(doubtful.front().places.size()), mention));
   return values;
 }
 
@@ -238,14 +247,38 @@ int Table::row_of_doubtful_points(int column) const {
   return separator_ != ',' || comma ? first : 0;
 }
 
+std::vector<double> Table::serial_times_as_told(std::string const& column, SerialTime const& unit,
+                                                std::optional<Span> mention) const {
+  int const index = index_of(column, mention);
+  std::vector<TimeStamp> stamps;
+  int decimals = 0;
+  for (int row = 1; row <= rows_; ++row) {
+    if (row % rows_between_looks == 0) stop_if_interrupted();
+    std::string const text = unquoted_cell(cell(row, index));
+    auto const read = read_serial(text, unit);
+    if (!read)
+      throw UserError(data_errors::not_a_stamp(place(static_cast<std::size_t>(row - 1), column), row > 1 ? text : std::string(),
+                                               rules_.stamp, mention));
+    decimals = std::max(decimals, read->decimals);
+    stamps.push_back(read->stamp);
+  }
+  std::vector<double> seconds;
+  for (TimeStamp& stamp : stamps) {
+    stamp = without_rounding(stamp, unit, decimals);
+    seconds.push_back(seconds_between(stamps.front(), stamp));
+  }
+  return seconds;
+}
+
 std::vector<double> Table::times_as_told(std::string const& column, std::optional<Span> mention) const {
+  if (SerialTime const* const unit = find_serial_time(rules_.stamp)) return serial_times_as_told(column, *unit, mention);
   auto const pattern = StampPattern::parse(rules_.stamp);
   if (!pattern) throw InternalError("a stamp that is no pattern");
   int const index = index_of(column, mention), date = rules_.date.empty() ? -1 : index_of(rules_.date, mention);
-  constexpr std::int64_t day = 86400;
+  std::int64_t const turn = pattern->turn();
   std::vector<double> seconds(static_cast<std::size_t>(rows_));
   TimeStamp first, before;
-  std::int64_t days = 0;
+  std::int64_t turns = 0;
   for (int row = 1; row <= rows_; ++row) {
     if (row % rows_between_looks == 0) stop_if_interrupted();
     std::string text = unquoted_cell(cell(row, index));
@@ -256,9 +289,9 @@ std::vector<double> Table::times_as_told(std::string const& column, std::optiona
       throw UserError(data_errors::not_a_stamp(place(static_cast<std::size_t>(row - 1), column), shows ? text : std::string(),
                                                rules_.stamp, mention));
     }
-    // Time of day that falls by more than half a day has passed midnight.
-    if (!pattern->has_date() && row > 1 && before.second - (stamp->second + days * day) > day / 2) ++days;
-    stamp->second += days * day;
+    // Time of day that falls by more than half a day has passed midnight, minutes and seconds that fall by half an hour the hour.
+    if (!pattern->has_date() && row > 1 && before.second - (stamp->second + turns * turn) > turn / 2) ++turns;
+    stamp->second += turns * turn;
     if (row == 1) first = *stamp;
     before = *stamp;
     seconds[static_cast<std::size_t>(row - 1)] = seconds_between(first, *stamp);

@@ -14,6 +14,8 @@
 
 namespace sysid {
 
+struct SerialTime;
+
 /// Without rules: comma, semicolon or tab separated, whichever divides the header most often; one header line with the names
 /// (quoted or not), before it any number of empty lines and of comment lines that begin with `#`, and as the first line of all
 /// `sep=;`. Line ends LF, CRLF or CR; UTF-8, or UTF-16 with its mark. ReadingRules change each of these. Cells are kept as text:
@@ -61,6 +63,7 @@ class Table final : public RecordFile {
   friend class TableParser;
   int index_of(std::string const& column, std::optional<Span> mention) const;
   std::vector<double> numbers_as_told(std::string const& column, std::optional<Span> mention) const;
+  std::vector<double> serial_times_as_told(std::string const& column, SerialTime const& unit, std::optional<Span> mention) const;
   std::vector<double> times_as_told(std::string const& column, std::optional<Span> mention) const;
   /// The first row of a column whose points may stand between groups of digits: `1.234` beside `999`, and nothing that decides; or
   /// 0.

@@ -84,6 +84,7 @@ std::optional<StampPattern> StampPattern::parse(std::string_view text) {
     pattern.tokens_.push_back({word->part});
     at += word->word.size();
   }
+  pattern.has_hours_ = has(Part::hour);
   bool const year = has(Part::year) || has(Part::short_year);
   bool const of_month = (has(Part::month) || has(Part::month_name)) && has(Part::day);
   pattern.has_date_ = year && (of_month || has(Part::day_of_year));
@@ -279,7 +280,7 @@ std::vector<std::string> patterns_of(std::vector<std::string> const& cells) {
   static constexpr std::string_view between[] = {" ", "T", ", ", "-", "_", ","};
   static constexpr std::string_view times[] = {"",           "hh:mm:ss",    "hh:mm:ss.f",    "hh:mm:ss,f",
                                                "hh:mm:ss:f", "hh:mm:ss AP", "hh:mm:ss.f AP", "hh:mm",
-                                               "hh:mm AP",   "mm:ss.f",     "hhmmss"};
+                                               "hh:mm AP",   "mm:ss.f",     "mm:ss",         "hhmmss"};
   std::vector<std::string> found;
   if (cells.empty()) return found;
   auto const fits = [&](std::string const& text) {
@@ -304,8 +305,10 @@ std::vector<std::string> patterns_of(std::vector<std::string> const& cells) {
           if (time.empty() && !zone.empty()) continue;  // `-04` behind a date is no zone
           std::string text = fmt::format("{}{}{}{}", date, date.empty() || time.empty() ? "" : joint, time, zone);
           if (taken || !fits(text)) continue;
-          // `mm:ss.f` reads what `hh:mm` may have meant; the longer pattern comes first.
+          // `00:01` may be hours and minutes, or minutes and seconds.
+          bool const either = date.empty() && text == "hh:mm" && fits("mm:ss");
           found.push_back(std::move(text));
+          if (either) found.emplace_back("mm:ss");
           taken = true;
         }
       }

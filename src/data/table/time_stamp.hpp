@@ -33,6 +33,8 @@ class StampPattern {
   std::optional<TimeStamp> read(std::string_view cell) const;
 
   bool has_date() const { return has_date_; }
+  /// [s] after which a pattern without a date begins again: a day, or an hour where it has no hours.
+  std::int64_t turn() const { return has_hours_ ? 86400 : 3600; }
   std::string const& text() const { return text_; }
 
  private:
@@ -61,13 +63,14 @@ class StampPattern {
 
   std::string text_;
   std::vector<Token> tokens_;
-  bool has_date_ = false;
+  bool has_date_ = false, has_hours_ = true;
 };
 
 /// Digits in groups between the signs of dates and times: `2024-05-01 12:00:00.5`, `1.5.2024`, `5/1/24 3:00 PM`, `12:00:01`.
 bool is_time_stamp(std::string_view text);
 
-/// The usual patterns that fit all of these cells, the best first; where two of them order day and month differently, both.
+/// The usual patterns that fit all of these cells, the best first; where two of them order day and month differently, or
+/// `00:01` may be minutes or seconds, both.
 std::vector<std::string> patterns_of(std::vector<std::string> const& cells);
 
 }  // namespace sysid

@@ -21,8 +21,8 @@ constexpr Spelling whole_texts[] = {
     {"seconds", "s"},  {"sekunden", "s"},  {"msec", "ms"},      {"usec", "us"},    {"volt", "V"},        {"volts", "V"},
     {"ampere", "A"},   {"amps", "A"},      {"newton", "N"},     {"newtons", "N"},  {"meter", "m"},       {"meters", "m"},
     {"metres", "m"},   {"watts", "W"},     {"hertz", "Hz"},     {"pascal", "Pa"},  {"millivolts", "mV"}, {"mvolts", "mV"},
-    {"hours", "h"},    {"minutes", "min"}, {"%", "percent"},    {"1", "-"},        {"none", "-"},        {"rn", "-"},
-    {"ts", "-"},       {"---", "-"}};
+    {"hours", "h"},    {"minutes", "min"}, {"%", "percent"},    {"1", "-"},        {"unitless", "-"},    {"dimensionless", "-"},
+    {"none", "-"},     {"rn", "-"},        {"ts", "-"},         {"---", "-"}};
 constexpr Spelling unit_signs[] = {{"µ", "u"},   {"μ", "u"},   {"²", "^2"},    {"³", "^3"},  {"·", " "},  {"⋅", " "},
                                    {"Ω", "ohm"}, {"Ω", "ohm"}, {"°C", "degC"}, {"°", "deg"}, {"**", "^"}, {"%", "percent"}};
 
@@ -147,6 +147,18 @@ std::optional<Unit> unit_of_text(std::string_view text) {
   std::string const written = in_language(meant);
   if (written.empty()) return std::nullopt;
   unit->text = written;
+  return unit;
+}
+
+std::optional<Unit> unit_of_text(std::string_view text, Unit const& wanted) {
+  auto unit = unit_of_text(text);
+  std::optional<Unit> const gravity = unit_atom("g_n");
+  if (!gravity || gravity->dimension != wanted.dimension || (unit && unit->dimension == wanted.dimension)) return unit;
+  std::string_view bare = trimmed(text);
+  for (std::string_view const pair : {"[]", "()", "<>", "{}"})
+    if (bare.size() > 2 && bare.front() == pair[0] && bare.back() == pair[1]) bare = trimmed(bare.substr(1, bare.size() - 2));
+  for (std::string_view const written : {"g", "G", "gn", "g0", "gs"})
+    if (bare == written) unit = gravity;
   return unit;
 }
 

@@ -11,6 +11,9 @@ namespace sysid {
 /// `N`, `[mm]`, `(m/s²)`, `kN.m`, `Deg C`, `Volts`, `µm`, `m s-1`; `text` is what may stand in brackets in a data block. Nothing
 /// for what is no unit. A dash or a 1 is the unit of plain numbers.
 std::optional<Unit> unit_of_text(std::string_view text);
+/// The same where a quantity of the kind of `wanted` is: of an acceleration `g` is no gram but the standard gravity, `g_n` in the
+/// language.
+std::optional<Unit> unit_of_text(std::string_view text, Unit const& wanted);
 
 /// `Force (N)`, `Force [N]`, `Force / N`, `Force in N`: the name and what stands there as its unit.
 struct NameWithUnit {

@@ -5,8 +5,11 @@
 
 #include "core/text/diagnostic.hpp"
 #include "data/record.hpp"
+#include "data/table/doubtful_number.hpp"
 #include "data/table/proposal.hpp"
+#include "data/table/serial_time.hpp"
 #include "data/table/table.hpp"
+#include "data/table/unit_text.hpp"
 #include "data/temporary_file.hpp"
 
 using namespace sysid;
@@ -54,6 +57,50 @@ TEST_CASE("a large mark far above all samples is asked about, and a large sample
   CHECK(said_about("t,y\n0,0\n1,9999\n2,0\n3,9999\n", "y").code.empty());  // a switch
   CHECK(said_about("t,y\n0,1\n1,3\n2,70\n3,1000\n", "y").code.empty());
   CHECK(said_about("t,y\n0,1\n1,12\n2,170\n3,999\n", "y").code.empty());
+}
+
+TEST_CASE("marks are judged by the samples that are none: two do not hide each other, and nines within the range are samples") {
+  auto const of = [](std::vector<double> const& values) {
+    std::vector<double> marks;
+    for (DoubtfulNumber const& each : doubtful_numbers(values)) marks.push_back(each.value);
+    return marks;
+  };
+  CHECK(of({1, 2, 3, -999, 9999, 2}) == std::vector<double>{-999, 9999});
+  CHECK(of({0, 5000, 2500, -9999}) == std::vector<double>{-9999});
+  CHECK(of({0.1, 0.2, 0.3, 99.9}) == std::vector<double>{99.9});
+  CHECK(of({0.1, 0.2, 0.3, 0.999}).empty());
+  CHECK(of({95, 98, 97, 99.9}).empty());
+  CHECK(of({-15, 500, 20, -99.9}).empty());
+  CHECK(of({0, 0, 999, 0}).empty());  // a blow on nothing
+  CHECK(of({1, 2, 9876}).empty());
+  CHECK(doubtful_numbers({1, 2, 9999, 3, 9999}).front().places == std::vector<std::size_t>{2, 4});
+}
+
+TEST_CASE("numbers that count from a date are recognised by size and steps, and seconds of a run are not") {
+  auto const seems = [](std::vector<double> const& values, char const* column = "t") {
+    SerialTime const* const found = seems_serial(values, column);
+    return found == nullptr ? std::string() : std::string(found->word);
+  };
+  CHECK(seems({1709632800, 1709632801}) == "seconds");
+  CHECK(seems({1709632800250., 1709632800500.}) == "milliseconds");
+  CHECK(seems({1709632800250000000., 1709632800500000000.}) == "nanoseconds");
+  CHECK(seems({45356.5, 45356.5 + 1 / 86400.0, 45356.5 + 2 / 86400.0}) == "days");
+  CHECK(seems({739316.5, 739316.5 + 1 / 1440.0}) == "days");
+  CHECK(seems({45356, 45357}, "Date") == "days");
+  CHECK(seems({45356, 45357}).empty());  // seconds of a long run
+  CHECK(seems({45356.5, 45356.52}).empty());
+  CHECK(seems({0, 1}).empty());
+}
+
+TEST_CASE("an acceleration in g is in units of the standard gravity, a mass in grams") {
+  Unit const acceleration = *unit_of_text("m/s^2"), mass = *unit_of_text("kg");
+  for (char const* const written : {"g", "[g]", "G", "gn"}) {
+    CAPTURE(written);
+    REQUIRE(unit_of_text(written, acceleration));
+    CHECK(unit_of_text(written, acceleration)->scale == 9.80665);  // CGPM 1901
+  }
+  CHECK(unit_of_text("g", mass)->scale == 1e-3);
+  CHECK(unit_of_text("mm/s²", acceleration)->scale == 1e-3);
 }
 
 TEST_CASE("one point before three digits beside whole numbers is asked about where nothing decides") {

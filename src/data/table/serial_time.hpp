@@ -1,0 +1,36 @@
+// Times that are dates as plain numbers: seconds since 1970, days as spreadsheets count them.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/table/time_stamp.hpp"
+
+namespace sysid {
+
+/// What `stamp` says where the cells are numbers: `seconds`, `milliseconds`, `microseconds`, `nanoseconds`, `days`.
+struct SerialTime {
+  std::string_view word;
+  std::int64_t picoseconds;  // that one of them has
+};
+SerialTime const* find_serial_time(std::string_view word);
+
+/// The cell as a count of these, exactly: doubles have 0.2 us of the seconds since 1970. Nothing for what is no plain decimal
+/// number.
+struct SerialStamp {
+  TimeStamp stamp;
+  int decimals = 0;  // that were written
+};
+std::optional<SerialStamp> read_serial(std::string_view cell, SerialTime const& unit);
+/// Days with six decimals and more, to the power of ten of a second that is nearest to their last digit: 45356.4173611111 is a
+/// minute.
+TimeStamp without_rounding(TimeStamp const& stamp, SerialTime const& unit, int decimals);
+
+/// What numbers that are taken for seconds seem to count in truth, by their size and their steps: seconds and their parts since
+/// 1970, of the years 1998 to 2099; days since 1900 (spreadsheets) or since the year 0 (MATLAB), of 1970 to 2099, where `column` is
+/// called after a date or the steps are whole seconds of a day and no short decimal numbers. Null where they seem to be what they
+/// are taken for.
+SerialTime const* seems_serial(std::vector<double> const& values, std::string_view column);
+
+}  // namespace sysid
