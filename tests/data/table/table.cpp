@@ -148,10 +148,10 @@ TEST_CASE("what spreadsheets and Fortran write is named, with the number as it i
                            {"1 234 567", "`read thousands = blank`"},
                            {"1,234", "may be 1.234 or 1234: choose"},
                            {"1.5D-3", "`1.5e-3`"},
-                           {"2024-05-01 12:00:00", "dates"},
-                           {"12:00:01.5", "dates"},
-                           {"01.05.2024", "dates"},
-                           {"5/1/2024", "dates"}}) {
+                           {"2024-05-01 12:00:00", "the cells above it are numbers"},
+                           {"12:00:01.5", "the cells above it are numbers"},
+                           {"01.05.2024", "the cells above it are numbers"},
+                           {"5/1/2024", "the cells above it are numbers"}}) {
     CAPTURE(each.text);
     CHECK(error_of(std::string("a;b\n1;2\n") + each.text + ";3\n", "a").help.find(each.said) != std::string::npos);
   }
