@@ -62,8 +62,9 @@ std::unique_ptr<RecordFile> open_record(std::string const& path, ReadingRules co
       table->set_digest(std::move(digest));
       return table;
     }
-    ReadingRules plain;
+    ReadingRules plain;  // what the block needs of its columns is no rule of reading
     plain.time_column = rules.time_column;
+    plain.complete = rules.complete;
     if (rules != plain) throw UserError(data_errors::reading_of_no_text(name, format->name, mention));
     return format->open(name, bytes, std::move(digest));
   } catch (UserError const& error) {

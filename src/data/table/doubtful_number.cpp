@@ -19,6 +19,12 @@ constexpr double known_marks[] = {999.25, 7999, 32767, 32768, 65535,  2147483647
 /// written.
 constexpr double beyond_measure = 1e29, of_others = 1e-6;
 
+/// But for rounding, as by a change of units and back.
+bool is_known(double size) {
+  return std::any_of(std::begin(known_marks), std::end(known_marks),
+                     [&](double mark) { return std::fabs(size - mark) <= 1e-12 * mark; });
+}
+
 bool only_nines(double size) {
   constexpr double least = 9.99;
   if (size < least) return false;
@@ -32,8 +38,7 @@ bool only_nines(double size) {
 bool is_mark(double value) {
   if (!std::isfinite(value)) return false;
   double const size = std::fabs(value);
-  return size >= beyond_measure || std::find(std::begin(known_marks), std::end(known_marks), size) != std::end(known_marks) ||
-         only_nines(size);
+  return size >= beyond_measure || is_known(size) || only_nines(size);
 }
 
 struct Others {
@@ -44,9 +49,7 @@ bool is_far(double mark, Others const& others) {
   constexpr double times = 5, surely_below = -999;
   if (others.least > others.most) return false;  // there are none
   double const largest = std::max(std::fabs(others.least), std::fabs(others.most)), size = std::fabs(mark);
-  if (size >= beyond_measure && std::find(std::begin(known_marks), std::end(known_marks), size) == std::end(known_marks) &&
-      largest > size * of_others)
-    return false;
+  if (size >= beyond_measure && !is_known(size) && largest > size * of_others) return false;
   if (mark <= surely_below && others.least >= mark / times) return true;
   double const range = others.most - others.least;
   double const distance = mark > others.most ? mark - others.most : others.least - mark;
