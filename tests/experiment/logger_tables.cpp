@@ -285,7 +285,8 @@ TEST_CASE("tables of loggers are read, or refused with the line to add, which th
       CHECK(answer.record);
     } else {
       CHECK_FALSE(answer.record);
-      auto const lines = proposed_lines(answer.help);
+      auto lines = proposed_lines(answer.help);
+      if (static_cast<int>(lines.size()) <= table.choice) lines = proposed_lines(answer.messages);  // of all messages
       if (static_cast<int>(lines.size()) <= table.choice) {
         FAIL_CHECK("no line is proposed");
         continue;
