@@ -46,20 +46,16 @@ std::string preference(Comparison const& comparison) {
 std::string sizes(OrderedJson const& with, std::vector<DisturbedEquation> const& equations) {
   std::string text;
   OrderedJson const parameters = with.value("parameters", OrderedJson::object());
-  // An optimum has no sds of quantities derived from its parameters.
-  auto const derived = [&](DisturbedEquation const& each) {
-    for (auto const& [name, entry] : parameters.items())
-      if ((name == each.name + "_rms" || name.ends_with("." + each.name + "_rms")) && estimate(with, name)) return true;
-    return false;
-  };
   for (auto const& [name, entry] : parameters.items())
     for (DisturbedEquation const& each : equations) {
-      bool const by_rms = each.white() && derived(each);
-      std::string const quantity = by_rms ? each.name + "_rms" : each.parameter();
+      std::string const quantity = each.parameter();
       if (name != quantity && !name.ends_with("." + quantity)) continue;
       // In a part, with the name of the part; another part may have one of the same name, but not the same parameter.
       std::string const part = name.substr(0, name.size() - quantity.size());
-      if (auto const value = estimate(with, name))
+      // An optimum at a bound has no sd of what is derived from it.
+      std::string const rms = part + each.name + "_rms";
+      bool const by_rms = each.white() && estimate(with, rms);
+      if (auto const value = estimate(with, by_rms ? rms : name))
         text += fmt::format("{}{}: {}{} {}\n", part, each.name, with_sd(*value), unit_after_number(value->unit),
                             each.discrete   ? "rms of its samples"
                             : !each.white() ? "rms"
