@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 
 #include "core/text/number.hpp"
@@ -15,6 +16,7 @@
 #include "inference/evidence/weighted_draws.hpp"
 #include "search/journal.hpp"
 #include "search/laplace.hpp"
+#include "search/objective.hpp"
 #include "search/refit.hpp"
 #include "search/search.hpp"
 #include "search/settle.hpp"
@@ -22,10 +24,42 @@
 namespace sysid::optimum {
 namespace {
 
-std::vector<std::size_t> parameters_at_bound(Target const& target, Mode const& mode) {
+constexpr std::uint64_t bound_step = 8'000'000;  // of Purpose::start
+
+bool has_one_bound(ParameterInfo const& parameter) { return std::isfinite(parameter.lower) != std::isfinite(parameter.upper); }
+
+/// Whether a parameter with one bound a lies there, where no width of its support says what is near. Its coordinate is log |x - a|.
+/// It does if the objective is the same a thousand times nearer to the bound and a thousand times as far from it, but falls by half
+/// a nat before the prior ends. Where it never falls, the data do not determine the parameter, which is another finding.
+bool at_one_bound(Objective const& objective, Mode const& mode, std::size_t parameter) {
+  constexpr double thousand = 3 * std::numbers::ln10, same = 1e-3, fallen = 0.5;  // nats
+  constexpr int further = 8;
+  auto const p = static_cast<Eigen::Index>(parameter);
+  Eigen::VectorXd const theta = theta_of(mode);
+  double const prior_ends = objective.centre(p) + 3 * objective.scale(p), room = prior_ends - (theta(p) + thousand);
+  if (!(room > 0)) return false;
+  std::vector<double> moves{0, -thousand, thousand};
+  for (int k = 1; k <= further; ++k) moves.push_back(thousand + k * room / further);
+  std::vector<Eigen::VectorXd> places(moves.size(), theta);
+  for (std::size_t k = 0; k < moves.size(); ++k) places[k](p) += moves[k];
+  Ledger untold;  // places that nobody asked for
+  std::vector<double> const density = log_density_in_blocks(objective, to_lanes(places), untold);
+  return density[1] > density[0] - same && density[2] > density[0] - fallen &&
+         std::any_of(density.begin() + 3, density.end(), [&](double each) { return each < density[0] - fallen; });
+}
+
+std::vector<std::size_t> parameters_at_bound(Target const& target, ObjectiveKind objective_kind, Mode const& mode,
+                                             std::uint64_t seed) {
   std::vector<std::size_t> found;
-  for (std::size_t p = 0; p < target.parameters().size(); ++p)
-    if (at_bound(target.parameters()[p], mode.declared[p])) found.push_back(p);
+  std::optional<Objective> objective;
+  for (std::size_t p = 0; p < target.parameters().size(); ++p) {
+    bool at = at_bound(target.parameters()[p], mode.declared[p], 0);
+    if (!at && has_one_bound(target.parameters()[p])) {
+      if (!objective) objective.emplace(make_objective(target, objective_kind, seed, bound_step));
+      at = at_one_bound(*objective, mode, p);
+    }
+    if (at) found.push_back(p);
+  }
   return found;
 }
 
@@ -148,20 +182,24 @@ FitResult run(std::string_view backend, Target const& target, ObjectiveKind obje
   // By a gradient, searches end where it is small: what Newton's step promises then is of the differences of its curvature.
   if (best.gain > (target.is_expensive() ? 10 * large_gain : large_gain)) result.findings.push_back(not_reached(best));
   std::vector<std::string> names, bound;
-  for (std::size_t const p : parameters_at_bound(target, best)) {
+  std::vector<std::size_t> const at_bound = parameters_at_bound(target, objective_kind, best, context.seed);
+  for (std::size_t const p : at_bound) {
     names.push_back(target.parameters()[p].name);
     bound.push_back(fmt::format("{} = {:.4g}", names.back(), best.declared[p]));
   }
   if (!names.empty()) {
+    std::string const kept = quoted(names);
     // Coordinates end there at infinity: of course they are flat.
     std::erase_if(result.findings, [](Finding const& each) { return each.code == FindingCode::flat_direction; });
     result.findings.push_back(
         {FindingCode::at_bound, Severity::warning, std::move(names),
-         fmt::format("the optimum lies at a bound of the prior: {}; its sds are not meaningful", fmt::join(bound, ", ")),
+         fmt::format(
+             "the optimum lies at a bound of the prior: {}; {} not meaningful, and the other sds are those with {} kept there",
+             fmt::join(bound, ", "), bound.size() == 1 ? "its sd is" : "their sds are", kept),
          "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"});
   }
   if (objective_kind == ObjectiveKind::declared_posterior)
-    if (std::optional<Finding> misfit = check_widths(target, result.modes, parameters_at_bound(target, best), context))
+    if (std::optional<Finding> misfit = check_widths(target, result.modes, at_bound, context))
       result.findings.push_back(std::move(*misfit));
   write_draw(target, best, context, result);
   // One draw has no spread: the standard deviations are those of the Laplace approximation.

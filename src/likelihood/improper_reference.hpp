@@ -5,6 +5,10 @@
 
 namespace sysid {
 
+/// How near to the only bound of its prior a parameter is looked for, as a share of the bound: nearer, its value has too few digits
+/// for its distance.
+constexpr double least_distance = 1e-12;
+
 /// Of one coordinate of a parameter space.
 struct ImproperReference {
   enum class Kind {

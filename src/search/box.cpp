@@ -24,7 +24,7 @@ Box::Box(Objective const& objective) : middle_(objective.centre), lowest_(object
   for (Eigen::Index p = 0; p < middle_.size(); ++p) {
     Kind const kind = kinds_[static_cast<std::size_t>(p)];
     if (kind == Kind::interval) lowest_(p) = std::min(lowest_(p), -end), highest_(p) = std::max(highest_(p), end);
-    if (kind == Kind::half_line) lowest_(p) = std::min(lowest_(p), middle_(p) - end);
+    if (kind == Kind::half_line) lowest_(p) = std::max(std::min(lowest_(p), middle_(p) - end), objective.nearest(p));
   }
   low_ = inside(lowest_);
   high_ = inside(highest_);

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/order.hpp"
 #include "core/numeric/statistics.hpp"
+#include "likelihood/improper_reference.hpp"
 #include "search/search_step.hpp"
 
 namespace sysid {
@@ -36,7 +38,8 @@ Objective make_objective(Target const& target, ObjectiveKind objective_kind, Con
                       Eigen::VectorXd::Ones(dimension),
                       Eigen::VectorXd::Zero(dimension),
                       Eigen::VectorXd::Constant(dimension, -infinity),
-                      Eigen::VectorXd::Constant(dimension, infinity)};
+                      Eigen::VectorXd::Constant(dimension, infinity),
+                      Eigen::VectorXd::Constant(dimension, -infinity)};
   for (int p = 0; p < dimension; ++p) {
     std::vector<double> finite;
     for (double const v : prior_draws.row(p))
@@ -54,6 +57,9 @@ Objective make_objective(Target const& target, ObjectiveKind objective_kind, Con
     // A density that rises for ever, as a Jacobian can where the prior does not fall, has no optimum to climb to.
     bool const rising = info.improper != Improper::no;
     if (below || above || rising) objective.low(p) = finite.front() - 3 * objective.scale(p);
+    double const bound = below ? info.lower : info.upper;
+    if (below != above && bound != 0) objective.nearest(p) = elementary::log(least_distance * std::fabs(bound));
+    objective.low(p) = std::max(objective.low(p), objective.nearest(p));
     if ((below && above) || rising) objective.high(p) = finite.back() + 3 * objective.scale(p);
   }
   return objective;

@@ -18,11 +18,12 @@ struct Objective {
   Eigen::VectorXd scale;   // [P] half the central 68 % of the prior draws, > 0
   Eigen::VectorXd centre;  // [P] the middle of these
   Eigen::VectorXd low,
-      high;  // [P] beyond the draws on bounded sides: past here a bound is reached to the last digit; else infinite
+      high;                 // [P] beyond the draws on bounded sides: past here a bound is reached to the last digit; else infinite
+  Eigen::VectorXd nearest;  // [P] to one bound alone that is not 0: nearer all coordinates are one number; else -infinity
 
   int dimension() const { return static_cast<int>(scale.size()); }
   /// The same widths over another target, whose prior is the same.
-  Objective over(Target const& other, ObjectiveKind kind) const { return {other, kind, scale, centre, low, high}; }
+  Objective over(Target const& other, ObjectiveKind kind) const { return {other, kind, scale, centre, low, high, nearest}; }
   /// The prior's part alone; 0 for `likelihood`.
   std::vector<double> log_prior(ConstLanes theta) const;
   /// -infinity wherever it is not finite.

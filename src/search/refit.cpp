@@ -54,9 +54,12 @@ std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std:
   return result;
 }
 
-bool at_bound(ParameterInfo const& parameter, double declared) {
+bool at_bound(ParameterInfo const& parameter, double declared, double sd) {
   double const width = parameter.upper - parameter.lower;
-  if (!std::isfinite(width)) return false;
+  if (!std::isfinite(width)) {
+    double const distance = std::min(declared - parameter.lower, parameter.upper - declared);
+    return distance <= 0 || sd > 10 * distance;
+  }
   // Logarithmic coordinates end at the lower bound relative to it, not to the width.
   double const unit = parameter.lower > 0 ? std::min(width, parameter.lower) : width;
   return declared - parameter.lower < 1e-3 * unit || parameter.upper - declared < 1e-3 * width;
@@ -88,7 +91,8 @@ std::vector<Move> moves_between(std::span<ParameterInfo const> parameters, Mode 
       moves.push_back({parameter, infinity, infinity});
       continue;
     }
-    bool const was = at_bound(parameters[p], before.declared[p]), is = at_bound(parameters[p], after.declared[p]);
+    bool const was = at_bound(parameters[p], before.declared[p], before.sd[p]),
+               is = at_bound(parameters[p], after.declared[p], after.sd[p]);
     bool const was_flat = flat_in(before, p), is_flat = flat_in(after, p);
     bool const before_measures = before.sd[p] > 0 && !was && (!was_flat || is_flat);
     double const sd = before_measures ? before.sd[p] : after.sd[p];

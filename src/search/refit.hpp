@@ -21,8 +21,9 @@ std::vector<Mode> refit(Target const& target, ObjectiveKind objective_kind, std:
                         Journal* journal = nullptr);
 
 /// Whether a declared value lies at a bound of its prior's support: within a thousandth of the support's width, or of a positive
-/// lower bound. Coordinates end there at infinity, so that what a Laplace approximation says of the parameter means nothing.
-bool at_bound(ParameterInfo const& parameter, double declared);
+/// lower bound; where the support has one bound only and so no width, within a tenth of the value's sd. Coordinates end there at
+/// infinity, so that what a Laplace approximation says of the parameter means nothing.
+bool at_bound(ParameterInfo const& parameter, double declared, double sd);
 
 /// How far a parameter's limits, its value plus and minus its sd, lie apart in two modes, in units of `before`'s sd.
 struct Move {

@@ -172,7 +172,7 @@ TEST_CASE("an optimum at a bound has no sd to compare with; one inside has") {
   for (double const upper : {1.0, 5.0}) {
     Bench bench;
     std::vector<Mode> const modes = search(*bounded(upper, 1.5), ObjectiveKind::declared_posterior, bench.context).modes;
-    CHECK(at_bound(bounded(upper, 1.5)->parameters()[0], modes.front().declared[0]) == (upper == 1));
+    CHECK(at_bound(bounded(upper, 1.5)->parameters()[0], modes.front().declared[0], modes.front().sd[0]) == (upper == 1));
     SolverCheck const check = check_modes(*bounded(upper, 1.7), ObjectiveKind::declared_posterior, modes, 1, bench.ledger);
     CHECK(check.holds() == (upper == 1));
     if (upper > 1) CHECK(check.outcome == SolverCheck::Outcome::mode_moves);

@@ -75,11 +75,18 @@ TEST_CASE("where the finer of two modes is flat the sds of the other measure its
 }
 
 TEST_CASE("a bound is reached within a thousandth of the support, or of a positive lower bound") {
-  CHECK(at_bound({"", "", 0, 1}, 0.9995));
-  CHECK_FALSE(at_bound({"", "", 0, 1}, 0.998));
-  CHECK(at_bound({"", "", 1e-3, 1}, 1.0005e-3));
-  CHECK_FALSE(at_bound({"", "", 1e-3, 1}, 1.1e-3));
-  CHECK_FALSE(at_bound({"", "", -infinity, infinity}, 1e300));
+  CHECK(at_bound({"", "", 0, 1}, 0.9995, 0.1));
+  CHECK_FALSE(at_bound({"", "", 0, 1}, 0.998, 0.1));
+  CHECK(at_bound({"", "", 1e-3, 1}, 1.0005e-3, 0.1));
+  CHECK_FALSE(at_bound({"", "", 1e-3, 1}, 1.1e-3, 0.1));
+  CHECK_FALSE(at_bound({"", "", -infinity, infinity}, 1e300, 0.1));
+}
+
+TEST_CASE("one bound alone is reached within a tenth of an sd") {
+  CHECK(at_bound({"", "", 3.4, infinity}, 3.4 + 1e-12, 2e-11));
+  CHECK(at_bound({"", "", 3.4, infinity}, 3.4, 0));
+  CHECK_FALSE(at_bound({"", "", 3.4, infinity}, 3.4 + 1e-9, 2e-9));
+  CHECK(at_bound({"", "", -infinity, 0}, -1e-12, 2e-11));
 }
 
 TEST_CASE("a mode that can no longer be solved keeps its place and has moved infinitely far") {

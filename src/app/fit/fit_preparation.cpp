@@ -115,7 +115,13 @@ bool FitPreparation::find_references(RunContext const& context, std::uint64_t se
 bool FitPreparation::require_proper(SearchResult& found, Preparation& preparation, RunContext& context) {
   if (preparation.references.empty() || objective_kind_ == ObjectiveKind::likelihood) return true;
   auto const checked = [&](SearchResult const& of) {
-    return unbounded::check_propriety(*target(preparation.solver), of.modes.front(), context.seed, context.interrupted);
+    auto const posterior = target(preparation.solver);
+    Mode mode = of.modes.front();
+    // An optimum of the declared parameters may lie at a bound, where coordinates have no mass: what has ends far from it.
+    Ledger untold;
+    if (objective_kind_ == ObjectiveKind::declared_posterior)
+      mode = refit(*posterior, ObjectiveKind::posterior, {mode}, context.seed, untold, context.interrupted).front();
+    return unbounded::check_propriety(*posterior, mode, context.seed, context.interrupted);
   };
   unbounded::Propriety propriety = checked(found);
   if (context.stop_requested()) return false;

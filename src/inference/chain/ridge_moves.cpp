@@ -33,7 +33,8 @@ class Landscape {
                    scale,
                    Eigen::VectorXd::Zero(scale.size()),
                    Eigen::VectorXd::Constant(scale.size(), -infinity),
-                   Eigen::VectorXd::Constant(scale.size(), infinity)},
+                   Eigen::VectorXd::Constant(scale.size(), infinity),
+                   Eigen::VectorXd::Constant(scale.size(), -infinity)},
         ledger_(ledger) {}
 
   std::vector<double> log_densities(std::vector<Eigen::VectorXd> points) const {

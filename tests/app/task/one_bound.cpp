@@ -1,0 +1,106 @@
+// Optima at the bound of a prior that has one bound only, against those of a regression with the parameter fixed there.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "app/running.hpp"
+
+using namespace sysid;
+using nlohmann::json;
+
+namespace {
+
+// A straight line, y = 3 + 2 x.
+struct StraightLine {
+  static constexpr int rows = 40;
+  static constexpr double noise = 0.5;
+  std::string csv = "x,y\n";
+  double sum_xx = 0, sum_xy = 0, sum_x = 0, sum_y = 0;
+
+  StraightLine() {
+    for (int i = 0; i < rows; ++i) {
+      double const x = 0.1 * i, y = 3 + 2 * x + 0.4 * std::sin(37.0 * i);
+      csv += fmt::format("{},{}\n", x, y);
+      sum_xx += x * x, sum_xy += x * y, sum_x += x, sum_y += y;
+    }
+  }
+};
+
+json fit_of_line(std::string const& parameters, std::string const& mean, std::string const& method) {
+  std::string const text = "model line {\n  input x [-]\n" + parameters + "  observe y ~ normal(" + mean +
+                           ", sd = 0.5)\n}\ndata record { file \"line.csv\"; input x = x; measure y = y }\n" +
+                           "best = fit line to record with " + method + ", seed = 1\n";
+  return CaseRun(text, {{"line.csv", StraightLine().csv}}).summary("best");
+}
+
+json const* told_by(json const& summary, std::string const& code) {
+  for (json const& each : summary.at("findings"))
+    if (each.at("code") == code) return &each;
+  return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("an optimum at the only bound of a prior is said, and the other parameters are those of the regression there") {
+  // The least squares have a = 3: above it, the best is the line with the bound as its offset.
+  StraightLine const record;
+  double const bound = 3.4;
+  double const slope = (record.sum_xy - bound * record.sum_x) / record.sum_xx;
+  for (auto const& [prior, method] : {std::pair("flat(lower = 3.4)", "ml"), std::pair("flat(lower = 3.4)", "map"),
+                                      std::pair("normal(3, sd = 10, lower = 3.4)", "ml"),
+                                      std::pair("normal(3, sd = 10, lower = 3.4)", "map"), std::pair("3.4 + half", "ml")}) {
+    CAPTURE(std::string(prior));
+    CAPTURE(std::string(method));
+    bool const shifted = std::string(prior) == "3.4 + half";  // a distance from the bound
+    json const summary = fit_of_line((shifted ? std::string("  parameter d ~ half_normal(5)\n  derive a = 3.4 + d\n")
+                                              : fmt::format("  parameter a ~ {}\n", prior)) +
+                                         "  parameter b ~ flat()\n  derive both = a + b\n  derive twice = 2*b\n",
+                                     "a + b*x", method);
+    json const* const told = told_by(summary, "at_bound");
+    REQUIRE(told != nullptr);
+    CHECK(told->at("message").get<std::string>().find(shifted ? "`d`" : "`a`") != std::string::npos);
+    CHECK(told_by(summary, "flat_direction") == nullptr);
+    CHECK(told_by(summary, "improper_posterior") == nullptr);
+    json const& parameters = summary.at("parameters");
+    CHECK(parameters.at("b").at("mean").get<double>() == doctest::Approx(slope).epsilon(1e-6));
+    CHECK(parameters.at("b").at("sd").get<double>() ==
+          doctest::Approx(StraightLine::noise / std::sqrt(record.sum_xx)).epsilon(1e-3));
+    CHECK(parameters.at("both").at("sd").is_null());
+    CHECK(parameters.at("both").at("without_sd").get<std::string>().find("lies at a bound of its prior") != std::string::npos);
+    CHECK(parameters.at("twice").at("sd").is_number());
+  }
+}
+
+TEST_CASE("an optimum that only comes near its one bound is not called at it") {
+  StraightLine const record;
+  double const determinant = StraightLine::rows * record.sum_xx - record.sum_x * record.sum_x;
+  double const offset = (record.sum_xx * record.sum_y - record.sum_x * record.sum_xy) / determinant,
+               sd = StraightLine::noise * std::sqrt(record.sum_xx / determinant);
+  for (double const distance : {2.0, 0.5, 0.1}) {
+    CAPTURE(distance);
+    for (char const* const method : {"ml", "map"}) {
+      json const summary =
+          fit_of_line(fmt::format("  parameter a ~ flat(lower = {:.17g})\n  parameter b ~ flat()\n", offset - distance * sd),
+                      "a + b*x", method);
+      CHECK(told_by(summary, "at_bound") == nullptr);
+      CHECK(summary.at("parameters").at("a").at("mean").get<double>() == doctest::Approx(offset).epsilon(1e-4));
+    }
+  }
+}
+
+TEST_CASE("a posterior that ends at the one bound of a flat prior is proper") {
+  // The least squares have a curvature of 0.05 beside the line.
+  for (auto const& [lower, curve] : {std::pair("0", "+ c*x^2"), std::pair("0.3", "- c*x^2")}) {
+    CAPTURE(std::string(lower));
+    json const summary = fit_of_line(fmt::format("  parameter a ~ normal(0, sd = 10)\n  parameter b ~ normal(0, sd = 10)\n"
+                                                 "  parameter c ~ flat(lower = {})\n",
+                                                 lower),
+                                     fmt::format("a + b*x {}", curve), "map");
+    CHECK(told_by(summary, "at_bound") != nullptr);
+    CHECK(told_by(summary, "improper_posterior") == nullptr);
+  }
+}
