@@ -81,7 +81,7 @@ struct Found {
 void check_records(Noise const& noise, std::string const& selector) {
   int exact = 0, inside = 0, all = 0;
   double squares = 0;
-  int const records = replications(8);
+  int const records = replications(4);
   for (int seed = 1; seed <= records; ++seed) {
     Found const found(record(static_cast<std::uint64_t>(seed), 1000, noise), selector);
     if (!found.exact()) continue;

@@ -75,8 +75,7 @@ TEST_CASE("check finds nothing in any shipped model, whatever draws of the prior
     if (entry.path().extension() != ".sysid") continue;
     ++count;
     CAPTURE(entry.path().string());
-    for (std::optional<std::uint64_t> const seed :
-         {std::optional<std::uint64_t>(), std::optional<std::uint64_t>(2), std::optional<std::uint64_t>(3)}) {
+    for (std::optional<std::uint64_t> const seed : {std::optional<std::uint64_t>(), std::optional<std::uint64_t>(2)}) {
       RunOptions options;
       options.seed = seed;
       CheckResult const result = checked(entry.path(), read_file(entry.path()), options);

@@ -202,9 +202,9 @@ TEST_CASE("noise with heavy tails: the posterior by particles is that by quadrat
 
 TEST_CASE("too few particles are a finding, and the states of a random walk lie within their bands") {
   std::string const text = relaxing +
-                           "few = fit relaxing to d with mh(samples = 400, burn_in = 200, thin = 2), filter = particle, "
+                           "few = fit relaxing to d with mh(samples = 100, burn_in = 50, thin = 2), filter = particle, "
                            "particles = 16, seed = 1\n";
-  CaseRun const run(with(text, "sd = 0.3)", "sd = 0.01)"), {{"d.csv", relaxation(1, 0.5, 3, 60, false)}});
+  CaseRun const run(with(text, "sd = 0.3)", "sd = 0.01)"), {{"d.csv", relaxation(1, 0.5, 3, 30, false)}});
   json const summary = run.summary("few");
   CHECK(among_findings(summary, "likelihood_too_noisy"));
   CHECK(among_findings(summary, "particles_degenerate"));
