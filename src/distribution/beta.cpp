@@ -24,7 +24,9 @@ NodeId upper(Graph& graph, Nodes) { return graph.constant(1); }
 /// x, a, b: pure numbers; a, b > 0.
 NodeId log_density(Graph& graph, NodeId x, Nodes arguments) {
   Term const value(graph, x), a(graph, arguments[0]), b(graph, arguments[1]);
-  return ((a - 1.0) * log(value) + (b - 1.0) * log1p(-value) + lgamma(a + b) - lgamma(a) - lgamma(b)).id;
+  Term const of_b = lgamma(b), of_a = lgamma(a), of_both = lgamma(a + b), log_rest = log1p(-value), upper = (b - 1.0) * log_rest,
+             log_value = log(value), lower = (a - 1.0) * log_value;
+  return (lower + upper + of_both - of_a - of_b).id;
 }
 
 NodeId cumulative(Graph& graph, NodeId x, Nodes a) {

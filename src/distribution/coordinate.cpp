@@ -57,16 +57,17 @@ Coordinate constrain(Graph& graph, Support const& support, NodeId coordinate) {
   Term const distance = abs(u);
   Term const e = exp(-distance);
   Term const q = e / (1.0 + e);
-  Term const log_slope = -distance - 2.0 * log1p(e);
+  Term const bend = 2.0 * log1p(e), log_slope = -distance - bend;
   if (!support.logarithmic) {
-    Term const width = b - a;
-    return {select(left, above(a, a + width * q), below(b, b - width * q)).id, (log(width) + log_slope).id};
+    Term const width = b - a, from_upper = below(b, b - width * q), from_lower = above(a, a + width * q);
+    return {select(left, from_lower, from_upper).id, (log(width) + log_slope).id};
   }
   Term const log_a = log(a), log_b = log(b), width = log_b - log_a;
   Term const offset = select(left, width * q, -(width * q));
-  Term const x = select(left, a, b) * exp(offset);
+  Term const factor = exp(offset), x = select(left, a, b) * factor;
   Term const log_x = select(left, log_a, log_b) + offset;
-  return {select(left, above(a, x), below(b, x)).id, (log_x + log(width) + log_slope).id};
+  Term const from_upper = below(b, x), from_lower = above(a, x);
+  return {select(left, from_lower, from_upper).id, (log_x + log(width) + log_slope).id};
 }
 
 NodeId unconstrain(Graph& graph, Support const& support, NodeId value) {
@@ -75,9 +76,13 @@ NodeId unconstrain(Graph& graph, Support const& support, NodeId value) {
   if (!support.upper) return log(x - Term(graph, *support.lower)).id;
   if (!support.lower) return log(Term(graph, *support.upper) - x).id;
   Term const a(graph, *support.lower), b(graph, *support.upper);
-  if (!support.logarithmic) return (log(x - a) - log(b - x)).id;
+  if (!support.logarithmic) {
+    Term const to_upper = log(b - x), to_lower = log(x - a);
+    return (to_lower - to_upper).id;
+  }
   // log(x/a) and log(b/x), exact near the ends.
-  return (log(log1p((x - a) / a)) - log(log1p((b - x) / x))).id;
+  Term const to_upper = log(log1p((b - x) / x)), to_lower = log(log1p((x - a) / a));
+  return (to_lower - to_upper).id;
 }
 
 }  // namespace sysid

@@ -9,7 +9,8 @@ namespace sysid {
 inline Term count_times_log(Term count, Term mean) {
   Graph& graph = *count.graph;
   auto const is_zero = [&](Term x) { return graph.binary(Operation::equal, x.id, graph.constant(0)); };
-  Term const both(graph, graph.binary(Operation::conjunction, is_zero(count), is_zero(mean)));
+  NodeId const no_mean = is_zero(mean), no_count = is_zero(count);
+  Term const both(graph, graph.binary(Operation::conjunction, no_count, no_mean));
   return count * log(select(both, Term(graph, 1.0), mean));
 }
 

@@ -21,16 +21,17 @@ NodeId mass(Graph& graph, Distribution const& use) {
   if (!below) return cumulative(*inside.upper).id;
   // A difference of probabilities near 1 has no digits left: in the upper half it is taken between survivals.
   Term const to_lower = cumulative(*inside.lower);
-  return select(less(Term(graph, 0.5), to_lower), survival(*inside.lower) - survival(*inside.upper),
-                cumulative(*inside.upper) - to_lower)
-      .id;
+  Term const near_lower = cumulative(*inside.upper) - to_lower, beyond = survival(*inside.upper),
+             near_upper = survival(*inside.lower) - beyond;
+  return select(less(Term(graph, 0.5), to_lower), near_upper, near_lower).id;
 }
 
 NodeId log_density(Graph& graph, Distribution const& use, NodeId x) {
   Term const density(graph, use.row->log_density(graph, x, use.arguments));
   Term const inside(graph, mass(graph, use));
   // No mass: no density anywhere, instead of an infinite one.
-  Term const log_inside = select(less(Term(graph, 0.0), inside), log(inside), Term(graph, std::numeric_limits<double>::infinity()));
+  Term const nothing(graph, std::numeric_limits<double>::infinity()), logarithm = log(inside);
+  Term const log_inside = select(less(Term(graph, 0.0), inside), logarithm, nothing);
   return (density - log_inside).id;
 }
 

@@ -18,7 +18,8 @@ constexpr ArgumentRow arguments[] = {{mean, must_be_given}};
 /// x, mean: unit u; rate: u^-1; mean > 0.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const m(graph, a[0]);
-  return (-log(m) - Term(graph, x) / m).id;
+  Term const ratio = Term(graph, x) / m, constant = -log(m);
+  return (constant - ratio).id;
 }
 
 NodeId cumulative(Graph& graph, NodeId x, Nodes a) { return (-expm1(-(Term(graph, x) / Term(graph, a[0])))).id; }

@@ -52,7 +52,8 @@ std::string_view refuse(Numbers a) {
 /// x, scale, mean = shape*scale: unit u; rate = 1/scale: u^-1; shape: a pure number; all > 0.
 NodeId gamma_log_density(Graph& graph, NodeId x, Nodes a) {
   Term const value(graph, x), k(graph, a[0]), s(graph, a[1]);
-  return ((k - 1.0) * log(value) - value / s - lgamma(k) - k * log(s)).id;
+  Term const of_scale = k * log(s), of_shape = lgamma(k), ratio = value / s, log_value = log(value);
+  return ((k - 1.0) * log_value - ratio - of_shape - of_scale).id;
 }
 NodeId gamma_cumulative(Graph& graph, NodeId x, Nodes a) {
   return gamma_p(Term(graph, a[0]), Term(graph, x) / Term(graph, a[1])).id;
@@ -69,7 +70,8 @@ double gamma_quantile(double probability, Tail tail, Numbers a) { return a[1] * 
 /// x, scale: unit u; shape: a pure number; both > 0.
 NodeId inverse_log_density(Graph& graph, NodeId x, Nodes a) {
   Term const value(graph, x), k(graph, a[0]), s(graph, a[1]);
-  return (k * log(s) - lgamma(k) - (k + 1.0) * log(value) - s / value).id;
+  Term const ratio = s / value, log_value = log(value), power = (k + 1.0) * log_value, of_shape = lgamma(k);
+  return (k * log(s) - of_shape - power - ratio).id;
 }
 NodeId inverse_cumulative(Graph& graph, NodeId x, Nodes a) {
   return gamma_q(Term(graph, a[0]), Term(graph, a[1]) / Term(graph, x)).id;

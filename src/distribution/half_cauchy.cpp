@@ -17,7 +17,8 @@ constexpr ArgumentRow arguments[] = {{scale, must_be_given}};
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const s(graph, a[0]), z = Term(graph, x) / s;
   double const log_two_over_pi = 2 * std::numbers::ln2 - 2 * half_log_two_pi;
-  return (log_two_over_pi - log(s) - log1p(z * z)).id;
+  Term const tail = log1p(z * z);
+  return (log_two_over_pi - log(s) - tail).id;
 }
 
 NodeId cumulative(Graph& graph, NodeId x, Nodes a) {

@@ -15,7 +15,8 @@ constexpr ArgumentRow arguments[] = {{sd, must_be_given}};
 /// x, sd: unit u; sd > 0.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const value(graph, x), s(graph, a[0]);
-  return (std::numbers::ln2 - half_log_two_pi - log(s) - value * value * (0.5 / (s * s))).id;
+  Term const weight = 0.5 / (s * s), square = value * value * weight;
+  return (std::numbers::ln2 - half_log_two_pi - log(s) - square).id;
 }
 
 Term scaled(Graph& graph, NodeId x, Nodes a) { return Term(graph, x) / Term(graph, a[0]) / std::numbers::sqrt2; }

@@ -10,7 +10,10 @@ constexpr Spelling sd[] = {
     {"sd", 0, nullptr}, {"log_sd", 0, nullptr}, {"variance", 0, &sd_from_variance}, {"precision", 0, &sd_from_precision}};
 constexpr ArgumentRow arguments[] = {{median, must_be_given, true}, {sd, must_be_given}};
 
-Term constant(Term x, Term s) { return -half_log_two_pi - log(s) - log(x); }
+Term constant(Term x, Term s) {
+  Term const log_x = log(x);
+  return -half_log_two_pi - log(s) - log_x;
+}
 
 /// log of the density of x where log(x / median) is normal with mean 0 and the given sd; `log_normal(median | log_mean = ..., sd |
 /// log_sd | variance | precision = ...)`.
@@ -22,11 +25,15 @@ Term constant(Term x, Term s) { return -half_log_two_pi - log(s) - log(x); }
 /// mu, so that it has x's unit; log_mean is mu of the number that x is in its declared unit.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const value(graph, x), s(graph, a[1]);
-  Term const r = log(value) - log(Term(graph, a[0]));
-  return (constant(value, s) - r * r * (0.5 / (s * s))).id;
+  Term const log_median = log(Term(graph, a[0])), r = log(value) - log_median;
+  Term const weight = 0.5 / (s * s), square = r * r * weight;
+  return (constant(value, s) - square).id;
 }
 
-Term standardised(Graph& graph, NodeId x, Nodes a) { return (log(Term(graph, x)) - log(Term(graph, a[0]))) / Term(graph, a[1]); }
+Term standardised(Graph& graph, NodeId x, Nodes a) {
+  Term const log_median = log(Term(graph, a[0]));
+  return (log(Term(graph, x)) - log_median) / Term(graph, a[1]);
+}
 NodeId cumulative(Graph& graph, NodeId x, Nodes a) { return standard_normal_lower(standardised(graph, x, a)).id; }
 NodeId survival(Graph& graph, NodeId x, Nodes a) { return standard_normal_upper(standardised(graph, x, a)).id; }
 NodeId centre(Graph&, Nodes a) { return a[0]; }

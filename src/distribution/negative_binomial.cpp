@@ -20,8 +20,10 @@ Term stirling_rest(Term x) {
 
 /// log Gamma(r + y) - log Gamma(r) - y log r. From r = 20 on by Stirling's series, where the terms would cancel.
 Term log_rising_ratio(Term y, Term r) {
-  Term const series = (r + y - 0.5) * log1p(y / r) - y + (stirling_rest(r + y) - stirling_rest(r));
-  return select(less(r, 20.0), lgamma(r + y) - lgamma(r) - y * log(r), series);
+  Term const rest_of_r = stirling_rest(r), rests = stirling_rest(r + y) - rest_of_r;
+  Term const log_ratio = log1p(y / r), series = (r + y - 0.5) * log_ratio - y + rests;
+  Term const power = y * log(r), of_r = lgamma(r), direct = lgamma(r + y) - of_r - power;
+  return select(less(r, 20.0), direct, series);
 }
 
 /// log of the negative binomial probability; `negative_binomial(mean, shape | overdispersion = ...)` in a model: a Poisson count
@@ -33,7 +35,8 @@ Term log_rising_ratio(Term y, Term r) {
 /// y: a whole number >= 0; mean >= 0; r = shape = 1/overdispersion > 0: all pure numbers. Poisson's is the limit of a large shape.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const y(graph, x), mu(graph, a[0]), r(graph, a[1]);
-  return (log_rising_ratio(y, r) - lgamma(y + 1.0) + count_times_log(y, mu) - (y + r) * log1p(mu / r)).id;
+  Term const log_ratio = log1p(mu / r), power = (y + r) * log_ratio, of_mean = count_times_log(y, mu), factorial = lgamma(y + 1.0);
+  return (log_rising_ratio(y, r) - factorial + of_mean - power).id;
 }
 
 NodeId centre(Graph&, Nodes a) { return a[0]; }

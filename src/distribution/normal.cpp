@@ -18,7 +18,8 @@ Term constant(Term s) { return -half_log_two_pi - log(s); }
 /// x, mean, sd: unit u; variance: u^2; precision: u^-2; sd > 0. All but (x - mean)^2 is work per parameter, not per sample.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const r = Term(graph, x) - Term(graph, a[0]), s(graph, a[1]);
-  return (constant(s) - r * r * (0.5 / (s * s))).id;
+  Term const weight = 0.5 / (s * s), square = r * r * weight;
+  return (constant(s) - square).id;
 }
 
 Term standardised(Graph& graph, NodeId x, Nodes a) { return (Term(graph, x) - Term(graph, a[0])) / Term(graph, a[1]); }

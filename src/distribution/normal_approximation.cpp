@@ -16,7 +16,7 @@ struct Normal {
 
 Normal of_student_t(Graph& graph, Nodes a) {
   Term const n(graph, a[1]);
-  Term const beyond(graph, graph.binary(Operation::maximum, (n - 2.0).id, (n / (2.0 * n + 4.0)).id));
+  Term const least = n / (2.0 * n + 4.0), beyond = max(n - 2.0, least);
   return {Term(graph, a[0]), Term(graph, a[2]) * sqrt(n / beyond)};
 }
 

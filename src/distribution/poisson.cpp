@@ -15,7 +15,8 @@ constexpr ArgumentRow arguments[] = {{mean, must_be_given}};
 /// y: a whole number >= 0; mean >= 0, both pure numbers. A mean of 0 gives a count of 0 for certain.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const y(graph, x), mu(graph, a[0]);
-  return (count_times_log(y, mu) - mu - lgamma(y + 1.0)).id;
+  Term const factorial = lgamma(y + 1.0);
+  return (count_times_log(y, mu) - mu - factorial).id;
 }
 
 NodeId centre(Graph&, Nodes a) { return a[0]; }

@@ -36,11 +36,15 @@ constexpr ArgumentRow arguments[] = {{location, must_be_given}, {degrees_of_free
 Term log_gamma_ratio(Term n) {
   Term const x = n / 2.0;
   Term const w = 1.0 / (x * x);
-  Term const series = 0.5 * log(x) - (1. / 8 - w * (1. / 192 - w * (1. / 640 - w * (17. / 14336)))) / x;
-  return select(less(n, 100.0), lgamma((n + 1.0) / 2.0) - lgamma(x), series);
+  Term const rest = (1. / 8 - w * (1. / 192 - w * (1. / 640 - w * (17. / 14336)))) / x, series = 0.5 * log(x) - rest;
+  Term const of_x = lgamma(x), direct = lgamma((n + 1.0) / 2.0) - of_x;
+  return select(less(n, 100.0), direct, series);
 }
 
-Term constant(Term n, Term s) { return log_gamma_ratio(n) - 0.5 * log(n * std::numbers::pi) - log(s); }
+Term constant(Term n, Term s) {
+  Term const log_s = log(s), of_n = 0.5 * log(n * std::numbers::pi);
+  return log_gamma_ratio(n) - of_n - log_s;
+}
 
 /// log of Student's t; `student_t(location, degrees_of_freedom, scale | sd | variance | precision = ...)` in a model.
 ///
@@ -51,7 +55,8 @@ Term constant(Term n, Term s) { return log_gamma_ratio(n) - 0.5 * log(n * std::n
 /// calls 1/scale^2 so.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
   Term const r = Term(graph, x) - Term(graph, a[0]), n(graph, a[1]), s(graph, a[2]);
-  return (constant(n, s) - (n + 1.0) / 2.0 * log1p(r * r * (1.0 / (n * s * s)))).id;
+  Term const weight = 1.0 / (n * s * s), tail = log1p(r * r * weight), power = (n + 1.0) / 2.0 * tail;
+  return (constant(n, s) - power).id;
 }
 
 Term standardised(Graph& graph, NodeId x, Nodes a) { return (Term(graph, x) - Term(graph, a[0])) / Term(graph, a[2]); }

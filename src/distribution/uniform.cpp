@@ -23,11 +23,13 @@ NodeId upper_bound(Graph&, Nodes a) { return a[1]; }
 NodeId uniform_log_density(Graph& graph, NodeId, Nodes a) { return (-log(Term(graph, a[1]) - Term(graph, a[0]))).id; }
 NodeId uniform_cumulative(Graph& graph, NodeId x, Nodes a) {
   Term const low(graph, a[0]);
-  return ((Term(graph, x) - low) / (Term(graph, a[1]) - low)).id;
+  Term const width = Term(graph, a[1]) - low;
+  return ((Term(graph, x) - low) / width).id;
 }
 NodeId uniform_survival(Graph& graph, NodeId x, Nodes a) {
   Term const high(graph, a[1]);
-  return ((high - Term(graph, x)) / (high - Term(graph, a[0]))).id;
+  Term const width = high - Term(graph, a[0]);
+  return ((high - Term(graph, x)) / width).id;
 }
 double uniform_quantile(double probability, Tail tail, Numbers a) {
   double const distance = (a[1] - a[0]) * probability;
@@ -46,7 +48,10 @@ std::string_view uniform_refuse(Numbers a) {
 }
 
 /// log(upper / lower).
-Term log_width(Graph& graph, Nodes a) { return log(Term(graph, a[1])) - log(Term(graph, a[0])); }
+Term log_width(Graph& graph, Nodes a) {
+  Term const log_low = log(Term(graph, a[0]));
+  return log(Term(graph, a[1])) - log_low;
+}
 
 /// log of the density of x whose logarithm is uniform; `log_uniform(lower, upper)` in a model. Not the same as a prior uniform in
 /// x, nor as one on "log values" of another base: every base gives this density.
@@ -54,15 +59,20 @@ Term log_width(Graph& graph, Nodes a) { return log(Term(graph, a[1])) - log(Term
 ///   log p = -log x - log(log upper - log lower),   0 < lower < x < upper                                   Jeffreys 1961, sec. 3.1
 ///
 /// x, lower, upper: unit u.
-NodeId log_uniform_log_density(Graph& graph, NodeId x, Nodes a) { return (-log(Term(graph, x)) - log(log_width(graph, a))).id; }
+NodeId log_uniform_log_density(Graph& graph, NodeId x, Nodes a) {
+  Term const constant = log(log_width(graph, a));
+  return (-log(Term(graph, x)) - constant).id;
+}
 /// Shares of log(upper / lower) below and above x, exact near the ends: log(x/a) = log1p((x - a)/a).
 NodeId log_uniform_cumulative(Graph& graph, NodeId x, Nodes a) {
   Term const low(graph, a[0]);
-  return (log1p((Term(graph, x) - low) / low) / log_width(graph, a)).id;
+  Term const width = log_width(graph, a);
+  return (log1p((Term(graph, x) - low) / low) / width).id;
 }
 NodeId log_uniform_survival(Graph& graph, NodeId x, Nodes a) {
   Term const value(graph, x);
-  return (log1p((Term(graph, a[1]) - value) / value) / log_width(graph, a)).id;
+  Term const width = log_width(graph, a);
+  return (log1p((Term(graph, a[1]) - value) / value) / width).id;
 }
 double log_uniform_quantile(double probability, Tail tail, Numbers a) {
   double const distance = (elementary::log(a[1]) - elementary::log(a[0])) * probability;

@@ -1,4 +1,8 @@
 // Building nodes: hash-consing, folding of constants, neutral elements; and the passes that only look.
+//
+// Ids decide the order of operands, and so how sums are rounded and products printed: every compiler must make nodes in the same
+// order. Arguments of one call are evaluated in an order that C++ leaves open (GCC: from the last on x86-64, from the first on
+// AArch64), so where two of them make nodes other than constants, one is made in a statement before.
 #include "expression/graph.hpp"
 
 #include <algorithm>

@@ -17,7 +17,8 @@ NodeId slope_factor(Graph& graph, NodeId base, NodeId exponent, bool held) {
   NodeId const factor = graph.power(base, exponent), zero = graph.constant(0);
   std::optional<double> const number = graph.constant_value(exponent);
   if (!held || (number && *number >= 0)) return factor;
-  NodeId const at_zero = graph.select(graph.binary(Operation::less, exponent, zero), zero, graph.power(zero, exponent));
+  NodeId const zero_raised = graph.power(zero, exponent);
+  NodeId const at_zero = graph.select(graph.binary(Operation::less, exponent, zero), zero, zero_raised);
   return graph.select(graph.binary(Operation::equal, base, zero), at_zero, factor);
 }
 
@@ -57,14 +58,18 @@ NodeId change_of(Graph& graph, NodeId id, NodeId da, NodeId db, NodeId dc, bool 
       return graph.add(da, db);
     case Operation::subtract:
       return graph.subtract(da, db);
-    case Operation::multiply:
-      return graph.add(graph.multiply(da, node.b), graph.multiply(node.a, db));
+    case Operation::multiply: {
+      NodeId const by_b = graph.multiply(node.a, db);
+      return graph.add(graph.multiply(da, node.b), by_b);
+    }
     case Operation::divide:
       return graph.divide(graph.subtract(da, graph.multiply(id, db)), node.b);
     case Operation::power:
       return power_derivative(graph, id, node, da, db, held);
-    case Operation::fused:
-      return graph.add(graph.add(graph.multiply(da, node.b), graph.multiply(node.a, db)), dc);
+    case Operation::fused: {
+      NodeId const by_b = graph.multiply(node.a, db);
+      return graph.add(graph.add(graph.multiply(da, node.b), by_b), dc);
+    }
     case Operation::square_root:
       return root_derivative(graph, id, da, held);
     case Operation::absolute:

@@ -1,4 +1,5 @@
 // A node together with its graph, with the operators of arithmetic: formulas built in C++ read as they stand in the book.
+// But where both sides of an operator make nodes, one has a name: C++ leaves open which is made first (graph.cpp).
 #pragma once
 #include "expression/graph.hpp"
 

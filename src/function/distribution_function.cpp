@@ -43,11 +43,15 @@ NodeId difference(Graph& graph, Function const& function, NodeId a, NodeId b, in
   Term const x(graph, a), y(graph, b);
   Term const high = which == 0 ? call(function, x * (1 + step), y) : call(function, x, y * (1 + step));
   Term const low = which == 0 ? call(function, x * (1 - step), y) : call(function, x, y * (1 - step));
-  return ((high - low) / ((which == 0 ? x : y) * (2 * step))).id;
+  Term const width = (which == 0 ? x : y) * (2 * step);
+  return ((high - low) / width).id;
 }
 
 /// d/dx P(a, x) = x^(a-1) e^-x / Gamma(a) DLMF 8.8.13
-Term gamma_slope(Term a, Term x) { return exp((a - 1.0) * log(x) - x - lgamma(a)); }
+Term gamma_slope(Term a, Term x) {
+  Term const of_a = lgamma(a), log_x = log(x);
+  return exp((a - 1.0) * log_x - x - of_a);
+}
 
 NodeId gamma_p_derivative(Graph& graph, NodeId, NodeId a, NodeId b, int which) {
   if (which == 0) return difference(graph, gamma_p_function, a, b, 0);
@@ -62,8 +66,9 @@ NodeId gamma_q_derivative(Graph& graph, NodeId, NodeId a, NodeId b, int which) {
 NodeId student_t_cdf_derivative(Graph& graph, NodeId, NodeId a, NodeId b, int which) {
   if (which == 1) return difference(graph, student_t_cdf_function, a, b, 1);
   Term const t(graph, a), n(graph, b);
-  Term const constant = lgamma((n + 1.0) / 2.0) - lgamma(n / 2.0) - 0.5 * log(n * std::numbers::pi);
-  return exp(constant - (n + 1.0) / 2.0 * log1p(t * t / n)).id;
+  Term const of_n = 0.5 * log(n * std::numbers::pi), lower = lgamma(n / 2.0), constant = lgamma((n + 1.0) / 2.0) - lower - of_n;
+  Term const tail = log1p(t * t / n);
+  return exp(constant - (n + 1.0) / 2.0 * tail).id;
 }
 
 }  // namespace

@@ -8,7 +8,8 @@ NodeId sinh_derivative(Graph& graph, NodeId, NodeId a, NodeId, int) { return cos
 NodeId cosh_derivative(Graph& graph, NodeId, NodeId a, NodeId, int) { return sinh(Term(graph, a)).id; }
 NodeId tanh_derivative(Graph& graph, NodeId call, NodeId, NodeId, int) {
   Term const tangent(graph, call);
-  return ((1.0 - tangent) * (1.0 + tangent)).id;
+  Term const above = 1.0 + tangent;
+  return ((1.0 - tangent) * above).id;
 }
 
 }  // namespace

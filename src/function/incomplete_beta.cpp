@@ -25,17 +25,24 @@ int terms(Graph const& graph, Term a, Term b) {
 ///
 /// evaluated from its end, where x < (a+1)/(a+b+2); elsewhere as 1 - I_{1-x}(b, a), DLMF 8.17.4.
 IncompleteBeta incomplete_beta(Term a, Term b, Term x) {
-  Term const direct = less(x, (a + 1.0) / (a + b + 2.0));
+  Term const whole = a + b + 2.0, direct = less(x, (a + 1.0) / whole);
   Term const p = select(direct, a, b), q = select(direct, b, a), z = select(direct, x, 1.0 - x);
   Term fraction(*a.graph, 1.0);
   for (int i = terms(*a.graph, a, b); i >= 1; --i) {
     double const m = i / 2;
-    Term const d = i % 2 == 1 ? -((p + m) * (p + q + m) * z / ((p + 2 * m) * (p + (2 * m + 1))))
-                              : m * (q - m) * z / ((p + (2 * m - 1)) * (p + 2 * m));
-    fraction = 1.0 + d / fraction;
+    auto const odd = [&] {
+      Term const last = p + (2 * m + 1), below = (p + 2 * m) * last, sum = p + q + m;
+      return -((p + m) * sum * z / below);
+    };
+    auto const even = [&] {
+      Term const last = p + 2 * m, below = (p + (2 * m - 1)) * last;
+      return m * (q - m) * z / below;
+    };
+    fraction = 1.0 + (i % 2 == 1 ? odd() : even()) / fraction;
   }
-  Term const log_z = select(direct, log(x), log1p(-x)), log_rest = select(direct, log1p(-x), log(x));
-  Term const value = exp(p * log_z + q * log_rest + lgamma(p + q) - lgamma(p) - lgamma(q)) / p / fraction;
+  Term const far = log1p(-x), near = log(x), log_z = select(direct, near, far), log_rest = select(direct, far, near);
+  Term const of_q = lgamma(q), of_p = lgamma(p), of_both = lgamma(p + q), rest = q * log_rest;
+  Term const value = exp(p * log_z + rest + of_both - of_p - of_q) / p / fraction;
   return {select(direct, value, 1.0 - value), select(direct, 1.0 - value, value)};
 }
 

@@ -33,7 +33,8 @@ NodeId chain(Graph& graph, Arguments a) {
 /// sqrt(x^2 + y^2); overflows where a square does, at 1e154.
 NodeId hypot(Graph& graph, Arguments a) {
   Term const x(graph, a[0]), y(graph, a[1]);
-  return sqrt(x * x + y * y).id;
+  Term const square = y * y;
+  return sqrt(x * x + square).id;
 }
 
 /// Heaviside's step with step(0) = 1.

@@ -12,7 +12,10 @@ NodeId tan_derivative(Graph& graph, NodeId call, NodeId, NodeId, int) {
 }
 
 /// sqrt((1 - x)(1 + x)): sqrt(1 - x^2) without the cancellation near |x| = 1.
-Term complement(Term x) { return sqrt((1.0 - x) * (1.0 + x)); }
+Term complement(Term x) {
+  Term const above = 1.0 + x;
+  return sqrt((1.0 - x) * above);
+}
 NodeId asin_derivative(Graph& graph, NodeId, NodeId a, NodeId, int) { return (1.0 / complement(Term(graph, a))).id; }
 NodeId acos_derivative(Graph& graph, NodeId, NodeId a, NodeId, int) { return (-1.0 / complement(Term(graph, a))).id; }
 NodeId atan_derivative(Graph& graph, NodeId, NodeId a, NodeId, int) {
@@ -21,7 +24,7 @@ NodeId atan_derivative(Graph& graph, NodeId, NodeId a, NodeId, int) {
 }
 NodeId atan2_derivative(Graph& graph, NodeId, NodeId a, NodeId b, int which) {
   Term const y(graph, a), x(graph, b);
-  Term const square = x * x + y * y;
+  Term const other = y * y, square = x * x + other;
   return (which == 0 ? x / square : -(y / square)).id;
 }
 

@@ -90,7 +90,8 @@ NodeId spectral_root(Graph& graph, std::span<NodeId const> p, Numbers frequencie
     square = square + product * product;
   }
   double const logarithm = elementary::lgamma(nu + half) - elementary::lgamma(nu) + nu * elementary::log(TwiceNu);
-  return (elementary::exp(0.5 * logarithm) * root * pow(square, Term(graph, -0.5 * (nu + half)))).id;
+  Term const decay = pow(square, Term(graph, -0.5 * (nu + half)));
+  return (elementary::exp(0.5 * logarithm) * root * decay).id;
 }
 
 // State-space form: states f, f'/lambda, f''/lambda^2, ... with lambda = sqrt(2 nu)/length. In these units P = amplitude^2 P0 and

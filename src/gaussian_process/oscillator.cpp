@@ -152,7 +152,8 @@ constexpr StateSpaceRow state_space{2, &stationary, &transition};
 NodeId spectral_root(Graph& graph, std::span<NodeId const> p, Numbers frequencies) {
   double const w = frequencies[0];
   Term const imaginary = w * Term(graph, p[1]), real = Term(graph, p[2]) - w * w * Term(graph, p[0]);
-  return sqrt(Term(graph, p[3]) / (real * real + imaginary * imaginary)).id;
+  Term const damped = imaginary * imaginary;
+  return sqrt(Term(graph, p[3]) / (real * real + damped)).id;
 }
 
 }  // namespace oscillator_parts

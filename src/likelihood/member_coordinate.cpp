@@ -17,7 +17,8 @@ Conditional conditional(Graph& graph, LocationScale const& prior, MemberCoordina
   Term const square = scale * scale;
   Term const informed = member.precision * square;
   Term const share = 1.0 / (1.0 + informed);
-  return {(location + member.pull * square) * share, scale * sqrt(share), log(scale) - 0.5 * log1p(informed)};
+  Term const mean = (location + member.pull * square) * share, sd = scale * sqrt(share), narrowing = 0.5 * log1p(informed);
+  return {mean, sd, log(scale) - narrowing};
 }
 
 }  // namespace
@@ -37,7 +38,8 @@ NodeId log_density_of_member(Graph& graph, Distribution const& use, MemberCoordi
   Term z = coordinate;
   if (member.precision != 0 || member.pull != 0) {
     Term const informed = 1.0 + member.precision * (scale * scale);
-    z = scale * (member.pull - member.precision * location) / informed + coordinate / sqrt(informed);
+    Term const spread = coordinate / sqrt(informed);
+    z = scale * (member.pull - member.precision * location) / informed + spread;
   }
   Coordinate const standardised = constrain(graph, allowed, z.id);
   Conditional const given = conditional(graph, prior, member);

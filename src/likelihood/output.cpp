@@ -17,7 +17,8 @@ Kernel deviance_kernel(Model const& model, Distribution const& noise) {
   std::vector<NodeId> leaves;
   for (std::size_t a = 0; a < noise.arguments.size(); ++a) leaves.push_back(graph.leaf(LeafKind::parameter, static_cast<int>(a)));
   NodeId const x = graph.leaf(LeafKind::unknown, 0);
-  NodeId const gap = graph.subtract(noise.row->saturated(graph, x, leaves), noise.row->log_density(graph, x, leaves));
+  NodeId const density = noise.row->log_density(graph, x, leaves);
+  NodeId const gap = graph.subtract(noise.row->saturated(graph, x, leaves), density);
   leaves.push_back(x);
   NodeId const deviance[] = {graph.multiply(graph.constant(2), gap)};
   return compile_kernel(graph, leaves, deviance);

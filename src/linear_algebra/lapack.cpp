@@ -45,7 +45,9 @@ Routines load() {
   // Read once, while the library is loaded. Threads of its own would change the results with their number and would compete with
   // ours.
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
-#if defined(__x86_64__)
+#if defined(__aarch64__)
+  setenv("OPENBLAS_CORETYPE", "ARMV8", 1);
+#else
   setenv("OPENBLAS_CORETYPE", "Haswell", 1);
 #endif
   void* const library = dlopen("libopenblas.so.0", RTLD_NOW | RTLD_LOCAL);

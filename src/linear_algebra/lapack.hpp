@@ -2,8 +2,9 @@
 // how the library is loaded.
 //
 // It is loaded when the first routine is called, so that whoever needs none does not pay for it. It runs in the caller's thread
-// alone, and with the kernels for AVX2 and FMA, which every processor has that this program runs on: left to itself this OpenBLAS
-// takes processors that are younger than it is for those of 2004, and its results would depend on the processor.
+// alone, and with one set of kernels, which every processor has that this program runs on: those for AVX2 and FMA, on AArch64 those
+// of ARMv8. Left to itself this OpenBLAS takes processors that are younger than it is for those of 2004, and its results would
+// depend on the processor.
 #pragma once
 #include <Eigen/Core>
 

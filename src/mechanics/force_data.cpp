@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numeric/hypotenuse.hpp"
 #include "mechanics/second_difference.hpp"
 
 namespace sysid {
@@ -101,7 +102,7 @@ void add_differentiated(ForceModel const& link, Displacements const& samples, Di
       out.why_no_data = "none of the samples was measured";
       return;
     }
-    noise = std::hypot(noise, link.link().held[k].scale * spread_of(residuals) / (step * step));
+    noise = hypotenuse(noise, link.link().held[k].scale * spread_of(residuals) / (step * step));
   }
   int half_width = 2;
   while (half_width <= widest && noise * SecondDifference(half_width).noise > most_noise * spread) ++half_width;

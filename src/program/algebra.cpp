@@ -146,9 +146,10 @@ NodeId Algebra::rewrite_power(NodeId id) {
   if (auto const found = shared_.find(id); found != shared_.end()) {
     // At 0 the product may be 0 times infinity where the power is not; there the power of 0, known per parameter vector, is taken.
     auto const [lowest, difference] = found->second;
-    NodeId const zero = graph_.constant(0);
-    NodeId const risen = graph_.multiply(integer_power(graph_, base, difference), rewrite(lowest));
-    return graph_.select(graph_.binary(Operation::equal, base, zero), graph_.power(zero, rewrite(node.b)), risen);
+    NodeId const zero = graph_.constant(0), shared = rewrite(lowest);
+    NodeId const risen = graph_.multiply(integer_power(graph_, base, difference), shared);
+    NodeId const at_zero = graph_.power(zero, rewrite(node.b));
+    return graph_.select(graph_.binary(Operation::equal, base, zero), at_zero, risen);
   }
   return graph_.power(base, rewrite(node.b));
 }

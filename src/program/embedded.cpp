@@ -52,8 +52,10 @@ class Writer {
 
     find_sides(position);
     std::vector<std::vector<NodeId>> slopes;
-    for (std::size_t i = 0; i < method.c.size(); ++i)
-      slopes.push_back(evaluate(derivative_, advanced(slopes, method.a[i], h), along(position, taken, method.c[i], arrived)));
+    for (std::size_t i = 0; i < method.c.size(); ++i) {
+      NodeId const place = along(position, taken, method.c[i], arrived);
+      slopes.push_back(evaluate(derivative_, advanced(slopes, method.a[i], h), place));
+    }
     std::vector<NodeId> const next = advanced(slopes, method.b, h);
     NodeId const square = mean_square(errors(slopes, method.e, h), next);
     std::vector<NodeId> const after = surface_values(next, arrived);
@@ -69,8 +71,9 @@ class Writer {
     // and nothing moves; inside: the step is tried again up to there; at its end, or not: the step is taken.
     Crossing const crossing = find_crossing(after, slopes.front(), position, h);
     NodeId const at_once = both(crossing.any, graph_.binary(Operation::less_equal, crossing.place, number(near_an_end)));
-    NodeId const inside = both(both(crossing.any, graph_.unary(Operation::negation, at_once)),
-                               both(less(crossing.place, number(1 - near_an_end)), less(hunts, number(most_hunts))));
+    NodeId const may_hunt = less(hunts, number(most_hunts)), before_end = less(crossing.place, number(1 - near_an_end)),
+                 worth_it = both(before_end, may_hunt);
+    NodeId const inside = both(both(crossing.any, graph_.unary(Operation::negation, at_once)), worth_it);
     NodeId const trusted = both(active, good);
     NodeId const turning = both(trusted, at_once);
     NodeId const hunting = both(trusted, inside);
@@ -80,17 +83,20 @@ class Writer {
     Attempt result;
     for (std::size_t i = 0; i < states_.size(); ++i) result.states.push_back(graph_.select(accepted, next[i], states_[i]));
     // A step cut short by the end of the interval or by a kink says nothing against the longer one.
-    NodeId const kept = graph_.select(less(h, step), graph_.binary(Operation::maximum, step, proposed), proposed);
+    NodeId const longer = graph_.binary(Operation::maximum, step, proposed);
+    NodeId const kept = graph_.select(less(h, step), longer, proposed);
     NodeId const retried = graph_.select(trusted, step, proposed);
     // A little too far: on the other side for certain.
     NodeId const aimed = graph_.multiply(graph_.multiply(crossing.place, number(1 + near_an_end / 2)), h);
     result.control = {graph_.select(accepted, arrived, position),
                       graph_.select(active, graph_.select(accepted, kept, retried), step),
-                      graph_.select(hunting, aimed, graph_.select(accepted, number(no_aim), objective_kind)),
-                      graph_.select(graph_.binary(Operation::disjunction, hunting, turning), graph_.add(hunts, one),
-                                    graph_.select(accepted, zero, hunts))};
-    for (std::size_t i = 0; i < states_.size(); ++i)
-      result.control.push_back(graph_.binary(Operation::maximum, reached(i), graph_.unary(Operation::absolute, result.states[i])));
+                      graph_.select(hunting, aimed, graph_.select(accepted, number(no_aim), objective_kind))};
+    NodeId const same = graph_.select(accepted, zero, hunts), more = graph_.add(hunts, one);
+    result.control.push_back(graph_.select(graph_.binary(Operation::disjunction, hunting, turning), more, same));
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      NodeId const size = graph_.unary(Operation::absolute, result.states[i]);
+      result.control.push_back(graph_.binary(Operation::maximum, reached(i), size));
+    }
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
       // A lane that turns has not come to the surfaces that this step would have crossed later.
       NodeId const turned = both(turning, graph_.binary(Operation::less_equal, crossing.places[k], number(near_an_end)));
@@ -146,9 +152,10 @@ class Writer {
       if (graph_.is_constant(errors[i], 0)) continue;  // what is remembered has no error that could make up for another's
       ++moving;
       NodeId const typical = graph_.multiply(number(1e-3), graph_.binary(Operation::maximum, reached(i), number(smallest_size)));
-      NodeId const near_zero = graph_.select(less(number(0), absolute), absolute, graph_.multiply(relative, typical));
-      NodeId const size = graph_.binary(Operation::maximum, graph_.unary(Operation::absolute, states_[i]),
-                                        graph_.unary(Operation::absolute, next[i]));
+      NodeId const by_default = graph_.multiply(relative, typical);
+      NodeId const near_zero = graph_.select(less(number(0), absolute), absolute, by_default);
+      NodeId const size_then = graph_.unary(Operation::absolute, next[i]), size_now = graph_.unary(Operation::absolute, states_[i]);
+      NodeId const size = graph_.binary(Operation::maximum, size_now, size_then);
       NodeId const ratio = graph_.divide(errors[i], graph_.add(near_zero, graph_.multiply(relative, size)));
       sum = graph_.add(sum, graph_.multiply(ratio, ratio));
     }
@@ -163,10 +170,11 @@ class Writer {
   // At the beginning of an interval, where an input may have jumped, a lane is where its values say; else where it was left.
   void find_sides(NodeId position) {
     before_ = surface_values(states_, position);
-    NodeId const beginning =
-        both(graph_.binary(Operation::less_equal, position, number(0)), less(control(Control::hunts), number(1)));
+    NodeId const fresh = less(control(Control::hunts), number(1));
+    NodeId const beginning = both(graph_.binary(Operation::less_equal, position, number(0)), fresh);
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-      NodeId const moved = both(is_number_of(before_[k]), less(number(0), graph_.unary(Operation::absolute, before_[k])));
+      NodeId const away = less(number(0), graph_.unary(Operation::absolute, before_[k]));
+      NodeId const moved = both(is_number_of(before_[k]), away);
       NodeId const decided = both(beginning, moved);
       sides_.push_back(graph_.select(decided, graph_.unary(Operation::sign, before_[k]), stored_side(k)));
     }
@@ -184,7 +192,7 @@ class Writer {
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
       NodeId const begin = graph_.multiply(sides_[k], before_[k]), end = graph_.multiply(sides_[k], after[k]);
       // A surface without a value belongs to a branch that is not taken: where it is, the slopes have none either.
-      NodeId const crossed = both(is_number_of(end), less(end, number(0)));
+      NodeId const beyond = less(end, number(0)), crossed = both(is_number_of(end), beyond);
       NodeId const place = zero_of_parabola(begin, graph_.multiply(sides_[k], graph_.multiply(h, rates[k])), end);
       crossing.each.push_back(crossed);
       crossing.places.push_back(place);
@@ -198,11 +206,11 @@ class Writer {
   // negative ones. The slope tells a lane that has just come here, and will be back before the step is over, from one that turns.
   NodeId zero_of_parabola(NodeId b, NodeId r, NodeId end) {
     NodeId const c = graph_.subtract(graph_.subtract(end, b), r);
-    NodeId const root = graph_.unary(Operation::square_root,
-                                     graph_.subtract(graph_.multiply(r, r), graph_.multiply(number(4), graph_.multiply(c, b))));
+    NodeId const four_times = graph_.multiply(number(4), graph_.multiply(c, b));
+    NodeId const root = graph_.unary(Operation::square_root, graph_.subtract(graph_.multiply(r, r), four_times));
     // Twice the same root, each without cancellation. c < 0 where r >= 0.
-    NodeId const rising = graph_.divide(graph_.add(r, root), graph_.multiply(number(-2), c));
-    NodeId const falling = graph_.divide(graph_.multiply(number(2), b), graph_.subtract(root, r));
+    NodeId const below_rising = graph_.multiply(number(-2), c), rising = graph_.divide(graph_.add(r, root), below_rising);
+    NodeId const below_falling = graph_.subtract(root, r), falling = graph_.divide(graph_.multiply(number(2), b), below_falling);
     NodeId const place = graph_.select(less(r, number(0)), falling, rising);
     // The line where a slope has no value.
     NodeId const line = graph_.divide(b, graph_.subtract(b, end));
@@ -243,8 +251,10 @@ class Writer {
           return input(leaf.index, position, 0);
         case LeafKind::input_rate:
           return input(leaf.index, position, 1);
-        case LeafKind::time:
-          return graph_.add(data(IntervalData::begin), graph_.multiply(data(IntervalData::length), position));
+        case LeafKind::time: {
+          NodeId const since = graph_.multiply(data(IntervalData::length), position);
+          return graph_.add(data(IntervalData::begin), since);
+        }
         case LeafKind::control:  // place holders of sides
           return leaf.index >= first_side() ? std::optional(sides_[static_cast<std::size_t>(leaf.index - first_side())])
                                             : std::nullopt;

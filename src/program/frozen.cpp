@@ -59,7 +59,8 @@ class Freezer {
       case Operation::less_equal: {
         auto const s = side(graph_.subtract(node.a, node.b));
         if (!s) return std::nullopt;
-        NodeId const below = where_known(graph_.binary(Operation::less, *s, graph_.constant(0)), graph_.subtract(a, b));
+        NodeId const difference = graph_.subtract(a, b);
+        NodeId const below = where_known(graph_.binary(Operation::less, *s, graph_.constant(0)), difference);
         if (node.operation == Operation::minimum) return graph_.select(below, a, b);
         if (node.operation == Operation::maximum) return graph_.select(below, b, a);
         return below;

@@ -151,8 +151,10 @@ Algebra::Pair Algebra::split(Product const& product) {
   std::vector<NodeId> factors = factors_of(product.numerator);
   if (product.parameter != one_) factors.push_back(product.parameter);
   if (product.data != one_) factors.push_back(product.data);
-  if (!product.denominator.empty())
-    return {graph_.divide(multiplied(factors), multiplied(factors_of(product.denominator))), one_, true};
+  if (!product.denominator.empty()) {
+    NodeId const below = multiplied(factors_of(product.denominator));
+    return {graph_.divide(multiplied(factors), below), one_, true};
+  }
   if (factors.size() == 1 && product.numerator.size() == 1 && product.numerator.front().exponent > 1) {
     auto const [base, exponent] = product.numerator.front();
     int const half = exponent % 2 == 0 ? exponent / 2 : exponent - 1;

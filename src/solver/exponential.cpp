@@ -106,7 +106,8 @@ class Writer {
     NodeId const phi_1 = exact.phi_1(i, j), phi_2 = exact.phi_2(i, j);
     if (begin_[state] == end_[state]) return graph_.multiply(graph_.multiply(h_, phi_1), begin_[state]);
     NodeId const early = graph_.multiply(h_, graph_.subtract(phi_1, phi_2)), late = graph_.multiply(h_, phi_2);
-    return graph_.add(graph_.multiply(early, begin_[state]), graph_.multiply(late, end_[state]));
+    NodeId const from_end = graph_.multiply(late, end_[state]);
+    return graph_.add(graph_.multiply(early, begin_[state]), from_end);
   }
 
   Exponential exponential(Matrix const& a, bool noisy) {
@@ -126,8 +127,8 @@ class Writer {
     phi_1 = Matrices::columns_of(phi_1, forced_, zero_);
     phi_2 = Matrices::columns_of(phi_2, forced_, zero_);
     for (int i = 0; i < doublings_; ++i) {
-      phi_2 =
-          matrices_.add_product(matrices_.add_scaled(matrices_.scaled(0.5, phi_2), 0.25, phi_1), matrices_.scaled(0.25, x), phi_2);
+      Matrix const quarter = matrices_.scaled(0.25, x);
+      phi_2 = matrices_.add_product(matrices_.add_scaled(matrices_.scaled(0.5, phi_2), 0.25, phi_1), quarter, phi_2);
       phi_1 = matrices_.add_product(phi_1, matrices_.scaled(0.5, x), phi_1);
       if (noisy) {
         whole = matrices_.add_product(whole, matrices_.scaled(0.5, x), whole);
@@ -169,7 +170,12 @@ class Writer {
     return result;
   }
 
-  static double coefficient(int k) { return 1 / std::tgamma(k + 3.0); }
+  /// 1/(k + 2)!, whose last digit a gamma function would not always meet.
+  static double coefficient(int k) {
+    double factorial = 1;
+    for (int i = 2; i <= k + 2; ++i) factorial *= i;
+    return 1 / factorial;
+  }
 
   /// NaN where the scaled matrix is too large for the series. An entry that lies on no cycle of A plays no part in how fast powers
   /// grow: how large it is is a matter of units, as of the derivatives that tangents add below the diagonal.

@@ -24,8 +24,8 @@ Term standardised(Graph& graph, NodeId x, Nodes a) { return (Term(graph, x) - Te
 ///
 /// x, location, scale, sd: unit u; scale > 0. Symmetric in z, so |z| stands for z and nothing overflows.
 NodeId log_density(Graph& graph, NodeId x, Nodes a) {
-  Term const z = abs(standardised(graph, x, a));
-  return (-z - log(Term(graph, a[1])) - 2.0 * log1p(exp(-z))).id;
+  Term const z = abs(standardised(graph, x, a)), log_scale = log(Term(graph, a[1])), bend = 2.0 * log1p(exp(-z));
+  return (-z - log_scale - bend).id;
 }
 
 NodeId cumulative(Graph& graph, NodeId x, Nodes a) { return (1.0 / (1.0 + exp(-standardised(graph, x, a)))).id; }

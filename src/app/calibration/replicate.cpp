@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "app/fit/fit.hpp"
+#include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/system/interrupt.hpp"
 
@@ -52,7 +53,7 @@ TruePlace place_among(std::vector<double> const& draws, double truth, int thinne
 
 /// Where an optimum with its sd, which a reader takes for a normal distribution, has the true value.
 TruePlace place_in_normal(double optimum, double sd, double truth, int thinned) {
-  double const below = sd > 0 ? 0.5 * std::erfc((optimum - truth) / sd / std::numbers::sqrt2)
+  double const below = sd > 0 ? 0.5 * elementary::erfc((optimum - truth) / sd / std::numbers::sqrt2)
                               : 0.5 + 0.5 * (truth > optimum) - 0.5 * (truth < optimum);
   return {truth, optimum, sd, below, std::min(thinned, static_cast<int>(below * (thinned + 1)))};
 }

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/hypotenuse.hpp"
 #include "core/text/words.hpp"
 
 namespace sysid {
@@ -138,7 +139,7 @@ void weigh_models(std::vector<std::string> const& models, std::vector<ComparedFi
     fit.log_bayes_factor = *one.log_evidence - *best.log_evidence;
     if (standing_for.at(models[f]) != f) fit.counted = one.name;
     if (standing_for.at(models[f]) == places.front()) continue;
-    if (one.error && best.error) fit.bayes_factor_error = std::hypot(error, *best.error);
+    if (one.error && best.error) fit.bayes_factor_error = hypotenuse(error, *best.error);
     fit.strength = evidence_strength(*fit.log_bayes_factor);
   }
 }
@@ -148,7 +149,7 @@ std::vector<std::string> disagreements(std::vector<std::string> const& models, s
   for (std::size_t const place : standing(models, fits))
     for (std::size_t f = 0; f < fits.size(); ++f) {
       if (f == place || models[f] != models[place] || !fits[f].log_evidence) continue;
-      double const chance = 3 * std::hypot(fits[f].error.value_or(0), fits[place].error.value_or(0)) + 0.2;
+      double const chance = 3 * hypotenuse(fits[f].error.value_or(0), fits[place].error.value_or(0)) + 0.2;
       if (std::fabs(*fits[f].log_evidence - *fits[place].log_evidence) > chance)
         notes.push_back(fmt::format("{} and {} are fits of one model, but their evidences differ by {:.1f}: that of {} is used",
                                     fits[f].name, fits[place].name, std::fabs(*fits[f].log_evidence - *fits[place].log_evidence),

@@ -9,6 +9,7 @@
 
 #include "app/fit/earlier_posterior.hpp"
 #include "app/fit/record_scores.hpp"
+#include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/statistics.hpp"
 #include "criteria/scores.hpp"
 #include "search/laplace.hpp"
@@ -163,7 +164,7 @@ void score_draws(FinishedFit& fit, Criteria& criteria) {
   criteria.loo = sum_over(criteria, &PointwiseScores::elpd_loo, loo.error());
   if (!criteria.in_time) return;
   criteria.block = sum_over(criteria, &PointwiseScores::elpd_block, block.error());
-  LogScore const ahead = sum_over(criteria, &PointwiseScores::elpd_future, std::hypot(future.error(), std::sqrt(own_variance)));
+  LogScore const ahead = sum_over(criteria, &PointwiseScores::elpd_future, hypotenuse(future.error(), std::sqrt(own_variance)));
   if (ahead.samples > 0) criteria.future = ahead;
 }
 

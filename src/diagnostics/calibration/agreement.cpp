@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/statistics.hpp"
 #include "diagnostics/calibration/calibration.hpp"
 #include "diagnostics/convergence.hpp"
@@ -53,7 +55,7 @@ std::vector<Estimate> estimates(ChainValues const& chains) {
 
 constexpr char const* names[] = {"mean", "sd", "q5", "median", "q95"};
 
-double two_sided_p(double z) { return std::erfc(std::fabs(z) / std::numbers::sqrt2); }
+double two_sided_p(double z) { return elementary::erfc(std::fabs(z) / std::numbers::sqrt2); }
 
 }  // namespace
 
@@ -62,7 +64,7 @@ std::vector<ComparedNumber> compare_draws(std::string const& name, std::string c
   std::vector<Estimate> const one = estimates(first), other = estimates(second);
   std::vector<ComparedNumber> out;
   for (std::size_t i = 0; i < one.size(); ++i)
-    out.push_back({name, unit, names[i], one[i].value, other[i].value, std::hypot(one[i].error, other[i].error)});
+    out.push_back({name, unit, names[i], one[i].value, other[i].value, hypotenuse(one[i].error, other[i].error)});
   return out;
 }
 

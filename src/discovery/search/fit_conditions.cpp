@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/random.hpp"
 #include "discovery/search/record_noise.hpp"
 #include "discovery/search/sample_steps.hpp"
@@ -155,7 +156,7 @@ bool RecordLimits::settle_step(FittedTerms const& lead, FitConditions& condition
     }
     own_errors_[c] = std::max(error[c], least_accuracy * sizes.size(channel));
     other_errors_[c] = std::max(of_inputs, own_errors_[c]);
-    floor.push_back(std::hypot(rounding_[c], other_errors_[c]));
+    floor.push_back(hypotenuse(rounding_[c], other_errors_[c]));
   }
   if (!conditions.noise.carried) conditions.noise.floor = std::move(floor);
   return conditions.substeps != before;
@@ -199,7 +200,7 @@ bool RecordLimits::settle_carried(FittedTerms const& lead, FitConditions& condit
     CarriedErrors each{std::move(of.ahead), std::move(of.here), std::move(of.next), rounded_.sds[e], state_of_channel, {}};
     for (std::size_t c = 0; c < shape_.size(); ++c) {
       each.own_sd.push_back(rounding_of_samples_[e][c]);
-      for (double& sd : each.own_sd.back()) sd = std::hypot(sd, own_errors_[c]);
+      for (double& sd : each.own_sd.back()) sd = hypotenuse(sd, own_errors_[c]);
     }
     auto const rows = static_cast<int>(each.input_sd.size());
     RowWhitener const whitener(each, 0, rows, [](int) { return true; });
@@ -222,7 +223,7 @@ double RecordLimits::shape_of_rounding(std::size_t channel, Relative& relative) 
   double const least = other_errors_[channel];
   for (std::size_t e = 0; e < relative.size(); ++e)
     for (std::size_t i = 0; i < rounding_of_samples_[e][channel].size(); ++i)
-      relative[e][channel][i] = std::hypot(rounding_of_samples_[e][channel][i], least) / std::hypot(rounding_[channel], least);
+      relative[e][channel][i] = hypotenuse(rounding_of_samples_[e][channel][i], least) / hypotenuse(rounding_[channel], least);
   return rounded_shape;
 }
 

@@ -15,7 +15,8 @@ Component::Component(Eigen::VectorXd where, Eigen::MatrixXd const& covariance)
   for (double const each : root.diagonal()) log_volume += elementary::log(each);
   auto const n = static_cast<double>(centre.size());
   log_normal = -0.5 * n * elementary::log(2 * std::numbers::pi);
-  log_student = std::lgamma((freedom + n) / 2) - std::lgamma(freedom / 2) - 0.5 * n * elementary::log(freedom * std::numbers::pi);
+  log_student = elementary::lgamma((freedom + n) / 2) - elementary::lgamma(freedom / 2) -
+                0.5 * n * elementary::log(freedom * std::numbers::pi);
 }
 
 void Component::log_densities(std::span<double const> squares, std::span<double> normal, std::span<double> student) const {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/random.hpp"
 #include "core/text/number.hpp"
 #include "inference/evidence/bridge.hpp"
@@ -43,7 +44,7 @@ struct Estimates {
   /// By how much importance sampling gives more, beyond chance.
   double surplus() const {
     double const off = importance.log_evidence - bridge.log_evidence;
-    double const chance = 3 * std::hypot(importance.error, bridge.error) + precise;
+    double const chance = 3 * hypotenuse(importance.error, bridge.error) + precise;
     return !bridged() || std::fabs(off) < chance ? 0 : off;
   }
   /// Why the mean weight may miss mass; empty: it does not.
@@ -169,7 +170,7 @@ bool temper(Target const& target, EvidenceTask const& task, std::uint64_t most, 
   double const difference = second.log_evidence - first.log_evidence;
   evidence.method = EvidenceMethod::smc;
   evidence.log_evidence = first.log_evidence + elementary::log(0.5 * (1 + elementary::exp(difference)));
-  evidence.error = std::max(0.5 * std::hypot(first.error, second.error), 0.5 * std::fabs(difference));
+  evidence.error = std::max(0.5 * hypotenuse(first.error, second.error), 0.5 * std::fabs(difference));
   evidence.effective = first.effective + second.effective;
   evidence.reason.clear();
   bool const laplace_passes = evidence.laplace && evidence.doubt.empty();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "core/text/words.hpp"
 #include "inference/jump/tally.hpp"
@@ -107,7 +108,7 @@ void add_disagreements(SelectionResult const& result, std::size_t lead, Findings
     if (m == lead || !std::isfinite(model.log_bayes_factor)) continue;
     if (result.models[m].probability < 1e-6 && negligible(result, m)) continue;
     double const by_evidence = model.log_evidence - best.log_evidence, off = model.log_bayes_factor - by_evidence;
-    double const error = std::hypot(model.factor_error, std::hypot(model.evidence_error, best.evidence_error));
+    double const error = hypotenuse(model.factor_error, hypotenuse(model.evidence_error, best.evidence_error));
     if (!(std::fabs(off) > different * error + of_nats)) continue;
     findings.push_back(
         {FindingCode::visits_disagree,

@@ -14,8 +14,8 @@ namespace {
 
 /// (y - y*)^2, y* the centre of the channel's noise.
 NodeId squared_error(Graph& graph, Channel const& channel, int index) {
-  NodeId const error =
-      graph.subtract(graph.leaf(LeafKind::measured, index), channel.noise.row->centre(graph, channel.noise.arguments));
+  NodeId const centre = channel.noise.row->centre(graph, channel.noise.arguments);
+  NodeId const error = graph.subtract(graph.leaf(LeafKind::measured, index), centre);
   return graph.multiply(error, error);
 }
 

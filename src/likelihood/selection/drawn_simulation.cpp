@@ -25,7 +25,8 @@ DrawnSimulation drawn_simulation(Model model) {
   }
   std::vector<NodeId> values;
   for (Disturbance const& each : model.disturbances) {
-    values.push_back(graph.multiply(graph.unary(Operation::square_root, each.intensity), number(each.name)));
+    NodeId const drawn_number = number(each.name);
+    values.push_back(graph.multiply(graph.unary(Operation::square_root, each.intensity), drawn_number));
     drawn.white.push_back(model.dynamics == Dynamics::continuous && !each.held);
   }
   auto const replace = [&](NodeId& root) {

@@ -1,5 +1,5 @@
-// The handlers of the lane executors, for whichever instruction set's vector type the including file defines. Included twice, each
-// time inside an anonymous namespace, so that the linker can never take one set's code for the other's.
+// The handlers of the lane executors, for whichever instruction set's vector type the including file defines. Each includes it in
+// an anonymous namespace, so that the linker can never take one set's code for the other's.
 //
 // A handler does one instruction for all vectors of a block and jumps to the next handler (the compiler makes the call in tail
 // position a jump). The accumulator, one vector per parameter of the handler, stays in machine registers on the way: most

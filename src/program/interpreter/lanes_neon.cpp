@@ -57,20 +57,7 @@ inline Vec select_of(Vec a, Vec b, Vec c) { return with_nan_of(vbslq_f64(is_zero
 #include "program/interpreter/lanes_handlers.hpp"
 
 }  // namespace
-}  // namespace sysid::neon
 
-namespace sysid::neon {
-
-Handler handler(InstructionShape shape, int width) {
-  return ask<Handler>(width, [&]<class M>(M) { return M::handler(shape); });
-}
-
-Handler end(int width) {
-  return ask<Handler>(width, []<class M>(M) { return reinterpret_cast<Handler>(&M::end); });
-}
-
-void run(Step const* steps, char* file, int width) {
-  ask<void>(width, [&]<class M>(M) { M::run(steps, file); });
-}
+#include "program/interpreter/lanes_offered.hpp"
 
 }  // namespace sysid::neon

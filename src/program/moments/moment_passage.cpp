@@ -97,7 +97,8 @@ std::vector<NodeId> MomentPassage::bent(MomentRow const& row) {
     NodeId straight = zero_;
     for (int k = 0; k < states(); ++k)
       add_product(straight, row.slopes[static_cast<std::size_t>(k)], points_[p].offset[static_cast<std::size_t>(k)]);
-    result.push_back(graph_.subtract(graph_.subtract(of.ahead[p], of.behind[p]), graph_.multiply(graph_.constant(2), straight)));
+    NodeId const twice = graph_.multiply(graph_.constant(2), straight);
+    result.push_back(graph_.subtract(graph_.subtract(of.ahead[p], of.behind[p]), twice));
   }
   return result;
 }
@@ -117,10 +118,13 @@ NodeId MomentPassage::between(MomentRow const& a, MomentRow const& b) {
   if (by_points(a) && by_points(b)) {
     Values const of_a = values(a.value), of_b = values(b.value);
     auto const product = [&](NodeId left, NodeId right) {
-      return graph_.multiply(graph_.subtract(left, of_a.mean), graph_.subtract(right, of_b.mean));
+      NodeId const second = graph_.subtract(right, of_b.mean);
+      return graph_.multiply(graph_.subtract(left, of_a.mean), second);
     };
-    for (std::size_t p = 0; p < points_.size(); ++p)
-      sum = graph_.add(sum, graph_.add(product(of_a.ahead[p], of_b.ahead[p]), product(of_a.behind[p], of_b.behind[p])));
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      NodeId const behind = product(of_a.behind[p], of_b.behind[p]);
+      sum = graph_.add(sum, graph_.add(product(of_a.ahead[p], of_b.ahead[p]), behind));
+    }
     sum = graph_.multiply(weight(), sum);
     add_product(sum, centre_weight(), product(of_a.centre, of_b.centre));
     return sum;

@@ -303,10 +303,11 @@ class MomentWriter {
     Symmetric result(states_, zero_);
     for (int i = 0; i < states_; ++i)
       for (int j = 0; j <= i; ++j)
-        if (!is_zero(covariance_(i, j)))
-          result(i, j) = graph_.add(graph_.add(passage_.with_state(rules_[static_cast<std::size_t>(i)], j),
-                                               passage_.with_state(rules_[static_cast<std::size_t>(j)], i)),
-                                    noise_(i, j));
+        if (!is_zero(covariance_(i, j))) {
+          NodeId const second = passage_.with_state(rules_[static_cast<std::size_t>(j)], i);
+          NodeId const first = passage_.with_state(rules_[static_cast<std::size_t>(i)], j);
+          result(i, j) = graph_.add(graph_.add(first, second), noise_(i, j));
+        }
     return result;
   }
 
