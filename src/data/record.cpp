@@ -8,11 +8,12 @@
 #include <memory>
 
 #include "core/text/words.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/time_doubt.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/format/open_record.hpp"
 #include "data/rounded_times.hpp"
 #include "data/table/file_errors.hpp"
-#include "data/table/serial_time.hpp"
-#include "data/table/unit_text.hpp"
 #include "data/table_record.hpp"
 
 namespace sysid {
@@ -84,11 +85,8 @@ class Columns {
       if (column.unit && column.unit->dimension != unit_atom("s").value().dimension)
         throw UserError(data_errors::unit_of_another_kind(file_.name(), column.column, column.unit->text, "s", column.mention));
       time_unit_ = column.unit;
-      bool const in_plain_seconds = !column.unit || column.unit->scale == 1;
       // Rows that arrive one by one cannot be read with `stamp`.
-      if (SerialTime const* const counts = seems_serial(written, column.column);
-          counts && in_plain_seconds && whole && file_.row_count() && !request_.independent_rows)
-        throw UserError(data_errors::times_are_dates(file_.place(0, column.column), written.front(), counts->word, column.mention));
+      if (whole && !request_.independent_rows) refuse_no_seconds(written, column);
     }
     auto const in_seconds = [&](std::vector<double>& time) {
       if (!file_.has_stamps()) to_si(time, column);
@@ -130,6 +128,21 @@ class Columns {
   std::optional<Unit> const& time_unit() const { return time_unit_; }
 
  private:
+  /// Numbers that count something else than the unit they are taken for.
+  void refuse_no_seconds(std::vector<double> const& written, ColumnRequest const& column) const {
+    bool const is_text = file_.row_count().has_value();
+    double const scale = column.unit ? column.unit->scale : 1;
+    if (SerialTime const* const counts = seems_serial(written, column.column); counts && scale == 1 && is_text)
+      throw UserError(data_errors::times_are_dates(file_.place(0, column.column), written.front(), counts->word, column.mention));
+    if (ClockDoubt doubt = seems_clock(written, is_text); !doubt.patterns.empty() && (scale == 1 || scale == 60)) {
+      for (std::string& pattern : doubt.patterns)  // the sign of a fraction is that of the file
+        std::replace(pattern.begin(), pattern.end(), '.', request_.rules.decimal);
+      throw UserError(data_errors::times_are_clock(file_.place(doubt.place, column.column), written[doubt.place - 1],
+                                                   written[doubt.place], doubt.patterns, is_text, column.mention));
+    }
+    if (!column.unit && !(request_.step > 0) && counts_rows(written, column.column))
+      throw UserError(data_errors::times_are_counts(file_.place(0, column.column), column.mention));
+  }
   std::vector<double> of_one_length(std::vector<double> values, ColumnRequest const& column) {
     if (!rows_) {
       rows_ = values.size();
@@ -171,15 +184,25 @@ auto collect(Diagnostics& diagnostics, std::optional<Span> mention, Read read) -
   }
 }
 
+ColumnNeeds needs_of(RecordRequest const& request) {
+  ColumnNeeds needs;
+  if (request.time) {
+    needs.time = request.time->column;
+    needs.complete.push_back(request.time->column);
+  }
+  for (InputRequest const& input : request.inputs) needs.complete.push_back(input.column);
+  needs.columns = needs.complete;
+  for (std::optional<ColumnRequest> const& channel : request.measured)
+    if (channel) needs.columns.push_back(channel->column);
+  return needs;
+}
+
 }  // namespace
 
 std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics) {
-  ReadingRules rules = request.rules;
-  if (request.time) rules.time_column = request.time->column;
-  for (InputRequest const& input : request.inputs) rules.complete.push_back(input.column);
-  if (request.time) rules.complete.push_back(request.time->column);
   std::optional<std::unique_ptr<RecordFile>> const file = collect(diagnostics, request.mention, [&] {
-    std::unique_ptr<RecordFile> opened = open_record(request.path, rules, request.mention, request.shown_path);
+    std::unique_ptr<RecordFile> opened =
+        open_record(request.path, request.rules, needs_of(request), request.mention, request.shown_path);
     if (auto const rows = opened->row_count(); rows && *rows < 2)
       throw UserError(data_errors::too_few_rows(opened->name(), *rows, request.mention));
     return opened;

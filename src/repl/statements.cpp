@@ -138,9 +138,9 @@ void ask_for_columns(Context& context, Workspace const& draft, Source const& sou
       }
     };
     std::unique_ptr<RecordFile> record;
-    ReadingRules rules = block.rules;
-    if (block.time) rules.time_column = block.time->column;
-    if (refused([&] { record = open_record(path.string(), rules, block.path_span); })) continue;
+    ColumnNeeds needs;
+    if (block.time) needs.time = block.time->column;
+    if (refused([&] { record = open_record(path.string(), block.rules, needs, block.path_span); })) continue;
     auto const ask = [&](ColumnUse const& use) { refused([&] { record->numbers(use.column, use.span); }); };
     if (block.time) refused([&] { record->times(block.time->column, block.time->span); });
     for (DataInputUse const& input : block.inputs) ask(input);

@@ -121,3 +121,30 @@ TEST_CASE("gaps and unequal steps are counted, with the longest gap's place") {
   CHECK(time.longest_gap_row == 6);
   CHECK(time.unequal == 2);
 }
+
+TEST_CASE("lines below the table are counted, and the numbers of a receiver's clock are read as times") {
+  std::string text = "utc,y\n";
+  for (int i = 0; i < 30; ++i) text += fmt::format("{}.00,{}\n", i < 15 ? 115945 + i : 120000 + i - 15, i % 7 + 0.5);
+  TemporaryFile const file(text + "\nend of record\nchecksum 1a2b\n"), plain(text);
+  RecordLook const look = look_at_record(file.path());
+  CHECK(look.lines_below == 2);
+  CHECK(record_text(look).find("2 lines below the table are left out") != std::string::npos);
+  CHECK(nlohmann::json::parse(record_json(look))["lines_below"] == 2);
+  CHECK(look.time.stamps);
+  CHECK((look.time.last == 29 && look.time.gaps == 0 && look.time.unequal == 0));
+  std::string messages;
+  auto const record = read_by(look.block, messages);
+  CAPTURE(messages);
+  REQUIRE(record);
+  CHECK(record->time.back() == 29);
+  RecordLook const without = look_at_record(plain.path());
+  CHECK(without.lines_below == 0);
+  CHECK(record_text(without).find("left out") == std::string::npos);
+}
+
+TEST_CASE("durations as MATLAB writes them are the time") {
+  TemporaryFile const file("Time,y\n0 sec,1.5\n0.01 sec,2\n0.02 sec,2.5\n0.03 sec,2\n");
+  RecordLook const look = look_at_record(file.path());
+  CHECK(look.block.find("stamp = duration") != std::string::npos);
+  CHECK(look.time.last == 0.03);
+}

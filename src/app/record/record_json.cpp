@@ -34,7 +34,8 @@ nlohmann::ordered_json json_of(ColumnLook const& column) {
 }  // namespace
 
 std::string record_json(RecordLook const& look) {
-  nlohmann::ordered_json out{{"file", look.file}, {"format", look.format}, {"rows", look.rows}, {"read", look.reading}};
+  nlohmann::ordered_json out{
+      {"file", look.file}, {"format", look.format}, {"rows", look.rows}, {"lines_below", look.lines_below}, {"read", look.reading}};
   if (!look.question.empty()) out["question"] = {{"text", look.question}, {"choices", look.readings}};
   TimeLook const& time = look.time;
   out["time"] = {{"column", time.column},

@@ -80,6 +80,9 @@ std::string record_text(RecordLook const& look) {
     for (std::string const& remark : remarks(column)) said += fmt::format("`{}` {}\n", column.name, remark);
   }
   if (!said.empty()) out += "\n" + said;
+  if (look.lines_below > 0)
+    out +=
+        fmt::format("\n{} below the table {} left out\n", counted(look.lines_below, "line"), look.lines_below == 1 ? "is" : "are");
   if (!look.question.empty())
     out += fmt::format("\n{}: here it is the first; choose between {}\n", look.question, quoted(look.readings, "and"));
   return out + "\n" + look.block;

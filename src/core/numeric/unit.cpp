@@ -62,6 +62,8 @@ constexpr Extra extras[] = {{"-", "", 1, false},
                             {"deg", "arc_degree", 1, false},
                             {"rev", "revolution", 1, false},
                             {"g_n", "gravity", 1, false},
+                            {"mg_n", "gravity", 1e-3, false},
+                            {"ug_n", "gravity", 1e-6, false},
                             {"Wh", "watthour", 1, false},
                             {"delta_degC", "degC", 1, true},
                             {"delta_degF", "degF", 1, true}};

@@ -7,6 +7,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "data/format/hdf5_links.hpp"
+#include "data/format/matlab4.hpp"
 #include "data/format/matlab_elements.hpp"
 #include "data/table/record_bytes.hpp"
 
@@ -69,9 +71,13 @@ void describe(matvar_t* variable, std::string const& path, int depth, std::vecto
     describe(Mat_VarGetStructFieldByIndex(variable, f, 0), fmt::format("{}.{}", path, names[f]), depth + 1, all);
 }
 
-/// Of versions 5 to 7; the library of version 7.3, HDF5, looks itself.
+/// Of versions 4 to 7; the library of version 7.3, HDF5, looks itself.
 void check_elements(std::string const& path) {
   std::string const bytes = read_record_bytes(path);
+  if (is_matlab4(bytes)) {
+    if (!matlab4_is_whole(bytes)) throw std::runtime_error("cut or damaged");
+    return;
+  }
   bool const older = bytes.size() > 125 && (bytes[124] == 1 || bytes[125] == 1);
   if (older && !matlab_elements_are_whole(bytes)) throw std::runtime_error("cut or damaged");
 }
@@ -146,12 +152,13 @@ std::vector<double> read_matlab(std::string const& path, std::string const& name
 }  // namespace
 
 bool is_matlab(std::string_view bytes) {
+  if (is_matlab4(bytes)) return true;
   if (bytes.size() < 128 || !bytes.starts_with("MATLAB")) return false;
   std::string_view const end = bytes.substr(124, 4);
   return end == std::string_view("\0\1IM", 4) || end == std::string_view("\1\0MI", 4) || end == std::string_view("\0\2IM", 4) ||
          end == std::string_view("\2\0MI", 4);
 }
 
-VariableFormat const matlab_format{"MATLAB file", &list_matlab, &read_matlab};
+VariableFormat const matlab_format{"MATLAB file", &list_matlab, &read_matlab, &external_link_in};
 
 }  // namespace sysid

@@ -1,4 +1,4 @@
-// MATLAB files: versions 5 to 7 and 7.3, which is HDF5 within.
+// MATLAB files: versions 4 to 7 and 7.3, which is HDF5 within.
 #pragma once
 #include <string_view>
 

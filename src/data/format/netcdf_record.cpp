@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "data/format/hdf5_links.hpp"
+
 namespace sysid {
 namespace {
 
@@ -245,6 +247,6 @@ bool is_netcdf(std::string_view bytes) {
          bytes.starts_with("CDF\5");
 }
 
-VariableFormat const netcdf_format{"NetCDF or HDF5 file", &list_netcdf, &read_netcdf};
+VariableFormat const netcdf_format{"NetCDF or HDF5 file", &list_netcdf, &read_netcdf, &external_link_in};
 
 }  // namespace sysid

@@ -47,8 +47,8 @@ FormatRow const* format_of(std::string_view bytes) {
   return nullptr;
 }
 
-std::unique_ptr<RecordFile> open_record(std::string const& path, ReadingRules const& rules, std::optional<Span> mention,
-                                        std::string const& shown_path) {
+std::unique_ptr<RecordFile> open_record(std::string const& path, ReadingRules const& rules, ColumnNeeds const& needs,
+                                        std::optional<Span> mention, std::string const& shown_path) {
   std::string const& name = shown_path.empty() ? path : shown_path;
   try {
     std::string bytes = read_record_bytes(path);
@@ -58,14 +58,11 @@ std::unique_ptr<RecordFile> open_record(std::string const& path, ReadingRules co
       if (bytes.starts_with(known.begins)) throw UserError(data_errors::not_a_record(name, known.name, known.help, mention));
     FormatRow const* const format = format_of(bytes);
     if (format == nullptr) {
-      auto table = std::make_unique<Table>(Table::parse(name, std::move(bytes), mention, 0, rules));
+      auto table = std::make_unique<Table>(Table::parse(name, std::move(bytes), mention, 0, rules, needs));
       table->set_digest(std::move(digest));
       return table;
     }
-    ReadingRules plain;  // what the block needs of its columns is no rule of reading
-    plain.time_column = rules.time_column;
-    plain.complete = rules.complete;
-    if (rules != plain) throw UserError(data_errors::reading_of_no_text(name, format->name, mention));
+    if (rules != ReadingRules{}) throw UserError(data_errors::reading_of_no_text(name, format->name, mention));
     return format->open(name, bytes, std::move(digest));
   } catch (UserError const& error) {
     Diagnostic placed = error.diagnostic();

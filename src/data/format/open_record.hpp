@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/text/source.hpp"
+#include "data/table/column_needs.hpp"
 #include "data/table/reading_rules.hpp"
 #include "data/table/record_file.hpp"
 
@@ -26,7 +27,7 @@ FormatRow const* format_of(std::string_view bytes);
 
 /// IoError where the file cannot be read, UserError at `mention` where it is no record. A gzip file is read as what is in it.
 /// shown_path: what messages name in place of the path; empty: the path.
-std::unique_ptr<RecordFile> open_record(std::string const& path, ReadingRules const& rules,
+std::unique_ptr<RecordFile> open_record(std::string const& path, ReadingRules const& rules, ColumnNeeds const& needs = {},
                                         std::optional<Span> mention = std::nullopt, std::string const& shown_path = {});
 
 }  // namespace sysid

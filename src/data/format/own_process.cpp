@@ -126,7 +126,7 @@ RecordCopy::RecordCopy(std::string const& bytes)
 
 RecordCopy::~RecordCopy() { ::unlink(path_.c_str()); }
 
-std::optional<std::string> in_own_process(std::size_t memory, std::function<std::string()> const& work) {
+OwnWork in_own_process(std::size_t memory, std::function<std::string()> const& work) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) throw IoError("cannot read the record: " + std::string(std::strerror(errno)));
   pid_t const process = ::fork();
@@ -149,16 +149,16 @@ std::optional<std::string> in_own_process(std::size_t memory, std::function<std:
     pollfd ready{ends[0], POLLIN, 0};
     int const state = ::poll(&ready, 1, 100);
     // Another thread may have held a lock of the library when the copy was made: such a copy waits for ever, without computing.
-    if (state == 0 && ++idle % 20 == 0 && !child.computes()) return std::nullopt;
+    if (state == 0 && ++idle % 20 == 0 && !child.computes()) return {WorkEnd::waited, {}};
     if (state == 0 || (state < 0 && errno == EINTR)) continue;
     ssize_t const got = ::read(ends[0], piece.data(), piece.size());
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) break;
     result.append(piece, 0, static_cast<std::size_t>(got));
   }
-  if (!child.ended_well() || !result.starts_with('!')) return std::nullopt;
+  if (!child.ended_well() || !result.starts_with('!')) return {};
   result.erase(0, 1);
-  return result;
+  return {WorkEnd::done, std::move(result)};
 }
 
 }  // namespace sysid

@@ -2,7 +2,6 @@
 #pragma once
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <string>
 
 namespace sysid {
@@ -23,9 +22,16 @@ class RecordCopy {
   std::size_t size_ = 0;
 };
 
-/// What `work` returns, done in a copy of this process, which ends with it; nothing where that crashed, took more memory than
-/// `memory` bytes beyond what this process has, or computed for longer than a minute and a second for each 10 MB of that.
-/// Interrupted as asked for. Output of the libraries is dropped.
-std::optional<std::string> in_own_process(std::size_t memory, std::function<std::string()> const& work);
+/// How work in a process of its own ended. It failed where it crashed, threw, took more memory than it may or computed too long; it
+/// waited where it had not ended and no longer computed, as one that waits for a lock or for a device does.
+enum class WorkEnd { done, failed, waited };
+struct OwnWork {
+  WorkEnd end = WorkEnd::failed;
+  std::string result;  // of `done`
+};
+
+/// What `work` returns, done in a copy of this process, which ends with it and has `memory` bytes beyond what this process has, and
+/// a minute of computing and a second for each 10 MB of that. Interrupted as asked for. Output of the libraries is dropped.
+OwnWork in_own_process(std::size_t memory, std::function<std::string()> const& work);
 
 }  // namespace sysid

@@ -82,9 +82,12 @@ class VariableRecord final : public RecordFile {
  public:
   VariableRecord(VariableFormat const& format, std::string name, std::string const& bytes, std::string digest)
       : format_(format), name_(std::move(name)), digest_(std::move(digest)), file_(std::make_unique<RecordCopy>(bytes)) {
-    auto const listed = in_own_process(overhead + 2 * file_->size(), [&] { return packed(format_.list(file_->path())); });
-    if (!listed) throw UserError(data_errors::damaged(name_, std::string(format_.name), std::nullopt));
-    variables_ = unpacked(*listed);
+    OwnWork const listed = in_own_process(overhead + 2 * file_->size(), [&] { return packed(format_.list(file_->path())); });
+    if (listed.end == WorkEnd::failed && format_.refusal != nullptr)
+      if (std::string const why = format_.refusal(bytes); !why.empty())
+        throw UserError(data_errors::linked_elsewhere(name_, why, std::nullopt));
+    require_done(listed, std::nullopt);
+    variables_ = unpacked(listed.result);
     for (Variable const& each : variables_) {
       if (!each.refused.empty()) continue;
       if (is_vector(each.size)) {
@@ -124,6 +127,10 @@ class VariableRecord final : public RecordFile {
   }
 
  private:
+  void require_done(OwnWork const& work, std::optional<Span> mention) const {
+    if (work.end == WorkEnd::waited) throw UserError(data_errors::reading_waited(name_, std::string(format_.name), mention));
+    if (work.end == WorkEnd::failed) throw UserError(data_errors::damaged(name_, std::string(format_.name), mention));
+  }
   Variable const* find(std::string const& path) const {
     auto const found = std::find_if(variables_.begin(), variables_.end(), [&](Variable const& each) { return each.path == path; });
     return found == variables_.end() ? nullptr : &*found;
@@ -160,14 +167,15 @@ class VariableRecord final : public RecordFile {
     std::size_t const count = count_of(variable.size);
     require_memory(fmt::format("reading `{}` of `{}`", variable.path, name_), 24.0 * static_cast<double>(count),
                    "read a shorter record");
-    auto const bytes = in_own_process(overhead + 2 * file_->size() + 32 * count, [&] {
+    OwnWork const work = in_own_process(overhead + 2 * file_->size() + 32 * count, [&] {
       std::vector<double> const values = format_.read(file_->path(), variable.path);
       return std::string(reinterpret_cast<char const*>(values.data()), values.size() * sizeof(double));
     });
-    if (!bytes || bytes->size() != count * sizeof(double))
+    require_done(work, mention);
+    if (work.result.size() != count * sizeof(double))
       throw UserError(data_errors::damaged(name_, std::string(format_.name), mention));
     read_.resize(count);
-    if (count > 0) std::memcpy(read_.data(), bytes->data(), bytes->size());
+    if (count > 0) std::memcpy(read_.data(), work.result.data(), work.result.size());
     read_path_ = variable.path;
     return read_;
   }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data/table/record_file.hpp"
@@ -22,6 +23,9 @@ struct VariableFormat {
   std::vector<Variable> (*list)(std::string const& path);
   /// All numbers of a variable, the last dimension fastest; quiet NaN where one is missing.
   std::vector<double> (*read)(std::string const& path, std::string const& variable);
+  /// Looks into the bytes of a file that cannot be listed: why, where that is known: "links to another file"; else empty. May be
+  /// null.
+  std::string (*refusal)(std::string_view bytes) = nullptr;
 };
 
 /// UserError E4023 where the file is damaged. Columns are named by their paths; of a matrix `X[:, 2]` is a column and `X[2, :]` a

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "core/text/number.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/table/reading_rules.hpp"
-#include "data/table/unit_text.hpp"
 
 namespace sysid {
 namespace {

@@ -10,15 +10,16 @@
 
 #include "core/numeric/unit.hpp"
 #include "core/text/number.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/time_doubt.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/format/open_record.hpp"
 #include "data/look/paste_block.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/gzip.hpp"
 #include "data/table/proposal.hpp"
 #include "data/table/record_bytes.hpp"
-#include "data/table/serial_time.hpp"
 #include "data/table/table.hpp"
-#include "data/table/unit_text.hpp"
 
 namespace sysid {
 namespace {
@@ -26,6 +27,7 @@ namespace {
 /// Rules for a text, and what was seen that the block states in other words.
 struct Chosen {
   ReadingRules rules;
+  std::string time;                          // the column with stamps
   std::map<std::string, std::string> units;  // of a line of units, by column
 };
 
@@ -41,8 +43,9 @@ bool is_time_name(std::string const& name) {
   auto const split = split_name(name);
   std::string const small = in_small_letters_only(split ? split->name : name.substr(name.find_last_of("./") + 1));
   for (std::string_view const each :
-       {"t",           "time",    "zeit", "timestamp", "datetime", "date", "uhrzeit",     "datum", "xvalue", "xaxis",
-        "elapsedtime", "seconds", "sec",  "temps",     "tiempo",   "tid",  "zeitstempel", "ts",    "epoch",  "unixtime"})
+       {"t",     "time",        "zeit",    "timestamp", "datetime", "date",   "uhrzeit", "datum",       "xvalue",
+        "xaxis", "elapsedtime", "seconds", "sec",       "temps",    "tiempo", "tid",     "zeitstempel", "ts",
+        "epoch", "unixtime",    "utc",     "utctime",   "hhmm",     "hhmmss", "gpstime"})
     if (small == each) return true;
   return false;
 }
@@ -66,15 +69,14 @@ Chosen choose_rules(std::string const& path, std::string const& text, RecordLook
     return {};
   }
   // Stamps are looked for in the column that has them.
+  std::string time;
   Layout const& layout = proposal->layout;
   for (std::size_t c = 0; c < layout.columns.size(); ++c)
-    if (layout.looks[c] == CellLook::stamp && !layout.columns[c].empty()) {
-      ReadingRules wanted;
-      wanted.time_column = layout.columns[c];
-      if (auto with_stamps = propose(text, wanted); with_stamps && !with_stamps->rules.front().stamp.empty()) {
+    if ((layout.looks[c] == CellLook::stamp || read_duration(layout.rows.front()[c])) && !layout.columns[c].empty()) {
+      std::string const column = layout.columns[c];
+      if (auto with_stamps = propose(text, {}, {.time = column}); with_stamps && !with_stamps->rules.front().stamp.empty()) {
+        time = with_stamps->time.empty() ? column : with_stamps->time;
         proposal = std::move(with_stamps);
-        if (!proposal->time.empty())
-          for (ReadingRules& rules : proposal->rules) rules.time_column = proposal->time;
         break;
       }
     }
@@ -83,7 +85,7 @@ Chosen choose_rules(std::string const& path, std::string const& text, RecordLook
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
     for (ReadingRules& rules : proposal->rules) rules.columns = distinct_names(names);
-  Chosen chosen{proposal->rules.front(), {}};
+  Chosen chosen{proposal->rules.front(), std::move(time), {}};
   // Units of a line stand in the block, where they are seen and can be changed.
   if (chosen.rules.units == UnitsPlace::line) {
     Table const table = Table::parse_as_told(path, text, chosen.rules);
@@ -98,6 +100,7 @@ Chosen choose_rules(std::string const& path, std::string const& text, RecordLook
     }
     chosen.rules = proposal->rules.front();
   }
+  look.lines_below = lines_below(text, chosen.rules.last_value);
   look.question = proposal->question;
   for (ReadingRules const& rules : proposal->rules) look.readings.push_back(reading_statement(rules));
   look.reading = look.readings.front();
@@ -202,9 +205,9 @@ class Looking {
   void find_time() {
     TimeLook& time = look_.time;
     if (!chosen_.rules.stamp.empty()) {
-      std::vector<double> stamps = file_->times(chosen_.rules.time_column);
+      std::vector<double> stamps = file_->times(chosen_.time);
       if (keeps_increasing(stamps)) {
-        time.column = chosen_.rules.time_column;
+        time.column = chosen_.time;
         time.stamps = true;
         look_.times = std::move(stamps);
         look_.rows = std::max(look_.rows, look_.times.size());
@@ -217,15 +220,8 @@ class Looking {
       Unit unit = unit_atom("s").value();
       if (auto const stated = unit_of_text(column.unit); stated && stated->dimension == unit.dimension) unit = *stated;
       time.column = column.name;
-      if (SerialTime const* const counts = seems_serial(look_.values[c], column.name);
-          counts && unit.scale == 1 && file_->row_count()) {
-        chosen_.rules.stamp = counts->word;
-        chosen_.rules.time_column = column.name;
-        look_.reading = reading_statement(chosen_.rules);
-        if (!look_.readings.empty()) look_.readings.front() = look_.reading;
-        file_ = open_record(path_, chosen_.rules);
-        time.stamps = true;
-        look_.times = file_->times(column.name);
+      if (std::vector<std::string> const stamps = stamps_of_numbers(c); !stamps.empty() && unit.scale == 1 && file_->row_count()) {
+        read_stamps(column.name, stamps);
         return look_at_time(look_);
       }
       time.unit = unit.text;
@@ -234,6 +230,31 @@ class Looking {
       return look_at_time(look_);
     }
     for (std::size_t i = 0; i < look_.rows; ++i) look_.times.push_back(static_cast<double>(i + 1));
+  }
+
+  /// What `stamp` may say of numbers that are no seconds; empty: they are.
+  std::vector<std::string> stamps_of_numbers(std::size_t c) const {
+    if (SerialTime const* const counts = seems_serial(look_.values[c], look_.columns[c].name)) return {std::string(counts->word)};
+    std::vector<std::string> patterns = seems_clock(look_.values[c], true).patterns;
+    for (std::string& each : patterns) std::replace(each.begin(), each.end(), '.', chosen_.rules.decimal);
+    return patterns;
+  }
+  void read_stamps(std::string const& column, std::vector<std::string> const& stamps) {
+    if (stamps.size() > 1 && look_.question.empty()) {
+      look_.question = fmt::format("`{}` may have hours, minutes and seconds or hours and minutes", column);
+      look_.readings.clear();
+      for (std::string const& stamp : stamps) {
+        chosen_.rules.stamp = stamp;
+        look_.readings.push_back(reading_statement(chosen_.rules));
+      }
+    }
+    chosen_.rules.stamp = stamps.front();
+    look_.reading = reading_statement(chosen_.rules);
+    if (!look_.readings.empty()) look_.readings.front() = look_.reading;
+    file_ = open_record(path_, chosen_.rules);
+    look_.time.column = column;
+    look_.time.stamps = true;
+    look_.times = file_->times(column);
   }
 
   std::string const& path_;

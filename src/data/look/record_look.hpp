@@ -23,6 +23,7 @@ struct TimeLook {
 struct RecordLook {
   std::string file, format;  // format: "text", "MATLAB file"
   std::size_t rows = 0;
+  int lines_below = 0;                // the table, left out: a footer
   std::string reading;                // `read ...`, empty where the file is plain CSV
   std::string question;               // what may be read in two ways; the first way is shown
   std::vector<std::string> readings;  // the ways

@@ -7,10 +7,10 @@
 
 #include "core/text/utf8.hpp"
 #include "core/text/words.hpp"
-#include "data/table/cells.hpp"
-#include "data/table/serial_time.hpp"
-#include "data/table/time_stamp.hpp"
-#include "data/table/unit_text.hpp"
+#include "data/cell/cells.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/time_stamp.hpp"
+#include "data/cell/unit_text.hpp"
 
 namespace sysid::data_errors {
 namespace {
@@ -134,6 +134,18 @@ Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Me
 Diagnostic damaged(std::string const& file, std::string const& what, Mention mention) {
   return error("E4023", mention, fmt::format("`{}` is damaged, or not a {}", file, what),
                "copy it again from where it was recorded; a file that is still being written can be read later");
+}
+
+Diagnostic reading_waited(std::string const& file, std::string const& what, Mention mention) {
+  return error("E4023", mention,
+               fmt::format("reading `{}` as a {} has stopped: the process that reads it waits, and may do so for ever", file, what),
+               "run it again; if that does not help, the file may be damaged: copy it again, or save it as CSV");
+}
+
+Diagnostic linked_elsewhere(std::string const& file, std::string const& target, Mention mention) {
+  return error("E4023", mention,
+               fmt::format("`{}` has a link to another file, `{}`, and links are not followed", file, shown(target)),
+               "copy the data into this file: `h5copy`, or `h5repack --merge`; or name the other file in the data block");
 }
 
 Diagnostic no_such_line(std::string const& file, std::string const& setting, int line, int lines, Mention mention) {
@@ -260,7 +272,7 @@ Diagnostic points_or_groups(Cell const& cell, std::string_view text, Mention men
                "add one of these lines to the data block: `read decimal = \".\"`, or `read decimal = \",\", thousands = \".\"`");
 }
 
-Diagnostic doubtful_sample(Cell const& cell, double value, int times, Mention mention) {
+Diagnostic doubtful_sample(Cell const& cell, std::string const& value, int times, Mention mention) {
   return error(
       "E4022", mention,
       fmt::format("{}: {} is far from all other samples ({}), as a mark for missing ones is", place(cell), value,
@@ -284,12 +296,37 @@ Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word
                std::move(help));
 }
 
+Diagnostic times_are_clock(Cell const& cell, double before, double now, std::vector<std::string> const& patterns, bool is_text,
+                           Mention mention) {
+  std::vector<std::string> lines, digits;
+  for (std::string const& pattern : patterns) {
+    lines.push_back(fmt::format("read stamp = \"{}\"", pattern));
+    digits.push_back(pattern.substr(0, pattern.find_first_of(".,")));
+  }
+  lines.emplace_back("read stamp = seconds");
+  std::string const help =
+      is_text
+          ? fmt::format("add one of these lines to the data block: {}; the last one where they are seconds", quoted(lines, "or"))
+          : "save them as seconds: this file has no `read` line";
+  return error("E4029", mention,
+               fmt::format("{}: {:.15g} after {:.15g} as a time in seconds looks like a time of day written in digits, {}",
+                           place(cell), now, before, quoted(digits, "or")),
+               help);
+}
+
+Diagnostic times_are_counts(Cell const& cell, Mention mention) {
+  return error("E4029", mention,
+               fmt::format("column `{}` of `{}` counts the rows one by one and has no unit, so it is no time", shown(cell.column),
+                           cell.file),
+               "write `rate` or `step` in place of `time` in the data block; if it counts seconds, write `[s]` behind the column");
+}
+
 Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention) {
   std::string const what = text.empty() ? "the cell is not" : fmt::format("`{}` is not", shown(text));
-  return error("E4024", mention,
-               fmt::format("{}: {} a time as in `stamp = {}`", place(cell), what,
-                           pattern == "iso" || find_serial_time(pattern) != nullptr ? pattern : "\"" + pattern + "\""),
-               "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
+  return error(
+      "E4024", mention,
+      fmt::format("{}: {} a time as in `stamp = {}`", place(cell), what, is_stamp_word(pattern) ? pattern : "\"" + pattern + "\""),
+      "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
 }
 
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,

@@ -38,6 +38,10 @@ Diagnostic not_a_record(std::string const& file, std::string_view what, std::str
 /// E4025: `read` says how text is written. what: "MATLAB file".
 Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Mention mention);
 /// E4023. what: "gzip file".
+/// what: "MATLAB file"; the process that reads it waits for ever.
+Diagnostic reading_waited(std::string const& file, std::string const& what, Mention mention);
+/// target: the file that a dataset lies in.
+Diagnostic linked_elsewhere(std::string const& file, std::string const& target, Mention mention);
 Diagnostic damaged(std::string const& file, std::string const& what, Mention mention);
 Diagnostic open_quote(std::string const& file, int line, Mention mention);
 Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
@@ -67,12 +71,17 @@ Diagnostic out_of_range(Cell const& cell, std::string_view text, Mention mention
 /// what: "an input" or "the time".
 /// Digits of `text` after its point may be a group of three.
 Diagnostic points_or_groups(Cell const& cell, std::string_view text, Mention mention);
-Diagnostic doubtful_sample(Cell const& cell, double value, int times, Mention mention);
+/// value: as the file writes it.
+Diagnostic doubtful_sample(Cell const& cell, std::string const& value, int times, Mention mention);
 /// text: empty where it may not be shown.
 /// word: what `stamp` would say of them.
 Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, Mention mention);
 /// A date or a time of day below numbers.
 Diagnostic stamp_among_numbers(Cell const& cell, std::string_view text, Mention mention);
+/// `115958, 115959, 120000`: a time of day as one number. patterns: of `stamp`, those that may be meant.
+Diagnostic times_are_clock(Cell const& cell, double before, double now, std::vector<std::string> const& patterns, bool is_text,
+                           Mention mention);
+Diagnostic times_are_counts(Cell const& cell, Mention mention);
 Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention);
 /// E4026. stated: in the data block; found: in the file.
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,

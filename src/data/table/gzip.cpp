@@ -23,6 +23,12 @@ struct Inflation {
   Inflation(Inflation const&) = delete;
 };
 
+/// Tapes and some loggers fill a file up to whole blocks.
+bool only_zeros(z_stream const& stream, std::string_view not_given) {
+  std::string_view const left(reinterpret_cast<char const*>(stream.next_in), stream.avail_in);
+  return left.find_first_not_of('\0') == std::string_view::npos && not_given.find_first_not_of('\0') == std::string_view::npos;
+}
+
 }  // namespace
 
 bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
@@ -57,7 +63,7 @@ std::string gunzip(std::string const& name, std::string_view bytes) {
     out.resize(before + piece - stream.avail_out);
     bool const at_end = stream.avail_in == 0 && given == bytes.size();
     if (state == Z_STREAM_END) {
-      if (at_end) return out;
+      if (at_end || only_zeros(stream, bytes.substr(given))) return out;
       if (inflateReset(&stream) == Z_OK) continue;
     }
     if (state != Z_OK || (at_end && stream.avail_out > 0)) throw UserError(data_errors::damaged(name, "gzip file", std::nullopt));

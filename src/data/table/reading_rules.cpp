@@ -7,8 +7,8 @@
 #include <charconv>
 #include <utility>
 
-#include "data/table/serial_time.hpp"
-#include "data/table/time_stamp.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/time_stamp.hpp"
 
 namespace sysid {
 namespace {
@@ -136,11 +136,12 @@ Taken take_missing(ReadingRules& rules, ReadingValue const& value) {
 }
 Taken take_stamp(ReadingRules& rules, ReadingValue const& value) {
   auto const item = single(value);
-  if (item && (StampPattern::parse(*item) || find_serial_time(*item) != nullptr)) {
+  if (item && (StampPattern::parse(*item) || is_stamp_word(*item))) {
     rules.stamp = *item;
     return {};
   }
-  return "must be `iso`, `seconds`, `milliseconds`, `microseconds`, `nanoseconds` or `days` of a count since some date, or a "
+  return "must be `iso`, `duration`, `seconds`, `milliseconds`, `microseconds`, `nanoseconds` or `days` of a count since some "
+         "date, or a "
          "pattern such as `\"DD.MM.YYYY hh:mm:ss,f\"` (YYYY, YY, MM, MMM, DD, DDD, hh, mm, ss, f, AP, zone)";
 }
 Taken take_date(ReadingRules& rules, ReadingValue const& value) {
@@ -182,9 +183,10 @@ constexpr ReadingRow rows[] = {
      "words and numbers that stand for a missing sample; `none`, alone or behind them: no other number does", "none",
      &take_missing},
     {"stamp", "stamp = \"DD.MM.YYYY hh:mm:ss\"",
-     "the pattern of dates and times in the time column, `iso`, or what numbers there count since some date (`seconds`, `days`); "
-     "they become seconds since the first row",
-     "iso seconds milliseconds microseconds nanoseconds days", &take_stamp},
+     "the pattern of dates and times in the time column, `iso`, `duration` (`0.01 sec`), or what numbers there count since some "
+     "date "
+     "(`seconds`, `days`); they become seconds since the first row",
+     "iso duration seconds milliseconds microseconds nanoseconds days", &take_stamp},
     {"date", "date = \"Datum\"", "the column with the date, where the time column holds the time of day", "", &take_date},
     {"ragged", "ragged = yes",
      "lines may end with more separators than the names, or before the last cells, which are missing then", "yes no", &take_ragged},
@@ -247,23 +249,21 @@ std::vector<Written> written_settings(ReadingRules const& rules) {
   auto const line = [](int number) { return number == 0 ? std::string() : std::to_string(number); };
   std::string const values =
       rules.last_value != 0 ? fmt::format("{}..{}", rules.first_value, rules.last_value) : line(rules.first_value);
-  return {
-      {"names", line(rules.names)},
-      {"units", rules.units == UnitsPlace::names ? "names" : line(rules.units_line)},
-      {"values", values},
-      {"columns", list_of(rules.columns)},
-      {"encoding", rules.encoding == Encoding::utf8     ? ""
-                   : rules.encoding == Encoding::latin1 ? "latin1"
-                                                        : "utf16"},
-      {"separator", sign_text(rules.separator)},
-      {"decimal", rules.decimal != '.' || rules.decimal_given ? sign_text(rules.decimal) : ""},
-      {"thousands", sign_text(rules.thousands)},
-      {"missing", missing_text(rules)},
-      {"stamp", rules.stamp.empty() || rules.stamp == "iso" || find_serial_time(rules.stamp) != nullptr ? rules.stamp
-                                                                                                        : quoted_text(rules.stamp)},
-      {"date", rules.date.empty() ? "" : quoted_text(rules.date)},
-      {"ragged", rules.ragged ? "yes" : ""},
-      {"comments", rules.comments == 0 ? "" : quoted_text(std::string_view(&rules.comments, 1))}};
+  return {{"names", line(rules.names)},
+          {"units", rules.units == UnitsPlace::names ? "names" : line(rules.units_line)},
+          {"values", values},
+          {"columns", list_of(rules.columns)},
+          {"encoding", rules.encoding == Encoding::utf8     ? ""
+                       : rules.encoding == Encoding::latin1 ? "latin1"
+                                                            : "utf16"},
+          {"separator", sign_text(rules.separator)},
+          {"decimal", rules.decimal != '.' || rules.decimal_given ? sign_text(rules.decimal) : ""},
+          {"thousands", sign_text(rules.thousands)},
+          {"missing", missing_text(rules)},
+          {"stamp", rules.stamp.empty() || is_stamp_word(rules.stamp) ? rules.stamp : quoted_text(rules.stamp)},
+          {"date", rules.date.empty() ? "" : quoted_text(rules.date)},
+          {"ragged", rules.ragged ? "yes" : ""},
+          {"comments", rules.comments == 0 ? "" : quoted_text(std::string_view(&rules.comments, 1))}};
 }
 
 }  // namespace

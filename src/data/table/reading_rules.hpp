@@ -21,16 +21,14 @@ struct ReadingRules {
   char decimal = '.';
   char thousands = 0;  // between groups of three digits; 0: nowhere
   Encoding encoding = Encoding::utf8;
-  std::vector<std::string> missing;   // words, and numbers, that stand for a missing sample, beside an empty cell and NA
-  bool asked_for_missing = false;     // `missing` was given, though it may be `none`
-  bool no_other_mark = false;         // `none` was among them: no other number stands for a missing sample
-  bool decimal_given = false;         // `decimal` was given
-  std::string stamp;                  // the pattern of date-time stamps in the time column, `iso`, or the word of a SerialTime
-  std::string date;                   // the column with the date, where the time column holds the time of day
-  bool ragged = false;                // rows may have more empty cells at their end than the names, or fewer cells
-  char comments = 0;                  // begins lines that are left out, above the names and below
-  std::string time_column;            // that the data block calls the time: where stamps are looked for when rules are proposed
-  std::vector<std::string> complete;  // columns that need a number in every row: no word of theirs is proposed as missing
+  std::vector<std::string> missing;  // words, and numbers, that stand for a missing sample, beside an empty cell and NA
+  bool asked_for_missing = false;    // `missing` was given, though it may be `none`
+  bool no_other_mark = false;        // `none` was among them: no other number stands for a missing sample
+  bool decimal_given = false;        // `decimal` was given
+  std::string stamp;    // the pattern of date-time stamps in the time column, `iso`, `duration`, or a SerialTime's word
+  std::string date;     // the column with the date, where the time column holds the time of day
+  bool ragged = false;  // rows may have more empty cells at their end than the names, or fewer cells
+  char comments = 0;    // begins lines that are left out, above the names and below
 
   friend bool operator==(ReadingRules const&, ReadingRules const&) = default;
 };

@@ -10,16 +10,16 @@
 #include "core/system/digest.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/words.hpp"
-#include "data/table/cells.hpp"
-#include "data/table/doubtful_number.hpp"
+#include "data/cell/cells.hpp"
+#include "data/cell/doubtful_number.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/time_stamp.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/file_errors.hpp"
 #include "data/table/gzip.hpp"
 #include "data/table/proposal.hpp"
 #include "data/table/record_bytes.hpp"
-#include "data/table/serial_time.hpp"
 #include "data/table/table_parser.hpp"
-#include "data/table/time_stamp.hpp"
 
 namespace sysid {
 namespace {
@@ -57,15 +57,17 @@ Table Table::read(std::string const& path, std::optional<Span> mention, ReadingR
   }
 }
 
-Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention, int rows_before, ReadingRules const& rules) {
+Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention, int rows_before, ReadingRules const& rules,
+                   ColumnNeeds const& needs) {
   Table table;
+  table.needs_ = needs;
   table.rows_before_ = rows_before;
   table.name_ = std::move(name);
   table.digest_ = sha256(bytes);
   table.rules_ = rules;
   table.notation_ = {rules.decimal, rules.thousands, rules.missing};
   if (!has_utf16_mark(bytes) && rules.encoding == Encoding::utf8 && !is_utf8(bytes))
-    throw UserError(data_errors::not_text(table.name_, proposed_encoding(bytes, rules), mention));
+    throw UserError(data_errors::not_text(table.name_, proposed_encoding(bytes, rules, needs), mention));
   auto text = to_utf8(std::move(bytes), rules.encoding);
   if (!text)
     throw UserError(data_errors::not_in_encoding(table.name_, rules.encoding == Encoding::latin1 ? "latin1" : "utf16", mention));
@@ -93,8 +95,8 @@ Table Table::parse_as_told(std::string name, std::string bytes, ReadingRules con
 void Table::rethrow_with_proposal(UserError const& error, std::string const& column) const {
   if (!proposes_) throw UserError(error.diagnostic());
   Diagnostic diagnostic = error.diagnostic();
-  bool const complete = std::find(rules_.complete.begin(), rules_.complete.end(), column) != rules_.complete.end();
-  std::string help = proposed_help({bytes_, rules_, column, diagnostic.code, complete});
+  bool const complete = needs_.whole(column);
+  std::string help = proposed_help({bytes_, rules_, needs_, column, diagnostic.code});
   if (!help.empty()) diagnostic.help = beside_proposal(diagnostic) + help;
   if (help.empty() && complete && diagnostic.code == "E4022")
     diagnostic.help =
@@ -216,7 +218,8 @@ std::vector<double> Table::numbers_as_told(std::string const& column, std::optio
         data_errors::points_or_groups(place(static_cast<std::size_t>(row - 1), column), unquoted_cell(cell(row, index)), mention));
   if (!rules_.asked_for_missing)
     if (auto const doubtful = doubtful_numbers(values); !doubtful.empty())
-      throw UserError(data_errors::doubtful_sample(place(doubtful.front().places.front(), column), doubtful.front().value,
+      throw UserError(data_errors::doubtful_sample(place(doubtful.front().places.front(), column),
+                                                   text_of_number(doubtful.front().value, notation_),
                                                    static_cast<int>(doubtful.front().places.size()), mention));
   return values;
 }
@@ -247,7 +250,7 @@ int Table::row_of_doubtful_points(int column) const {
   return separator_ != ',' || comma ? first : 0;
 }
 
-std::vector<double> Table::serial_times_as_told(std::string const& column, SerialTime const& unit,
+std::vector<double> Table::serial_times_as_told(std::string const& column, SerialTime const* unit,
                                                 std::optional<Span> mention) const {
   int const index = index_of(column, mention);
   std::vector<TimeStamp> stamps;
@@ -255,7 +258,7 @@ std::vector<double> Table::serial_times_as_told(std::string const& column, Seria
   for (int row = 1; row <= rows_; ++row) {
     if (row % rows_between_looks == 0) stop_if_interrupted();
     std::string const text = unquoted_cell(cell(row, index));
-    auto const read = read_serial(text, unit);
+    auto const read = unit != nullptr ? read_serial(text, *unit) : read_duration(text);
     if (!read)
       throw UserError(data_errors::not_a_stamp(place(static_cast<std::size_t>(row - 1), column), row > 1 ? text : std::string(),
                                                rules_.stamp, mention));
@@ -264,14 +267,15 @@ std::vector<double> Table::serial_times_as_told(std::string const& column, Seria
   }
   std::vector<double> seconds;
   for (TimeStamp& stamp : stamps) {
-    stamp = without_rounding(stamp, unit, decimals);
+    if (unit != nullptr) stamp = without_rounding(stamp, *unit, decimals);
     seconds.push_back(seconds_between(stamps.front(), stamp));
   }
   return seconds;
 }
 
 std::vector<double> Table::times_as_told(std::string const& column, std::optional<Span> mention) const {
-  if (SerialTime const* const unit = find_serial_time(rules_.stamp)) return serial_times_as_told(column, *unit, mention);
+  SerialTime const* const unit = find_serial_time(rules_.stamp);
+  if (unit != nullptr || rules_.stamp == duration_word) return serial_times_as_told(column, unit, mention);
   auto const pattern = StampPattern::parse(rules_.stamp);
   if (!pattern) throw InternalError("a stamp that is no pattern");
   int const index = index_of(column, mention), date = rules_.date.empty() ? -1 : index_of(rules_.date, mention);

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "core/text/source.hpp"
-#include "data/table/number_notation.hpp"
+#include "data/cell/number_notation.hpp"
+#include "data/table/column_needs.hpp"
 #include "data/table/reading_rules.hpp"
 #include "data/table/record_file.hpp"
 
@@ -27,7 +28,7 @@ class Table final : public RecordFile {
   static Table read(std::string const& path, std::optional<Span> mention = std::nullopt, ReadingRules const& rules = {});
   /// The same for bytes at hand, which messages call `name`. rows_before: of the file, which the bytes leave out.
   static Table parse(std::string name, std::string bytes, std::optional<Span> mention = std::nullopt, int rows_before = 0,
-                     ReadingRules const& rules = {});
+                     ReadingRules const& rules = {}, ColumnNeeds const& needs = {});
   /// Without a look at what other rules would read: for who tries rules.
   static Table parse_as_told(std::string name, std::string bytes, ReadingRules const& rules);
 
@@ -63,7 +64,8 @@ class Table final : public RecordFile {
   friend class TableParser;
   int index_of(std::string const& column, std::optional<Span> mention) const;
   std::vector<double> numbers_as_told(std::string const& column, std::optional<Span> mention) const;
-  std::vector<double> serial_times_as_told(std::string const& column, SerialTime const& unit, std::optional<Span> mention) const;
+  /// unit: of all cells; null where each has its own, `0.01 sec`.
+  std::vector<double> serial_times_as_told(std::string const& column, SerialTime const* unit, std::optional<Span> mention) const;
   std::vector<double> times_as_told(std::string const& column, std::optional<Span> mention) const;
   /// The first row of a column whose points may stand between groups of digits: `1.234` beside `999`, and nothing that decides; or
   /// 0.
@@ -77,6 +79,7 @@ class Table final : public RecordFile {
 
   std::string name_, bytes_, digest_;
   ReadingRules rules_;
+  ColumnNeeds needs_;
   NumberNotation notation_;
   std::vector<std::string> columns_, comments_, units_;
   std::vector<std::uint64_t>

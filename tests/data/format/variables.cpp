@@ -6,15 +6,21 @@
 #include <matio.h>
 #include <netcdf.h>
 #include <unistd.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "core/numeric/random.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "data/format/open_record.hpp"
+#include "data/format/own_process.hpp"
 #include "data/temporary_file.hpp"
 
 using namespace sysid;
@@ -106,6 +112,16 @@ Diagnostic refusal(RecordFile const& record, std::string const& column) {
     (void)record.numbers(column);
   } catch (UserError const& error) {
     return error.diagnostic();
+  }
+  return {};
+}
+
+/// Of the message; empty where the file opens.
+std::string code_of_opening(std::string const& path) {
+  try {
+    open_record(path, {});
+  } catch (UserError const& error) {
+    return error.diagnostic().code;
   }
   return {};
 }
@@ -262,6 +278,106 @@ TEST_CASE("HDF5 files of other programs have no fill values of NetCDF, and show 
   refusal(*record, "bytes");  // throws where there are numbers
 }
 
+TEST_CASE(
+    "MATLAB files of version 4 are read as their specification lays them out, in both orders of bytes, and cut ones refused") {
+  auto const made = [](bool big) {
+    std::string bytes;
+    auto const put_bytes = [&](auto value) {
+      char raw[sizeof value];
+      std::memcpy(raw, &value, sizeof value);
+      if (big) std::reverse(raw, raw + sizeof value);
+      bytes.append(raw, sizeof value);
+    };
+    auto const head = [&](int precision, int rows, int columns, char const* name) {
+      for (int const each : {(big ? 1000 : 0) + 10 * precision, rows, columns, 0, static_cast<int>(std::strlen(name)) + 1})
+        put_bytes(static_cast<std::int32_t>(each));
+      bytes.append(name, std::strlen(name) + 1);
+    };
+    head(0, 3, 1, "t");
+    for (double const each : {0.0, 0.5, 1.0}) put_bytes(each);
+    head(3, 3, 2, "X");
+    for (int const each : {1, -2, 3, 10, 20, 30}) put_bytes(static_cast<std::int16_t>(each));
+    return bytes;
+  };
+  for (bool const big : {false, true}) {
+    CAPTURE(big);
+    Scratch const path("four.mat");
+    std::string const whole = made(big);
+    std::ofstream(path.path, std::ios::binary) << whole;
+    auto const record = open_record(path.path, {});
+    CHECK(record->columns() == std::vector<std::string>{"t", "X[:, 1]", "X[:, 2]"});
+    CHECK(record->numbers("t") == Numbers{0, 0.5, 1});
+    CHECK(record->numbers("X[:, 1]") == Numbers{1, -2, 3});
+    for (std::size_t const left : {whole.size() - 1, whole.size() - 12, std::size_t{40}}) {
+      std::ofstream(path.path, std::ios::binary | std::ios::trunc).write(whole.data(), static_cast<std::streamsize>(left));
+      CHECK(code_of_opening(path.path) == "E4023");
+    }
+  }
+}
+
+TEST_CASE("a link of an HDF5 file to another one is named, and a damaged file is not said to have one") {
+  for (bool const many : {false, true}) {
+    Scratch const path("linked.h5");
+    hid_t const file = H5Fcreate(path.path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    hsize_t const count = 3;
+    hid_t const space = H5Screate_simple(1, &count, nullptr);
+    for (int i = 0; i < (many ? 20 : 1); ++i)
+      H5Dclose(H5Dcreate2(file, ("y" + std::to_string(i)).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Lcreate_external("gone.h5", "/force", file, "force", H5P_DEFAULT, H5P_DEFAULT);
+    H5Sclose(space);
+    H5Fclose(file);
+    std::string message;
+    try {
+      open_record(path.path, {});
+    } catch (UserError const& error) {
+      message = error.diagnostic().message;
+    }
+    CHECK_MESSAGE(contains(message, "has a link to another file, `gone.h5`"), message);
+  }
+  Scratch const whole("whole.nc"), cut("cut.nc");
+  write_netcdf(whole.path, NC_CLOBBER | NC_NETCDF4);
+  std::string const bytes = read_file(whole.path);
+  std::ofstream(cut.path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size() / 2));
+  try {
+    open_record(cut.path, {});
+    FAIL("a cut file was read");
+  } catch (UserError const& error) {
+    CHECK(contains(error.diagnostic().message, "is damaged"));
+  }
+}
+
+TEST_CASE("work in a process of its own that waits is told from work that fails, and from work that is done") {
+  OwnWork const waits = in_own_process(1U << 20U, [] { return ::pause(), std::string(); });
+  CHECK(waits.end == WorkEnd::waited);
+  OwnWork const fails = in_own_process(1U << 20U, []() -> std::string { throw std::runtime_error("no"); });
+  CHECK(fails.end == WorkEnd::failed);
+  OwnWork const done = in_own_process(1U << 20U, [] { return std::string("read"); });
+  CHECK((done.end == WorkEnd::done && done.result == "read"));
+}
+
+TEST_CASE("a gzip file that is filled up with zeros is read, and one with other bytes behind it is not") {
+  std::string const text = "t,y\n0,1\n1,2\n";
+  std::string packed(200, '\0');
+  z_stream stream{};
+  REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  Scratch const path("padded.csv.gz");
+  for (std::size_t const zeros : {0, 1, 500}) {
+    std::ofstream(path.path, std::ios::binary | std::ios::trunc) << packed << std::string(zeros, '\0');
+    CHECK(open_record(path.path, {})->numbers("y") == Numbers{1, 2});
+  }
+  for (std::string const& behind : {std::string("\0\0x", 3), std::string("garbage")}) {
+    std::ofstream(path.path, std::ios::binary | std::ios::trunc) << packed << behind;
+    CHECK(code_of_opening(path.path) == "E4023");
+  }
+}
+
 TEST_CASE("a MATLAB file that was cut is refused, at whatever place, and a whole one is not") {
   for (matio_compression const how : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
     Scratch const path("cut.mat");
@@ -281,13 +397,7 @@ TEST_CASE("a MATLAB file that was cut is refused, at whatever place, and a whole
          {whole.size() - 1, whole.size() * 3 / 4, whole.size() / 2 + 8, whole.size() / 3, std::size_t{130}}) {
       CAPTURE(left);
       std::ofstream(path.path, std::ios::binary | std::ios::trunc).write(whole.data(), static_cast<std::streamsize>(left));
-      std::string code;
-      try {
-        open_record(path.path, {});
-      } catch (UserError const& error) {
-        code = error.diagnostic().code;
-      }
-      CHECK(code == "E4023");
+      CHECK(code_of_opening(path.path) == "E4023");
     }
   }
 }

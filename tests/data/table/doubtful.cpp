@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "core/text/diagnostic.hpp"
+#include "data/cell/doubtful_number.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/record.hpp"
-#include "data/table/doubtful_number.hpp"
 #include "data/table/proposal.hpp"
-#include "data/table/serial_time.hpp"
 #include "data/table/table.hpp"
-#include "data/table/unit_text.hpp"
 #include "data/temporary_file.hpp"
 
 using namespace sysid;
@@ -99,7 +99,15 @@ TEST_CASE("an acceleration in g is in units of the standard gravity, a mass in g
     REQUIRE(unit_of_text(written, acceleration));
     CHECK(unit_of_text(written, acceleration)->scale == 9.80665);  // CGPM 1901
   }
+  for (char const* const written : {"mg", "[mG]", "milli-g"}) {
+    CAPTURE(written);
+    REQUIRE(unit_of_text(written, acceleration));
+    CHECK(unit_of_text(written, acceleration)->scale == doctest::Approx(9.80665e-3).epsilon(1e-15));
+    CHECK(unit_atom(unit_of_text(written, acceleration)->text)->scale == unit_of_text(written, acceleration)->scale);
+  }
+  CHECK(unit_of_text("µg", acceleration)->scale == doctest::Approx(9.80665e-6).epsilon(1e-15));
   CHECK(unit_of_text("g", mass)->scale == 1e-3);
+  CHECK(unit_of_text("mg", mass)->scale == 1e-6);
   CHECK(unit_of_text("mm/s²", acceleration)->scale == 1e-3);
 }
 
@@ -141,13 +149,58 @@ TEST_CASE("a word in a column of numbers is proposed as missing, also far below,
 }
 
 TEST_CASE("a date with the day before the month is proposed as one, and no month as a zone") {
-  ReadingRules rules;
-  rules.time_column = "time";
-  auto const proposal = propose("time,y\n2024-13-04,1.5\n2024-14-05,2.25\n2024-15-06,3\n", rules);
+  auto const proposal = propose("time,y\n2024-13-04,1.5\n2024-14-05,2.25\n2024-15-06,3\n", {}, {.time = "time"});
   REQUIRE(proposal);
   CHECK(proposal->rules.size() == 1);
   CHECK(proposal->rules.front().stamp == "YYYY-DD-MM");
-  auto const days = propose("time,y\n2024-133 10:00:00,1.5\n2024-134 10:00:00,2.25\n", rules);
+  auto const days = propose("time,y\n2024-133 10:00:00,1.5\n2024-134 10:00:00,2.25\n", {}, {.time = "time"});
   REQUIRE(days);
   CHECK(days->rules.front().stamp == "YYYY-DDD hh:mm:ss");
+}
+
+TEST_CASE("a mark is compared as a number in the notation of the file, and proposed in it") {
+  ReadingRules rules;
+  rules.decimal = ',';
+  rules.decimal_given = true;
+  Diagnostic const asked = said_about("t;y\n0;1,5\n1;-99,90\n2;1,25\n", "y", rules);
+  CHECK(asked.code == "E4022");
+  CHECK(has_part(asked.help, "missing = \"-99,9\""));
+  for (char const* const mark : {"-99,9", "-99,90", "-99.9"}) {
+    CAPTURE(mark);
+    rules.missing = {mark};
+    rules.asked_for_missing = true;
+    std::vector<double> const values = table_of("t;y\n0;1,5\n1;-99,90\n2;1,25\n", rules).numbers("y");
+    CHECK((values[0] == 1.5 && std::isnan(values[1]) && values[2] == 1.25));
+  }
+  // With groups of digits the word is read as the cell is.
+  rules.thousands = '.';
+  rules.missing = {"-9.999"};
+  std::vector<double> const grouped = table_of("t;y\n0;-9,999\n1;-9.999\n2;-9999\n", rules).numbers("y");
+  CHECK((grouped[0] == -9.999 && std::isnan(grouped[1]) && std::isnan(grouped[2])));
+}
+
+TEST_CASE("the line about a cell that is no number names columns that are there twice, and works") {
+  TemporaryFile const file("logger 7\nt;y;y;z\n0;1,5;2,5;1\n1;1,25;2,25;1\n2;1,75;2,75;1\n");
+  RecordRequest wanted;
+  wanted.path = file.path();
+  wanted.time = ColumnRequest{"t", std::nullopt, std::nullopt, std::nullopt};
+  wanted.measured.push_back(ColumnRequest{"y", std::nullopt, std::nullopt, std::nullopt});
+  Diagnostics diagnostics;
+  CHECK_FALSE(load(wanted, diagnostics));
+  std::string const help = diagnostics.all().front().help;
+  CHECK(has_part(help, "columns = (\"t\", \"y\", \"y_2\", \"z\")"));
+  // A block that reads none of them needs no names.
+  wanted.measured.front()->column = "z";
+  Diagnostics others;
+  CHECK_FALSE(load(wanted, others));
+  CHECK_FALSE(has_part(others.all().front().help, "columns ="));
+  wanted.measured.front()->column = "y";
+  auto const proposal = propose("logger 7\nt;y;y;z\n0;1,5;2,5;1\n1;1,25;2,25;1\n2;1,75;2,75;1\n", {}, {});
+  REQUIRE(proposal);
+  wanted.rules = proposal->rules.front();
+  wanted.rules.columns = {"t", "y", "y_2", "z"};
+  Diagnostics none;
+  auto const record = load(wanted, none);
+  REQUIRE(record);
+  CHECK(record->measured[0] == std::vector<double>{1.5, 1.25, 1.75});
 }

@@ -1,5 +1,5 @@
 // Spellings of units that the language does not know, and what it calls them.
-#include "data/table/unit_text.hpp"
+#include "data/cell/unit_text.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -23,6 +23,11 @@ constexpr Spelling whole_texts[] = {
     {"metres", "m"},   {"watts", "W"},     {"hertz", "Hz"},     {"pascal", "Pa"},  {"millivolts", "mV"}, {"mvolts", "mV"},
     {"hours", "h"},    {"minutes", "min"}, {"%", "percent"},    {"1", "-"},        {"unitless", "-"},    {"dimensionless", "-"},
     {"none", "-"},     {"rn", "-"},        {"ts", "-"},         {"---", "-"}};
+/// No masses.
+constexpr Spelling of_accelerations[] = {{"g", "g_n"},        {"G", "g_n"},       {"gn", "g_n"},      {"g0", "g_n"},
+                                         {"gs", "g_n"},       {"mg", "mg_n"},     {"mG", "mg_n"},     {"mgn", "mg_n"},
+                                         {"ug", "ug_n"},      {"µg", "ug_n"},     {"μg", "ug_n"},     {"milli-g", "mg_n"},
+                                         {"milli g", "mg_n"}, {"millig", "mg_n"}, {"micro-g", "ug_n"}};
 constexpr Spelling unit_signs[] = {{"µ", "u"},   {"μ", "u"},   {"²", "^2"},    {"³", "^3"},  {"·", " "},  {"⋅", " "},
                                    {"Ω", "ohm"}, {"Ω", "ohm"}, {"°C", "degC"}, {"°", "deg"}, {"**", "^"}, {"%", "percent"}};
 
@@ -157,8 +162,8 @@ std::optional<Unit> unit_of_text(std::string_view text, Unit const& wanted) {
   std::string_view bare = trimmed(text);
   for (std::string_view const pair : {"[]", "()", "<>", "{}"})
     if (bare.size() > 2 && bare.front() == pair[0] && bare.back() == pair[1]) bare = trimmed(bare.substr(1, bare.size() - 2));
-  for (std::string_view const written : {"g", "G", "gn", "g0", "gs"})
-    if (bare == written) unit = gravity;
+  for (Spelling const& each : of_accelerations)
+    if (bare == each.written) unit = unit_atom(each.meant);
   return unit;
 }
 

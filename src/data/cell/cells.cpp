@@ -1,5 +1,5 @@
 // A line is cut at its separators; what stands in quotes is one cell.
-#include "data/table/cells.hpp"
+#include "data/cell/cells.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Patterns are read into tokens once; a cell is matched token by token, without going back.
-#include "data/table/time_stamp.hpp"
+#include "data/cell/time_stamp.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <array>
 
 #include "core/text/words.hpp"
-#include "data/table/cells.hpp"
+#include "data/cell/cells.hpp"
 
 namespace sysid {
 namespace {
@@ -196,7 +196,7 @@ struct StampPattern::Reader {
       if (hour < 1 || hour > 12) return std::nullopt;
       hours = hour % 12 + (*afternoon ? 12 : 0);
     }
-    if (hours > 23) return std::nullopt;
+    if (hours > 23 && (hours > 24 || minute > 0 || second > 0 || picosecond > 0)) return std::nullopt;
     std::int64_t const days = day_of_year > 0 ? days_from_civil(year, 1, 1) + day_of_year - 1 : days_from_civil(year, month, day);
     return TimeStamp{((days * 24 + hours) * 60 + minute - offset_minutes) * 60 + second, picosecond};
   }
@@ -220,15 +220,32 @@ struct StampPattern::Reader {
   }
 };
 
+std::size_t StampPattern::packed_digits(std::size_t token) const {
+  auto const is = [&](std::size_t i, Part part) { return i < tokens_.size() && tokens_[i].part == part; };
+  if (!is(token, Part::hour) || !is(token + 1, Part::minute) || (token > 0 && tokens_[token - 1].exact)) return 0;
+  std::size_t const last = is(token + 2, Part::second) ? token + 2 : token + 1;
+  return tokens_[last].exact ? 0 : 2 * (last - token + 1);
+}
+
 std::optional<TimeStamp> StampPattern::read(std::string_view cell) const {
   Reader reader{.cell = trimmed(cell)};
   if (tokens_.empty()) return reader.iso_stamp();
+  std::string padded;
   for (std::size_t i = 0; i < tokens_.size(); ++i) {
     // A fraction may be left out, with the sign before it: programs print whole seconds without one.
     bool const optional = tokens_[i].part == Part::sign && i + 1 < tokens_.size() && tokens_[i + 1].part == Part::fraction;
     if (optional && (reader.at >= reader.cell.size() || reader.cell[reader.at] != tokens_[i].sign)) {
       ++i;
       continue;
+    }
+    if (std::size_t const digits = packed_digits(i)) {
+      std::size_t const there = reader.cell.substr(reader.at).find_first_not_of("0123456789");
+      std::size_t const count = there == std::string_view::npos ? reader.cell.size() - reader.at : there;
+      if (count > 0 && count < digits) {
+        padded = std::string(reader.cell.substr(reader.at)).insert(0, digits - count, '0');
+        reader.cell = padded;
+        reader.at = 0;
+      }
     }
     if (!reader.take(tokens_[i])) return std::nullopt;
   }

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data/table/time_stamp.hpp"
+#include "data/cell/time_stamp.hpp"
 
 namespace sysid {
 
@@ -23,6 +23,14 @@ struct SerialStamp {
   int decimals = 0;  // that were written
 };
 std::optional<SerialStamp> read_serial(std::string_view cell, SerialTime const& unit);
+/// What `stamp` says of durations as MATLAB writes them, `0.01 sec`, `1.5 min`, `2 hr`, `3 days`.
+constexpr std::string_view duration_word = "duration";
+/// One of them, exactly; nothing for any other text.
+std::optional<SerialStamp> read_duration(std::string_view cell);
+
+/// Whether it is no pattern but a word: `iso`, `duration`, or that of a SerialTime.
+bool is_stamp_word(std::string_view text);
+
 /// Days with six decimals and more, to the power of ten of a second that is nearest to their last digit: 45356.4173611111 is a
 /// minute.
 TimeStamp without_rounding(TimeStamp const& stamp, SerialTime const& unit, int decimals);

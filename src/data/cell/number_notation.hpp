@@ -21,6 +21,9 @@ struct NumberNotation {
 /// of digits have three digits each, and stand before the decimal sign.
 CellKind parse_cell(std::string_view cell, NumberNotation const& notation, double& value);
 
+/// As the file would write it, without groups.
+std::string text_of_number(double value, NumberNotation const& notation);
+
 /// What the signs in a cell say of the notation. A single sign before exactly three digits (`1.234`) may be either.
 struct NotationEvidence {
   bool number = false;        // in some notation

@@ -21,6 +21,7 @@ double seconds_between(TimeStamp const& from, TimeStamp const& to);
 ///   YYYY YY     year; two digits are 1970 to 2069           hh mm ss    24 hours, or 12 hours where AP stands; 1 or 2 digits
 ///   MM MMM      month as a number, as a name (Jan, Mai)     f           any number of digits of a fraction, which may be left out
 ///   DD DDD      day of the month, of the year               AP          AM or PM
+///   hhmmss hhmm without signs between: zeros in front may be absent, as of a number; 24:00 is the end of a day
 ///   zone        Z, +02:00, -0500: taken off                 a blank     any number of blanks; any other sign stands for itself
 ///
 /// `iso`: YYYY-MM-DD, a T or a blank, hh:mm, and, where they stand there, seconds, a fraction and a zone.
@@ -60,6 +61,9 @@ class StampPattern {
     bool exact = false;  // a number follows at once, so all digits must be there
   };
   struct Reader;
+
+  /// Of `hhmmss` or `hhmm` at this token: so many digits, of which a number lacks zeros in front; else 0.
+  std::size_t packed_digits(std::size_t token) const;
 
   std::string text_;
   std::vector<Token> tokens_;

@@ -1,11 +1,11 @@
 // Whole and fraction are kept apart, so that no digit is lost.
-#include "data/table/serial_time.hpp"
+#include "data/cell/serial_time.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/text/words.hpp"
-#include "data/table/cells.hpp"
+#include "data/cell/cells.hpp"
 
 namespace sysid {
 namespace {
@@ -66,6 +66,20 @@ std::optional<SerialStamp> read_serial(std::string_view cell, SerialTime const& 
   Wide const picoseconds = static_cast<Wide>(whole) * unit.picoseconds + (fraction * unit.picoseconds + power / 2) / power;
   return SerialStamp{stamp_of(picoseconds), decimals};
 }
+
+std::optional<SerialStamp> read_duration(std::string_view cell) {
+  constexpr SerialTime units[] = {{"sec", second},       {"s", second},        {"ms", second / 1000}, {"min", 60 * second},
+                                  {"hr", 3600 * second}, {"h", 3600 * second}, {"days", day},         {"day", day}};
+  cell = trimmed(cell, cell_blanks);
+  std::size_t const blank = cell.find(' ');
+  if (blank == std::string_view::npos) return std::nullopt;
+  std::string_view const word = trimmed(cell.substr(blank));
+  for (SerialTime const& each : units)
+    if (each.word == word) return read_serial(cell.substr(0, blank), each);
+  return std::nullopt;
+}
+
+bool is_stamp_word(std::string_view text) { return text == "iso" || text == duration_word || find_serial_time(text) != nullptr; }
 
 TimeStamp without_rounding(TimeStamp const& stamp, SerialTime const& unit, int decimals) {
   constexpr int fewest = 6;

@@ -1,12 +1,14 @@
 // From cells to numbers, and which notation a cell may have.
-#include "data/table/number_notation.hpp"
+#include "data/cell/number_notation.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
-#include "data/table/cells.hpp"
+#include "data/cell/cells.hpp"
 
 namespace sysid {
 namespace {
@@ -70,9 +72,11 @@ std::optional<std::string> in_plain_notation(std::string_view cell, NumberNotati
   return out + std::string(cell.substr(at));
 }
 
-bool same_number(std::string const& word, double value) {
+/// word: in the notation of the file or, where it is no number there, with a point.
+bool same_number(std::string const& word, NumberNotation const& notation, double value) {
   double number = 0;
-  return parse_plain(word, number) == CellKind::number && number == value;
+  std::optional<std::string> const plain = notation.plain() ? std::nullopt : in_plain_notation(word, notation);
+  return parse_plain(plain ? *plain : word, number) == CellKind::number && number == value;
 }
 
 }  // namespace
@@ -92,8 +96,14 @@ CellKind parse_cell(std::string_view cell, NumberNotation const& notation, doubl
   }
   if (kind == CellKind::number)
     for (std::string const& word : notation.missing)
-      if (same_number(word, value)) return CellKind::missing;
+      if (same_number(word, notation, value)) return CellKind::missing;
   return kind;
+}
+
+std::string text_of_number(double value, NumberNotation const& notation) {
+  std::string text = fmt::format("{}", value);
+  std::replace(text.begin(), text.end(), '.', notation.decimal);
+  return text;
 }
 
 NotationEvidence notation_of(std::string_view cell) {
