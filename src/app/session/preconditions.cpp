@@ -117,6 +117,25 @@ std::optional<Diagnostic> nothing_measured(Task const& task, std::vector<Experim
   return std::nullopt;
 }
 
+/// A single row has neither a derivative nor an input between two samples. In discrete time the rows before it count as well.
+std::optional<Diagnostic> one_row(DiscoverTask const& what, CheckedFile const& file, std::vector<ExperimentData> const& data) {
+  if (file.dictionaries[static_cast<std::size_t>(what.dictionary)].numbers.discrete) return std::nullopt;
+  for (ExperimentData const& each : data) {
+    if (each.use.part < 0 || each.experiment.time.size() > 1) continue;
+    DataBlock const& block = file.data[static_cast<std::size_t>(each.use.data)];
+    DataPart const& part = block.parts[static_cast<std::size_t>(each.use.part)];
+    return Diagnostic{
+        Severity::error,
+        "E4201",
+        fmt::format("range `{}` has 1 row, but a discovery needs at least 2 in each range, for the derivatives", part.name),
+        Label{part.span, {}},
+        {},
+        "use more rows, or leave this range out of the task",
+        {part.name}};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model const& model,
@@ -159,12 +178,13 @@ std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std:
   return std::nullopt;
 }
 
-std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what) {
+std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what, CheckedFile const& file,
+                                  std::vector<ExperimentData> const& data) {
   if (std::string const why = regression::find_form(what.form)->refuse(what.form_settings); !why.empty())
     return refused_settings(task, what.form, why);
   if (std::string const why = regression::find_selector(what.selector)->refuse(what.selector_settings); !why.empty())
     return refused_settings(task, what.selector, why);
-  return std::nullopt;
+  return one_row(what, file, data);
 }
 
 void Preconditions::require() const {

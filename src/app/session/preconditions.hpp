@@ -19,8 +19,9 @@ std::optional<Diagnostic> refusal(Task const& task, FitTask const& what, Model c
 std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std::vector<Model> const& models,
                                   std::vector<std::vector<ExperimentData>> const& data);
 
-/// Settings of a discovery that do not go together.
-std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what);
+/// Settings of a discovery that do not go together, and parts of its data that hold no motion.
+std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what, CheckedFile const& file,
+                                  std::vector<ExperimentData> const& data);
 
 struct Preconditions {
   Diagnostics diagnostics;

@@ -95,7 +95,11 @@ std::string name(Session const& session, Task const& task) {
 std::string digest(Session const& session, Task const& task) {
   return sha256(unparse(ast::File{{dictionary(session.file, task).tree}}));
 }
-std::optional<Diagnostic> refused(Session&, Task const& task) { return refusal(task, of(task)); }
+std::optional<Diagnostic> refused(Session& session, Task const& task) {
+  std::vector<ExperimentData> const all = load_experiments(session, of(task).experiments, dictionary(session.file, task).measured,
+                                                           {StartRule::Kind::rest, 0}, PredictionRule::as_written);
+  return refusal(task, of(task), session.file, all);
+}
 
 }  // namespace discover
 

@@ -53,7 +53,7 @@ class Discover {
                                PredictionRule::as_written)) {}
 
   ExitCode run() {
-    if (auto const why = refusal(task_, what_)) throw UserError(*why);
+    if (auto const why = refusal(task_, what_, session_.file, data_)) throw UserError(*why);
     regression::Method method;
     method.form = regression::find_form(what_.form);
     method.form_settings = what_.form_settings;
