@@ -104,7 +104,8 @@ std::optional<std::string> plot(ast::Call const& call, PlotSize plot_size, Evalu
     diagnostics.add({Severity::error, "", std::move(message), Label{span, {}}, {}, std::move(help)});
     return std::nullopt;
   };
-  std::string const examples = "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior)";
+  std::string const examples =
+      "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior), plot(DATA)";
   auto const& arguments = call.arguments;
   if (arguments.empty() || arguments.size() > 2)
     return refuse(call.span, "`plot` takes one quantity, or two to plot against each other", examples);
@@ -147,6 +148,36 @@ std::optional<std::string> plot(ast::Call const& call, PlotSize plot_size, Evalu
   return drawn;
 }
 
+bool has_quantity(TaskResults const& results, std::string const& name) {
+  return std::any_of(results.all.begin(), results.all.end(), [&](Result const& each) {
+    bool found = each.find_draws(name) != nullptr;
+    for (RecordSeries const& record : each.records)
+      for (SeriesColumn const& column : record.quantities) found = found || column.name == name;
+    return found;
+  });
+}
+
+/// False where the call names no data block, or a result or a quantity of one is called so.
+bool plot_raw(Context const& context, ast::Call const& call, Evaluator const& evaluator, Diagnostics& diagnostics,
+              std::optional<std::string>& said) {
+  auto const* name = call.arguments.size() == 1 ? std::get_if<ast::Reference>(&call.arguments[0].value.node) : nullptr;
+  if (name == nullptr || !name->index.empty() || name->primes > 0) return false;
+  std::string const& text = name->name.text;
+  if (evaluator.result(text.substr(0, text.find('.'))) != nullptr || has_quantity(context.results, text)) return false;
+  try {
+    said = plot_columns(context, text, name->name.span);
+    if (said && said->empty()) {
+      said.reset();
+      diagnostics.add({Severity::error, "", "there are no finite values to plot", Label{name->name.span, {}}, {}, {}});
+      return true;
+    }
+  } catch (UserError const& error) {
+    diagnostics.add(error.diagnostic());
+    return true;
+  }
+  return said.has_value();
+}
+
 }  // namespace
 
 bool answer(Context& context, ast::Expression const& tree, std::string const& text) {
@@ -159,7 +190,9 @@ bool answer(Context& context, ast::Expression const& tree, std::string const& te
   auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node);
   auto const* name = std::get_if<ast::Reference>(&tree.node);
   std::optional<std::string> said;
-  if (call != nullptr && (*call)->function.text == "plot") {
+  if (call != nullptr && (*call)->function.text == "plot" && plot_raw(context, **call, evaluator, diagnostics, said)) {
+    // what stands in a file
+  } else if (call != nullptr && (*call)->function.text == "plot") {
     said = plot(**call, context.plot_size, evaluator, diagnostics);
   } else if (call != nullptr && ((*call)->function.text == "trace" || (*call)->function.text == "histogram")) {
     diagnostics.add({Severity::error,

@@ -194,8 +194,10 @@ std::optional<std::string> help_on(std::string const& word, int columns) {
   for (std::string_view const plot : {"plot", "trace", "histogram"})
     if (word == plot)
       add_rows(
-          "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior)\n  a plot in characters: draws "
-          "in order, a histogram, one quantity against another, a series along its record,\n  a fit or prediction of a record\n");
+          "plot(trace(k)), plot(histogram(k)), plot(k, k3), plot(residual(output)), plot(posterior), plot(bench)\n  a plot in "
+          "characters: draws "
+          "in order, a histogram, one quantity against another, a series along its record,\n  a fit or prediction of a record, the "
+          "measured columns of a data block against time\n");
   for (KeywordRow const& row : keywords())
     if (row.word == word) add_rows(entry_of(row));
   for (ListRow const& topic : lists()) add_rows(from_list(topic, word));

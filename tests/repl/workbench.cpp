@@ -270,6 +270,38 @@ TEST_CASE("plots are drawn in the size asked for, of what they are said to be of
   CHECK(has(d.messages(), "plot(trace(k))"));
 }
 
+TEST_CASE("the columns of a data block are drawn against time before any fit, in the units of the file") {
+  Dialogue d;
+  std::string text = "time;ms;pos\n";
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(i * 10) + ";" + (i < 20 ? "5" : "7,5") + ";" + (i == 3 ? "" : std::to_string(i)) + "\n";
+  write_file(d.path("raw.csv"), text);
+  REQUIRE(d.enter("data bench { file \"" + d.path("raw.csv") +
+                  "\"; read decimal = \",\"; time time [ms]; input x = ms [N] hold linear; measure displacement = pos [mm]; "
+                  "split late = rows 21..40 }"));
+  d.workbench().set_plot_size({30, 6});
+  REQUIRE_MESSAGE(d.enter("plot(bench)"), d.messages());
+  CHECK(has(d.answers(), "displacement [mm]"));
+  CHECK(has(d.answers(), "time [ms]"));
+  CHECK(has(d.answers(), "39"));
+  CHECK(has(d.answers(), "390"));
+  CHECK_FALSE(has(d.answers(), "x [N]"));
+  REQUIRE_MESSAGE(d.enter("plot(bench.x)"), d.messages());
+  CHECK(has(d.answers(), "x [N]"));
+  CHECK(has(d.answers(), "7.5"));
+  REQUIRE_MESSAGE(d.enter("plot(bench.late)"), d.messages());
+  CHECK(has(d.answers(), "200"));
+  CHECK_FALSE(d.enter("plot(bench.lat)"));
+  CHECK(has(d.messages(), "data `bench` has no channel, input or range `lat`"));
+  CHECK(has(d.messages(), "did you mean `late`?"));
+  CHECK_FALSE(d.enter("plot(bensh)"));
+  CHECK_FALSE(has(d.messages(), "channel, input or range"));
+  // A column that is not there is named as elsewhere, and a file that is not there ends nothing.
+  REQUIRE(d.enter("data away { file \"nowhere.csv\"; rate 10 [Hz]; measure y = y [m] }"));
+  CHECK_FALSE(d.enter("plot(away)"));
+  CHECK(has(d.messages(), "nowhere.csv"));
+}
+
 TEST_CASE("a fit that is stopped keeps its draws, and goes on to the bytes of an unbroken one") {
   std::string const task = "post = fit oscillator to bench.train with mh(samples = 4000, burn_in = 1000, thin = 5, chains = 2)";
   auto const draws = [](Dialogue& d) {
