@@ -14,8 +14,11 @@ bool is(ast::Expression const& expression, double value) {
 
 ast::Expression without_idle(ast::Expression expression);
 
-/// What a sum, product, quotient or power with an idle side is; nothing where none is.
+/// What a sum, product, quotient or power with an idle side is, or a sum of numbers; nothing where it is neither.
 std::optional<ast::Expression> other_side(std::string const& symbol, ast::Expression const& left, ast::Expression const& right) {
+  auto const *first = std::get_if<ast::Number>(&left.node), *second = std::get_if<ast::Number>(&right.node);
+  if (first != nullptr && second != nullptr && !first->unit && !second->unit && (symbol == "+" || symbol == "-"))
+    return ast::Expression{{}, ast::Number{{}, symbol == "+" ? first->value + second->value : first->value - second->value, {}}};
   if (symbol == "+") {
     if (is(left, 0)) return right;
     if (is(right, 0)) return left;
