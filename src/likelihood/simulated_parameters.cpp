@@ -52,6 +52,19 @@ std::vector<bool> simulated_parameters(Model const& model) {
   return parameters_below(model, graph, roots);
 }
 
+std::vector<bool> measured_parameters(Model const& model) {
+  std::vector<bool> all = simulated_parameters(model);
+  std::vector<NodeId> noise;
+  for (Channel const& channel : model.channels) {
+    noise.insert(noise.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
+    for (auto const& bound : {channel.noise.lower, channel.noise.upper})
+      if (bound) noise.push_back(*bound);
+  }
+  std::vector<bool> const by_noise = parameters_below(model, model.graph, noise);
+  for (std::size_t p = 0; p < all.size(); ++p) all[p] = all[p] || by_noise[p];
+  return all;
+}
+
 std::vector<std::string> derived_from_noise(Model const& model) {
   std::vector<bool> const simulated = simulated_parameters(model);
   std::vector<std::string> names;

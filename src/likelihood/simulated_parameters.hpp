@@ -10,6 +10,9 @@ namespace sysid {
 /// Per parameter: whether states, their starts or the centre of a channel depend on it, or the prior of one that they depend on.
 std::vector<bool> simulated_parameters(Model const& model);
 
+/// Per parameter: whether a simulation or the noise of a channel depends on it. No sample says anything of the others.
+std::vector<bool> measured_parameters(Model const& model);
+
 /// Derived quantities that depend on a parameter that a simulation without noise does not read: it cannot say them.
 std::vector<std::string> derived_from_noise(Model const& model);
 

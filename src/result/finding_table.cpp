@@ -138,12 +138,14 @@ constexpr FindingRow rows[] = {
     {FindingCode::noise_overestimated, "noise_overestimated", note},
     {FindingCode::draws_not_bounded, "draws_not_bounded", warning},
     {FindingCode::free_run_lost, "free_run_lost", warning_or_note},
+    {FindingCode::parameter_changed, "parameter_changed", warning},
+    {FindingCode::innovation_size, "innovation_size", warning},
 };
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < std::size(rows); ++i)
     if (static_cast<std::size_t>(rows[i].code) != i) return false;
-  return rows[std::size(rows) - 1].code == FindingCode::free_run_lost;
+  return rows[std::size(rows) - 1].code == FindingCode::innovation_size;
 }
 static_assert(in_order(), "a row for every code, in the order of FindingCode");
 

@@ -137,6 +137,8 @@ enum class FindingCode {
   noise_overestimated,
   draws_not_bounded,
   free_run_lost,
+  parameter_changed,
+  innovation_size,
 };
 
 /// The severities that a finding may have; several where the size of what was found decides, or the task it was found in.

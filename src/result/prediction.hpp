@@ -23,11 +23,12 @@ struct VarianceParts {
 /// A channel, a state or a derived quantity along a record, declared unit.
 struct PredictedQuantity {
   std::string name, unit;
-  Band response;                 // of the model alone
-  Band noisy;                    // with measurement noise added to each draw; empty for what is not measured
-  std::vector<double> measured;  // [N], NaN where missing; empty for what is not measured
-  VarianceParts variance = {};   // of an average over models
-  bool average = false;          // at each sample the mean from there to the next
+  Band response;                    // of the model alone
+  Band noisy;                       // with measurement noise added to each draw; empty for what is not measured
+  std::vector<double> measured;     // [N], NaN where missing; empty for what is not measured
+  VarianceParts variance = {};      // of an average over models
+  bool average = false;             // at each sample the mean from there to the next
+  std::vector<double> alarms = {};  // times at which it was found to have changed, as in Prediction::time
 };
 
 /// What the record drives the model with, declared unit.

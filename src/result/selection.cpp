@@ -79,16 +79,47 @@ Draws resampled_draws(SelectedModel const& model, std::uint64_t seed) {
   return draws;
 }
 
+namespace {
+
+/// Without the columns of parameters that the model does not have.
+void drop_absent(SelectedModel const& model, Draws& draws, std::vector<Summary>& summary) {
+  for (std::size_t c = draws.names.size(); c-- > 0;) {
+    if (!model.is_absent(draws.names[c])) continue;
+    auto const at = static_cast<std::ptrdiff_t>(c);
+    draws.names.erase(draws.names.begin() + at);
+    draws.units.erase(draws.units.begin() + at);
+    if (at < draws.parameter_count) --draws.parameter_count;
+    for (Chain& chain : draws.chains)
+      for (std::vector<double>& values : chain.values) values.erase(values.begin() + at);
+  }
+  std::erase_if(summary, [&](Summary const& each) { return model.is_absent(each.name); });
+}
+
+}  // namespace
+
 Report leading_model(Report const& report) {
-  SelectedModel const& model = report.selection->result.models[static_cast<std::size_t>(report.selection->leader())];
+  SelectionReport const& selection = *report.selection;
+  auto const lead = static_cast<std::size_t>(selection.leader());
+  SelectedModel const& model = selection.result.models[lead];
   Report leading;
   leading.task = report.task;
   leading.model_name = model.name;
   leading.priors = report.priors;
   leading.data = report.data;
-  leading.draws = resampled_draws(model, report.selection->resampling_seed);
-  for (WeightedSummary const& s : model.summaries) leading.summary.push_back(as_summary(s, effective_particles(model.weight)));
+  if (selection.has_chains(lead)) {
+    leading.draws = selection.refined_draws[lead];
+    leading.summary = selection.refined[lead];
+  } else {
+    leading.draws = resampled_draws(model, selection.resampling_seed);
+    for (WeightedSummary const& s : model.summaries) leading.summary.push_back(as_summary(s, effective_particles(model.weight)));
+  }
+  drop_absent(model, leading.draws, leading.summary);
   return leading;
+}
+
+bool SelectionReport::has_chains(std::size_t model) const {
+  return model < refined_draws.size() && refined_draws[model].total() > 1 && model < refined.size() &&
+         refined[model].size() == refined_draws[model].names.size();
 }
 
 Summary as_summary(WeightedSummary const& s, double ess) {

@@ -1,5 +1,6 @@
 // What a selection among models found.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -74,6 +75,10 @@ struct SelectedModel {
   std::vector<double> weight, distance;  // weights sum to 1 within the model; of jumping chains no distance
   std::vector<double> log_density;       // of jumping chains alone: of prior times likelihood, on the sampler's coordinates
   std::vector<WeightedSummary> summaries;
+  /// Parameters that its statements name and its arguments take out: `k2` of duffing(quadratic = 0). They stay at their priors.
+  std::vector<std::string> absent = {};
+
+  bool is_absent(std::string const& parameter) const { return std::find(absent.begin(), absent.end(), parameter) != absent.end(); }
 };
 
 struct SelectionResult {
@@ -116,12 +121,15 @@ struct SelectionReport {
 
   /// The most probable model.
   int leader() const;
+  /// Whether chains on the likelihood have sampled a model's posterior.
+  bool has_chains(std::size_t model) const;
 };
 
 /// Particles resampled to equal weights as draws of one chain; declared units.
 Draws resampled_draws(SelectedModel const& model, std::uint64_t seed);
 
-/// The most probable model's particles, resampled, as a report of their own: what figures of draws read.
+/// The most probable model's draws as a report of their own, which figures read: those of chains on its likelihood where there are
+/// any, else its particles, resampled. Without what is absent from it.
 Report leading_model(Report const& report);
 
 /// Mean, sd, median and quantiles under weights that sum to 1; values and weights of one length. The sd is that of the weighted

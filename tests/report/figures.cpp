@@ -145,7 +145,7 @@ TEST_CASE("a long record is shown as a whole, too, with its largest residual; a 
   long_one.quantities = {of};
   REQUIRE(is_long(long_one, of));
   plot::Figure const whole = whole_figure(long_one, of);
-  CHECK(whole.caption.ends_with("The largest residual, -0.500 mm, is at 40.010 s."));
+  CHECK(whole.caption.ends_with("The largest residual, −0.500\u00a0mm, is at 40.010\u00a0s."));
   CHECK(whole.script.size() < 60000);
   report.predictions = {long_one};
   std::vector<std::string> const all = names(figures(report));
@@ -293,7 +293,7 @@ TEST_CASE("the value that data were made with is a line at its place, where all 
   CHECK(block(figure.script, "truth0")[0][0] == doctest::Approx(1.0001));
   CHECK(block(figure.script, "truth2").empty());  // nobody says
   CHECK(block(figure.script, "truth4").empty());  // far outside
-  CHECK(figure.caption.find("Generated with values outside the shown range: beta (9.000·10¹¹)") != std::string::npos);
+  CHECK(figure.caption.find("Generated with values outside the shown range: beta (9.000·10¹¹\u00a01/m²)") != std::string::npos);
   report.data.push_back(report.data[0]);
   report.data[1].true_parameters[0].value = 1.0002;
   CHECK(block(posterior_figure(report).script, "truth0").empty());

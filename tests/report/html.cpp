@@ -280,8 +280,8 @@ TEST_CASE("the table of modes has the names of what was searched, whatever else 
   std::size_t const title = page.find("Modes found by the global search over the prior");
   REQUIRE(title != std::string::npos);
   std::string const head = page.substr(title, page.find("<td", title) - title);
-  CHECK(head.find(">c<") < head.find(">k<"));
-  CHECK(head.find(">k<") != std::string::npos);
+  CHECK(head.find(">c <span") < head.find(">k <span"));
+  CHECK(head.find(">k <span class=\"unit\">N/m</span><") != std::string::npos);
   CHECK(head.find(">m<") == std::string::npos);
 }
 
@@ -354,7 +354,7 @@ TEST_CASE("names begin as they are written, words with a capital, and units have
                                      {}});
   CHECK(page.find("<span>Fitted to rig</span></caption>") != std::string::npos);
   CHECK(page.find("<span>acc on rig.test</span></caption>") != std::string::npos);
-  CHECK(page.find("sigma 0.1 m/s²") != std::string::npos);
+  CHECK(page.find("sigma\u00a00.1\u00a0m/s²") != std::string::npos);
   CHECK(page.find("base_acc [m/s²], linear") != std::string::npos);
   CHECK(page.find("m/s^2") == std::string::npos);
 }

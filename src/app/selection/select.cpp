@@ -216,6 +216,7 @@ class Select {
   SelectionReport begin_selection(SelectionResult result) const {
     SelectionReport selection;
     selection.result = std::move(result);
+    name_absent(candidates_, selection.result);
     selection.distance = what_.distance.text.empty() ? "nmse" : what_.distance.text;
     selection.likelihoods.resize(candidates_.size());
     selection.resampling_seed = seed_;

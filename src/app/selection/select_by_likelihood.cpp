@@ -132,6 +132,7 @@ class SelectByLikelihood {
   ExitCode finish(SelectionResult result) {
     SelectionReport selection;
     selection.result = std::move(result);
+    name_absent(candidates_, selection.result);
     selection.likelihoods.resize(candidates_.size());
     selection.resampling_seed = seed_;
     summarise_shared(session_, set_, candidates_, selection);

@@ -6,12 +6,15 @@
 #include <algorithm>
 
 #include "app/process/unknown_functions.hpp"
+#include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
 #include "app/session/resolved.hpp"
 #include "diagnostics/bands.hpp"
 #include "diagnostics/function_ranges.hpp"
+#include "experiment/true_parameters.hpp"
+#include "likelihood/simulated_parameters.hpp"
 #include "likelihood/trajectory.hpp"
 #include "mechanics/restoring_force.hpp"
 
@@ -20,7 +23,24 @@ namespace {
 
 void add(Findings const& more, Report& report) { report.findings.insert(report.findings.end(), more.begin(), more.end()); }
 
+/// What the head of the record says of the parameters of the leading model, which others need not have.
+void add_true_values(Candidate const& leading, Report& report) {
+  for (std::size_t e = 0; e < std::min(report.data.size(), leading.data.size()); ++e)
+    report.data[e].true_parameters =
+        true_values(leading.data[e].record.comments, leading.compiled->model, leading.data[e].use.name);
+}
+
 }  // namespace
+
+void name_absent(std::vector<Candidate> const& candidates, SelectionResult& result) {
+  for (std::size_t k = 0; k < std::min(candidates.size(), result.models.size()); ++k) {
+    std::vector<bool> const measured = measured_parameters(candidates[k].compiled->model);
+    for (int const r : candidates[k].space->sampled()) {
+      FittedParameter const& row = candidates[k].space->rows()[static_cast<std::size_t>(r)];
+      if (!measured[static_cast<std::size_t>(row.parameter)]) result.models[k].absent.push_back(row.name);
+    }
+  }
+}
 
 Report begin_selection_report(Session& session, Task const& task, SelectTask const& what, std::vector<Candidate> const& candidates,
                               SelectionReport const& selection, std::uint64_t seed) {
@@ -34,6 +54,10 @@ Report begin_selection_report(Session& session, Task const& task, SelectTask con
   report.priors = priors_of(*leading.space, report.priors);
   report.findings = selection.result.findings;
   for (ExperimentData const& each : first.data) add_data(session.file, each, first.compiled->model, report);
+  add_true_values(leading, report);
+  for (std::string& name : noise_parameters(*leading.space))
+    if (!selection.result.models[static_cast<std::size_t>(selection.leader())].is_absent(name))
+      report.noise.push_back(std::move(name));
   for (Candidate const& candidate : candidates)
     for (ExperimentData const& each : candidate.data) look_at_data(session.file, each, candidate.compiled->model, report.findings);
   return report;

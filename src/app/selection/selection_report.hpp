@@ -9,6 +9,9 @@
 
 namespace sysid {
 
+/// Names in each model the parameters that its arguments take out of it.
+void name_absent(std::vector<Candidate> const& candidates, SelectionResult& result);
+
 /// The leading model's report, with its priors, the record and what is to be said of that, and the findings of the back end.
 Report begin_selection_report(Session& session, Task const& task, SelectTask const& what, std::vector<Candidate> const& candidates,
                               SelectionReport const& selection, std::uint64_t seed);

@@ -19,6 +19,7 @@
 #include "report/file/stored_files.hpp"
 #include "report/file/task_folder.hpp"
 #include "report/page/terminal.hpp"
+#include "syntax/inserted.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 #include "typeset/fixed_values.hpp"
@@ -143,6 +144,14 @@ Report begin_report(Session const& session, Task const& task, int model_index, s
   auto const place = [](ast::ModelStatement const& statement) {
     return std::visit([](auto const& each) { return each.span; }, statement);
   };
+  // Of a model with arguments the one that ran, in their numbers; vectors written out are more than a reader can read.
+  bool const of_arguments =
+      written != nullptr && !written->arguments.empty() && flat->statements.size() <= written->statements.size();
+  if (of_arguments) {
+    for (ast::ModelStatement const& statement : flat->statements) add(without_idle_terms(statement));
+    report.priors = declared_priors(session, model_index);
+    return report;
+  }
   if (written != nullptr) std::for_each(written->statements.begin(), written->statements.end(), add);
   for (ast::ModelStatement const& statement : flat->statements)
     if (written == nullptr || !within(place(statement), flat->span)) add(statement);

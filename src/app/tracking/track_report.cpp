@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/session/made_from.hpp"
@@ -28,21 +29,30 @@ std::string changed(double before, double after) {
                      significant(100 * std::fabs(after / before - 1), 2));
 }
 
+/// "`k` fell by 10 % after row 2950, from 1.000 ± 0.004 to 0.902 ± 0.009 N/m".
+std::string change_words(GatheredTrack const& gathered, Alarm const& alarm) {
+  std::size_t const q = gathered.states + static_cast<std::size_t>(alarm.parameter);
+  double const scale = gathered.units.scales[q];
+  return fmt::format("`{}` {} after row {}, from {} to {}{}", gathered.units.names[q], changed(alarm.before, alarm.after),
+                     alarm.onset_row, with_sd(alarm.before / scale, alarm.before_sd / scale),
+                     with_sd(alarm.after / scale, alarm.after_sd / scale), unit_after_number(gathered.units.units[q]));
+}
+
 ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
   ReportTable table{
       "changes",
       fmt::format("Changes of parameters found from the innovations: |z| above {:.2f}, by the union bound at most {:g} false "
                   "alarms per row. After row: the last row before the change. Values with their sds.",
                   gathered.threshold, rate),
-      {"parameter", "unit", "alarm at row", "t [s]", "after row", "before", "now", "z", "or"},
+      {"parameter", "after row", "before", "now", "found at row", "t [s]", "z", "or"},
       {}};
   for (Alarm const& each : gathered.alarms) {
     std::size_t const q = gathered.states + static_cast<std::size_t>(each.parameter);
     double const scale = gathered.units.scales[q];
     table.rows.push_back(
-        {gathered.units.names[q], gathered.units.units[q], std::to_string(each.row), significant(each.time, 7),
-         std::to_string(each.onset_row), with_sd(each.before / scale, each.before_sd / scale),
-         with_sd(each.after / scale, each.after_sd / scale), fmt::format("{:.1f}", each.statistic),
+        {gathered.name(q), std::to_string(each.onset_row), with_sd(each.before / scale, each.before_sd / scale),
+         with_sd(each.after / scale, each.after_sd / scale), std::to_string(each.row), significant(each.time, 7),
+         fmt::format("{:.1f}", each.statistic),
          each.other < 0 || std::fabs(each.other_statistic) < std::fabs(each.statistic) - 2
              ? std::string()
              : fmt::format("{} (z = {:.1f})", gathered.units.names[gathered.states + static_cast<std::size_t>(each.other)],
@@ -53,12 +63,15 @@ ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
 
 ReportTable parameter_table(GatheredTrack const& gathered) {
   ReportTable table{"parameters",
-                    "After the settling rows and at the last row, with their sds.",
-                    {"parameter", "unit", fmt::format("from row {}", gathered.first_row), fmt::format("row {}", gathered.last_row)},
+                    gathered.settled
+                        ? "With their sds. The first rows settle the states; the parameters begin behind them as the fit has them."
+                        : "With their sds.",
+                    {"parameter", fmt::format("row {}", gathered.last_row),
+                     gathered.settled ? "from the fit" : fmt::format("row {}", gathered.first_row)},
                     {}};
   for (std::size_t q = gathered.states; q < gathered.states + gathered.tracked; ++q)
-    table.rows.push_back({gathered.units.names[q], gathered.units.units[q], with_sd(gathered.first_mean[q], gathered.first_sd[q]),
-                          with_sd(gathered.last_mean[q], gathered.last_sd[q])});
+    table.rows.push_back({gathered.name(q), with_sd(gathered.last_mean[q], gathered.last_sd[q]),
+                          with_sd(gathered.first_mean[q], gathered.first_sd[q])});
   return table;
 }
 
@@ -89,6 +102,35 @@ ReportTable innovation_table(GatheredTrack const& gathered) {
                              : "smaller than expected"}}};
 }
 
+void add_findings(GatheredTrack const& gathered, Report& report) {
+  constexpr std::size_t most_told = 3;
+  InnovationSize const size = innovation_size(gathered);
+  report.verdict = fmt::format("no change found in {} rows", gathered.rows);
+  if (std::size_t const changes = gathered.alarms.size(); changes > 0) {
+    report.verdict = fmt::format("{} found in {} rows", counted(changes, "change"), gathered.rows);
+    std::vector<std::string> told, names;
+    for (std::size_t i = 0; i < std::min(changes, most_told); ++i) told.push_back(change_words(gathered, gathered.alarms[i]));
+    for (Alarm const& each : gathered.alarms) {
+      std::string const& name = gathered.units.names[gathered.states + static_cast<std::size_t>(each.parameter)];
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    report.findings.push_back(
+        {FindingCode::parameter_changed, Severity::warning, std::move(names),
+         fmt::format("{}{}", fmt::join(told, "; "), changes > most_told ? fmt::format("; and {} more", changes - most_told) : ""),
+         "look for the cause at these rows; predict the rows that follow from a fit to rows behind the last change"});
+  }
+  if (!size.odd()) return;
+  report.verdict += fmt::format("; the innovations are {} than expected", size.ratio > 1 ? "larger" : "smaller");
+  report.findings.push_back(
+      {FindingCode::innovation_size,
+       Severity::warning,
+       {},
+       fmt::format("the rms of the innovations is {} times what is expected (z = {:.1f}): sds and the rate of false alarms are not "
+                   "as stated",
+                   significant(size.ratio, 4), size.z),
+       "add a disturbance to the model, or fit its noise to rows like these"});
+}
+
 }  // namespace
 
 GatheredTrack::GatheredTrack(TrackedFit const& fit, TrackedUnits of)
@@ -101,10 +143,19 @@ void GatheredTrack::add(TrackedRow const& row) {
   };
   if (rows == 0) first_row = row.row;
   if (rows == 0 || row.settling) first_mean = declared(row.mean), first_sd = declared(row.sd);
+  // What is reset behind the settling rows would look like a change in the figures.
+  if (settled && !row.settling && !past_settling) {
+    past_settling = true;
+    kept = 0, stride = 1;
+    time.clear();
+    for (std::size_t q = 0; q < mean.size(); ++q) mean[q].clear(), sd[q].clear();
+  }
+  settled = settled || row.settling;
+  ++rows;
   last_row = row.row;
   if (!row.settling) squared += row.squared, samples += row.samples;
   if (row.alarm != nullptr) alarms.push_back(*row.alarm);
-  if (rows++ % stride == 0) {
+  if (kept++ % stride == 0) {
     time.push_back(row.time);
     for (std::size_t q = 0; q < mean.size(); ++q) {
       mean[q].push_back(row.mean[q] / units.scales[q]);
@@ -129,12 +180,13 @@ void GatheredTrack::add(TrackedRow const& row) {
 }
 
 std::string GatheredTrack::alarm_line(Alarm const& alarm) const {
-  std::size_t const q = states + static_cast<std::size_t>(alarm.parameter);
-  double const scale = units.scales[q];
-  return fmt::format("row {} (t = {} s): `{}` {} after row {}, from {} to {}{} (z = {:.1f})", alarm.row, significant(alarm.time, 7),
-                     units.names[q], changed(alarm.before, alarm.after), alarm.onset_row,
-                     with_sd(alarm.before / scale, alarm.before_sd / scale), with_sd(alarm.after / scale, alarm.after_sd / scale),
-                     unit_after_number(units.units[q]), alarm.statistic);
+  return fmt::format("row {} (t = {} s): {} (z = {:.1f})", alarm.row, significant(alarm.time, 7), change_words(*this, alarm),
+                     alarm.statistic);
+}
+
+std::string GatheredTrack::name(std::size_t quantity) const {
+  std::string const& unit = units.units[quantity];
+  return units.names[quantity] + (unit.empty() || unit == "-" ? "" : fmt::format(" [{}]", unit));
 }
 
 Report track_head(Session const& session, TrackedFit const& fit) {
@@ -191,18 +243,15 @@ void fill_report(Session const& session, TrackedFit const& fit, GatheredTrack co
       quantity.response.lower.push_back(gathered.mean[q][i] - 1.96 * gathered.sd[q][i]);
       quantity.response.upper.push_back(gathered.mean[q][i] + 1.96 * gathered.sd[q][i]);
     }
+    for (Alarm const& each : gathered.alarms)
+      if (gathered.states + static_cast<std::size_t>(each.parameter) == q) quantity.alarms.push_back(each.time);
     along.quantities.push_back(std::move(quantity));
   }
   report.predictions.push_back(std::move(along));
   report.tables.push_back(parameter_table(gathered));
   if (!gathered.alarms.empty()) report.tables.push_back(alarm_table(gathered, fit.options.false_alarms));
   report.tables.push_back(innovation_table(gathered));
-  report.verdict = gathered.alarms.empty()
-                       ? fmt::format("no change found in {} rows", gathered.rows)
-                       : fmt::format("{} found in {} rows", counted(gathered.alarms.size(), "change"), gathered.rows);
-  if (innovation_size(gathered).odd())
-    report.verdict +=
-        fmt::format("; the innovations are {} than expected", innovation_size(gathered).ratio > 1 ? "larger" : "smaller");
+  add_findings(gathered, report);
 }
 
 }  // namespace sysid

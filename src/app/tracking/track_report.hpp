@@ -12,6 +12,8 @@ struct GatheredTrack {
   void add(TrackedRow const& row);
   /// "row 3001 (t = 30.0 s): `k` fell from 1.000 ± 0.004 to 0.902 ± 0.009 N/m after row 2950 (z = -11.2)"
   std::string alarm_line(Alarm const& alarm) const;
+  /// "k [N/m]", of a state or a tracked parameter.
+  std::string name(std::size_t quantity) const;
 
   TrackedUnits units;
   std::size_t states, tracked;
@@ -23,10 +25,12 @@ struct GatheredTrack {
   double squared = 0;  // of the rows that did not settle
   std::vector<Alarm> alarms;
   std::vector<double> first_mean, first_sd, last_mean, last_sd;  // [states + tracked], declared units
-  // Every `stride`th row.
+  bool settled = false;        // some rows settled the states: then the parameters begin behind them, as the fit has them
+  bool past_settling = false;  // and there are rows behind them
+  // Every `stride`th row, of those that did not settle where there are any.
   std::vector<double> time;
   std::vector<std::vector<double>> mean, sd;  // [states + tracked][rows]
-  std::int64_t stride = 1;
+  std::int64_t stride = 1, kept = 0;
 };
 
 Report track_head(Session const& session, TrackedFit const& fit);

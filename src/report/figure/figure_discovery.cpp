@@ -127,9 +127,11 @@ Figure coefficient_figure(DiscoveryReport const& discovery, std::size_t equation
     drawing.plots.push_back(coefficient_plot(*terms[i], i, multiples.panel(i, {14, 12, 46, 20})));
   Figure out{drawing.name, fmt::format("Coefficients of {}", discovery.equations[equation].target), "", script(drawing)};
   out.caption = fmt::format(
-      "Posterior densities of the coefficients in {} given exactly these terms; the darker part contains 90 %, the "
+      "Posterior densities of the coefficients in {} by regression, given exactly these terms; the inner part contains 90\u00a0%, "
+      "the "
       "numbers above are mean ± sd, in the unit of the axis.{}",
       discovery.equations[equation].target, multiples_excluded(terms.size()));
+  if (discovery.validation) out.caption += " The equation at the top of the page has the coefficients of the fit by simulation.";
   return out;
 }
 

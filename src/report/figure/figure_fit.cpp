@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/text/number.hpp"
 #include "report/figure/drawing.hpp"
@@ -67,12 +68,13 @@ struct Excerpt {
   double point_size() const { return time.size() > 100 ? 0.24 : 0.5; }
 };
 
-std::vector<Key> keys_of(Excerpt const& of) {
+std::vector<Key> keys_of(Excerpt const& of, bool alarms) {
   std::vector<Key> keys;
   if (of.has_data) keys.push_back({Key::points, data, "measured"});
   keys.push_back({Key::line, model, of.has_band ? "mean" : "model"});
   if (of.has_band) keys.push_back({Key::area, response_band, "95 % band"});
   if (of.has_noise) keys.push_back({Key::area, noise_band, "with noise"});
+  if (alarms) keys.push_back({Key::line, contrast, "change found"});
   return keys;
 }
 
@@ -108,6 +110,17 @@ Plot fit_plot(Excerpt const& of, Panel panel) {
   return out;
 }
 
+/// Upright lines where a change was found.
+void add_alarms(std::vector<double> const& alarms, double time_scale, Plot& plot) {
+  Panel const& panel = plot.panel;
+  for (std::size_t i = 0; i < alarms.size(); ++i) {
+    double const at = panel.x.scaled(alarms[i] / time_scale);
+    if (!(at >= panel.x.low && at <= panel.x.high)) continue;
+    plot.tables.push_back({fmt::format("alarm{}", i), {{at, panel.y.low}, {at, panel.y.high}}});
+    plot.series.push_back(line(plot.tables.back().name, 2, 1.2, contrast));
+  }
+}
+
 /// Measured minus mean, with the band about 0. The panel's ordinate is made here.
 Plot residual_plot(Excerpt const& of, std::string const& unit, Panel panel) {
   Rows rows;
@@ -130,18 +143,30 @@ Plot residual_plot(Excerpt const& of, std::string const& unit, Panel panel) {
            points("residual", 2, of.point_size(), data)}};
 }
 
-std::string caption_of_smoothed(PredictedQuantity const& quantity) {
+std::string caption_of_smoothed(PredictedQuantity const& quantity, std::string_view where) {
   return fmt::format(
-      "{} given all samples of the record, with its 95 % band, which includes the uncertainty of states and parameters{}.",
-      quantity.name, quantity.average ? "; at each sample the mean from there to the next" : "");
+      "{}{} given all samples of the record, with its 95 % band, which includes the uncertainty of states and parameters{}.",
+      quantity.name, where, quantity.average ? "; at each sample the mean from there to the next" : "");
 }
 
-std::string caption_of(Excerpt const& of, std::string const& name) {
-  if (!of.has_data)
-    return fmt::format("The prediction of {}, which is not measured{}.", name, of.has_band ? ", with its 95 % band" : "");
+/// "deflection" of "white(deflection)": what the model says of a channel without its Gaussian processes.
+std::optional<std::string> parametric_part(std::string const& name) {
+  constexpr std::string_view open = "white(";
+  if (!name.starts_with(open) || !name.ends_with(')')) return std::nullopt;
+  return name.substr(open.size(), name.size() - open.size() - 1);
+}
+
+std::string caption_of(Excerpt const& of, std::string const& name, std::string_view where) {
+  if (!of.has_data) {
+    std::string const band = of.has_band ? ", with its 95 % band" : "";
+    if (auto const channel = parametric_part(name))
+      return fmt::format("The parametric part of {}{}: what the model predicts with every Gaussian process at zero{}.", *channel,
+                         where, band);
+    return fmt::format("The prediction of {}{}, which is not measured{}.", name, where, band);
+  }
   return fmt::format(
-      "Measured and modelled {}. The residuals below should show no pattern; {}", name,
-      of.has_noise  ? "about 5 % lie outside the light band, which includes the noise; the darker band is that of the response."
+      "Measured and modelled {}{}. The residuals below should show no pattern; {}", name, where,
+      of.has_noise  ? "about 5\u00a0% lie outside the wide band, which includes the noise; the narrow band is that of the response."
       : of.has_band ? "the band is that of the response, without noise."
                     : "a single trajectory has no band.");
 }
@@ -170,10 +195,11 @@ std::string samples_excluded(Prediction const& prediction, Window w) {
 
 namespace {
 
-Figure along_record(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view kind) {
+Figure along_record(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view kind,
+                    std::string_view where) {
   Window const w = window(prediction);
   Excerpt const of(prediction, quantity, w);
-  Legend legend{keys_of(of)};
+  Legend legend{keys_of(of, !quantity.alarms.empty())};
   legend.after_first_panel = true;
   int const left = 70, right = column_width - 14, legend_rows = legend.height();
   Drawing drawing{figure_name(kind, prediction, quantity), column_width, (of.has_data ? 330 : 200) + legend_rows,
@@ -184,27 +210,31 @@ Figure along_record(Prediction const& prediction, PredictedQuantity const& quant
   Panel top = panel_at(left, right, of.has_data ? 146.0 : 44.0, drawing.height - 12.0 - legend_rows, x, value_axis(of));
   top.x_numbers = !of.has_data;
   if (top.x_numbers) top.x_label = time_label(prediction, x);
-  top.y_label = axis_label(quantity.name, quantity.unit, top.y);
+  auto const part = parametric_part(quantity.name);
+  top.y_label = axis_label(part ? *part + ", parametric" : quantity.name, quantity.unit, top.y);
   std::string const thin = thin_band(of, quantity.unit, top);
   drawing.plots.push_back(fit_plot(of, std::move(top)));
+  add_alarms(quantity.alarms, prediction.rows ? 1 : prediction.time_scale, drawing.plots.back());
   if (of.has_data) {
     Panel below = panel_at(left, right, 44, 128, x, {});
     below.x_label = time_label(prediction, x);
     drawing.plots.push_back(residual_plot(of, quantity.unit, std::move(below)));
   }
-  std::string const caption = prediction.smoothed ? caption_of_smoothed(quantity) : caption_of(of, quantity.name);
-  return {drawing.name, fmt::format("{}{} on {}", quantity.name, prediction.smoothed ? ", smoothed," : "", prediction.experiment),
+  std::string const caption = prediction.smoothed ? caption_of_smoothed(quantity, where) : caption_of(of, quantity.name, where);
+  return {drawing.name,
+          fmt::format("{}{} on {}", part ? "parametric part of " + *part : quantity.name, prediction.smoothed ? ", smoothed," : "",
+                      prediction.experiment),
           caption + thin + samples_excluded(prediction, w), script(drawing), prediction.smoothed ? Topic::states : Topic::fit};
 }
 
 }  // namespace
 
-Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
-  return along_record(prediction, quantity, prediction.smoothed ? "smoothed" : !quantity.measured.empty() ? "fit" : "state");
+Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view where) {
+  return along_record(prediction, quantity, prediction.smoothed ? "smoothed" : !quantity.measured.empty() ? "fit" : "state", where);
 }
 
 Figure free_run_figure(Prediction const& run, PredictedQuantity const& quantity) {
-  Figure figure = along_record(run, quantity, "free_run");
+  Figure figure = along_record(run, quantity, "free_run", {});
   auto const start = std::find(run.scored.begin(), run.scored.end(), 1) - run.scored.begin();
   std::vector<double> const& mean = quantity.response.mean;
   std::string caption = fmt::format(

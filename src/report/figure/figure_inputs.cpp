@@ -70,7 +70,7 @@ Axis value_axis(PredictedQuantity const& quantity, Style const& style) {
 
 std::vector<Key> keys_of(Style const& style) {
   auto const [curve, has_noise, has_band] = style;
-  std::vector<Key> keys = {{Key::points, data, "measured"}, {curve ? Key::line : Key::points, model, has_band ? "mean" : "model"}};
+  std::vector<Key> keys = {{Key::points, data, "measured"}, {curve ? Key::line : Key::circles, model, has_band ? "mean" : "model"}};
   if (curve && has_band) keys.push_back({Key::area, response_band, "95 % band"});
   if (has_noise) keys.push_back({Key::area, noise_band, curve && has_band ? "with noise" : "95 % with noise"});
   if (!curve && has_band && !has_noise) keys.push_back({Key::area, response_band, "95 % band"});
@@ -97,12 +97,12 @@ std::vector<Series> series_of(Style const& style, std::string const& table) {
   if (!style.curve && style.has_band)
     out.push_back(style.has_noise ? upright_bars(table, 5, 6, noise_band) : upright_bars(table, 3, 4, response_band));
   out.push_back(points(table, 7, 0.3, data));
-  out.push_back(style.curve ? line(table, 2, 1.6, model) : points(table, 2, 0.22, model));
+  out.push_back(style.curve ? line(table, 2, 1.6, model) : circles(table, 2, 0.5, model));
   return out;
 }
 
-std::string caption_of(Style const& style, std::string const& quantity, std::string const& over) {
-  std::string out = fmt::format("Measured and modelled {} over {}{}.", quantity, over,
+std::string caption_of(Style const& style, std::string const& quantity, std::string_view where, std::string const& over) {
+  std::string out = fmt::format("Measured and modelled {}{} over {}{}.", quantity, where, over,
                                 style.has_noise  ? ", with the band that should contain 95 % of the measurements"
                                 : style.has_band ? ", with the 95 % band of the response"
                                                  : "");
@@ -117,7 +117,7 @@ bool over_inputs(Prediction const& prediction, PredictedQuantity const& quantity
          prediction.time.size() > 2 && !varying(prediction).empty();
 }
 
-Figure input_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
+Figure input_figure(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view where) {
   std::vector<PredictedInput const*> inputs = varying(prediction);
   std::size_t const all = inputs.size();
   inputs.resize(std::min(all, shown_inputs));
@@ -142,7 +142,7 @@ Figure input_figure(Prediction const& prediction, PredictedQuantity const& quant
     drawing.plots.push_back({std::move(p), {{table, std::move(rows)}}, series_of(style, table)});
   }
   Figure out{drawing.name, fmt::format("{} over the input{}", quantity.name, all == 1 ? "" : "s"),
-             caption_of(style, quantity.name, all == 1 ? inputs[0]->name : "each input"), script(drawing), Topic::fit};
+             caption_of(style, quantity.name, where, all == 1 ? inputs[0]->name : "each input"), script(drawing), Topic::fit};
   if (shown.stride > 1) out.caption += fmt::format(" One row in {} is shown.", shown.stride);
   if (all > inputs.size()) out.caption += fmt::format(" Shown are the first {} of {} inputs.", inputs.size(), all);
   return out;

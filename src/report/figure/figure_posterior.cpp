@@ -13,6 +13,7 @@
 #include "report/figure/figures.hpp"
 #include "report/figure/marginal.hpp"
 #include "report/figure/small_multiples.hpp"
+#include "report/text/report_text.hpp"
 #include "report/text/summary_text.hpp"
 
 namespace sysid {
@@ -174,14 +175,16 @@ std::vector<Key> keys_of(Kinds const& kinds) {
 }
 
 /// far: parameters whose truth lies outside what is shown; cut: parameters whose tails are not shown.
-std::string caption_of(Kinds const& kinds, std::string const& far, std::string const& cut, std::size_t parameters) {
-  std::string out =
-      "Marginal posteriors, as a histogram of the draws and as a smooth density; the darker part contains 90 %, the numbers "
+std::string caption_of(Kinds const& kinds, std::string const& far, std::string const& cut, std::size_t parameters, bool particles) {
+  std::string out = particles ? "Marginals of the particles" : "Marginal posteriors";
+  out +=
+      ", as a histogram of the draws and as a smooth density; the inner part contains 90\u00a0%, the numbers "
       "above are mean ± sd, in the unit of the axis.";
   if (kinds.prior)
-    out +=
-        " Dashed: the prior density. Where the posterior equals the prior, the data contain no information; where it ends at an "
-        "edge, it is truncated by the prior.";
+    out += particles
+               ? " Dashed: the prior density."
+               : " Dashed: the prior density. Where the posterior equals the prior, the data contain no information; where it "
+                 "ends at an edge, it is truncated by the prior.";
   if (kinds.true_value) out += " The vertical line is the value with which the data were generated.";
   if (!far.empty()) out += fmt::format(" Generated with values outside the shown range: {}.", far);
   if (!cut.empty()) out += fmt::format(" Of {} the central 98 % are shown: the tails extend much further.", cut);
@@ -191,7 +194,7 @@ std::string caption_of(Kinds const& kinds, std::string const& far, std::string c
 
 }  // namespace
 
-Figure posterior_figure(Report const& report) {
+Figure posterior_figure(Report const& report, bool particles) {
   // Coefficients of unknown functions have a figure of their function.
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < report.summary.size(); ++c)
@@ -213,10 +216,10 @@ Figure posterior_figure(Report const& report) {
     drawing.plots.push_back(marginal_plot(of, i, at, kinds));
     if (of.tails_cut()) add_name(cut, of.summary.name);
     if (of.true_value && !of.true_value_is_near)
-      add_name(far, fmt::format("{} ({})", of.summary.name, pretty_number(significant(*of.true_value, 4))));
+      add_name(far, fmt::format("{} ({})", of.summary.name, quantity_text(*of.true_value, 4, of.summary.unit)));
   }
   drawing.legend = Legend{keys_of(kinds), 12, 9};
-  return {"posterior", "Posterior and prior", caption_of(kinds, far, cut, columns.size()), script(drawing)};
+  return {"posterior", "Posterior and prior", caption_of(kinds, far, cut, columns.size(), particles), script(drawing)};
 }
 
 }  // namespace sysid

@@ -94,7 +94,7 @@ bool has_residuals(Prediction const& prediction, PredictedQuantity const& quanti
   return number_of(residuals) >= least_residuals && !whiteness(residuals, 1).correlation.empty();
 }
 
-Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
+Figure residual_figure(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view where) {
   std::vector<double> const residuals = residuals_of(prediction, quantity);
   Correlations const own{whiteness(residuals, most_lags), "autocorrelation", "acf"};
   int const lags = static_cast<int>(own.test.correlation.size());
@@ -115,9 +115,9 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
   for (Correlations const& shown : crossed.shown) add(shown, &shown == &crossed.shown.back(), contrast);
   Figure out{drawing.name, fmt::format("Correlations of the residuals of {}", quantity.name), "", script(drawing), Topic::fit};
   out.caption = fmt::format(
-      "Autocorrelation of the residuals of {}{}. For white residuals 99 % of the values lie inside the band; a pattern shows "
+      "Autocorrelation of the residuals of {}{}{}. For white residuals 99 % of the values lie inside the band; a pattern shows "
       "dynamics that the model lacks.",
-      quantity.name, crossed.shown.empty() ? "" : ", and below it their correlation with past values of the input");
+      quantity.name, where, crossed.shown.empty() ? "" : ", and below it their correlation with past values of the input");
   if (quantity.response.draws != 1)
     out.caption +=
         " Residuals are measured minus mean prediction of the draws; the checks of a fit use those of its best mode, divided by "

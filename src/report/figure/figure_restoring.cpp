@@ -85,11 +85,12 @@ void add_loops(Plot& plot, RestoringForce const& force, Abscissa const& over, st
   if (!of_data.rows.empty()) plot.tables.push_back(std::move(of_data));
 }
 
-std::string loop_caption(RestoringForce const& force) {
+std::string loop_caption(RestoringForce const& force, std::string_view where) {
   return fmt::format(
-      "Restoring force on {} along the record: {}. A line or a curve over the displacement shows a spring, a slope over the "
+      "Restoring force on {} along the record{}: {}. A line or a curve over the displacement shows a spring, a slope over the "
       "velocity a damper; loops that remain open in slow motion show hysteresis.{}",
-      force.displacement, force.per_mass ? "minus the acceleration" : "the input minus the inertia force, in the unit of the input",
+      force.displacement, where,
+      force.per_mass ? "minus the acceleration" : "the input minus the inertia force, in the unit of the input",
       where_data_come_from(force));
 }
 
@@ -117,7 +118,7 @@ Rows points_of(RestoringForce::Path const& path, Axis const& x, Axis const& y, A
 
 }  // namespace
 
-Figure loop_figure(RestoringForce const& force) {
+Figure loop_figure(RestoringForce const& force, std::string_view where) {
   auto const [first, last] = window(force.model);
   bool const whole = last - first == force.model.force.size();
   Legend legend{{{Key::line, model, whole ? "model" : "model around the largest displacement"}}};
@@ -139,13 +140,13 @@ Figure loop_figure(RestoringForce const& force) {
     add_loops(plot, force, over, first, last);
     drawing.plots.push_back(std::move(plot));
   }
-  Figure out{drawing.name, fmt::format("Restoring force of {} on {}", force.displacement, force.experiment), loop_caption(force),
-             script(drawing), Topic::fit};
+  Figure out{drawing.name, fmt::format("Restoring force of {} on {}", force.displacement, force.experiment),
+             loop_caption(force, where), script(drawing), Topic::fit};
   if (!whole) out.caption += fmt::format(" Shown of the model are {} samples around the largest displacement.", last - first);
   return out;
 }
 
-Figure surface_figure(RestoringForce const& force) {
+Figure surface_figure(RestoringForce const& force, std::string_view where) {
   std::vector<double> values;
   for (auto const& row : force.surface) values.insert(values.end(), row.begin(), row.end());
   auto const [low, high] = finite_range(values);
@@ -166,9 +167,9 @@ Figure surface_figure(RestoringForce const& force) {
   Figure out{surface.name, fmt::format("Restoring-force surface of {} on {}", force.displacement, force.experiment), "",
              script(surface), Topic::fit};
   out.caption = fmt::format(
-      "The restoring force of the model over the displacement and velocity reached in the record. Without points nearby it is "
+      "The restoring force of the model over the displacement and velocity reached in the record{}. Without points nearby it is "
       "extrapolated by the model.{}",
-      has_data ? where_data_come_from(force) : where_data_come_from(force) + " Points: trajectory of the model.");
+      where, has_data ? where_data_come_from(force) : where_data_come_from(force) + " Points: trajectory of the model.");
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "core/text/number.hpp"
 #include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
+#include "report/text/report_text.hpp"
 
 namespace sysid {
 
@@ -85,7 +86,7 @@ bool is_long(Prediction const& prediction, PredictedQuantity const& quantity) {
          std::any_of(quantity.measured.begin(), quantity.measured.end(), [](double each) { return std::isfinite(each); });
 }
 
-Figure whole_figure(Prediction const& prediction, PredictedQuantity const& quantity) {
+Figure whole_figure(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view where) {
   Whole const whole(prediction, quantity);
   bool const noisy = !quantity.noisy.lower.empty();
   Legend legend{{{Key::area, muted, "measured"}, {Key::line, model, "model"}}};
@@ -116,11 +117,10 @@ Figure whole_figure(Prediction const& prediction, PredictedQuantity const& quant
   drawing.plots.push_back({std::move(below), {{"residuals", std::move(residuals)}}, std::move(series)});
   return {
       drawing.name, fmt::format("{} on {}, the whole record", quantity.name, prediction.experiment),
-      fmt::format("The whole record of {}: in each of {} stretches the range of what is measured and, between the lines, that of "
+      fmt::format("The whole record of {}{}: in each of {} stretches the range of what is measured and, between the lines, that of "
                   "the model; below, the range of the residuals. The largest residual, {}, is at {}.",
-                  quantity.name, whole.stretches.size(),
-                  significant(whole.worst, 3) + (quantity.unit.empty() ? "" : " " + quantity.unit),
-                  significant(whole.worst_time, 5) + (prediction.time_unit.empty() ? "" : " " + prediction.time_unit)),
+                  quantity.name, where, whole.stretches.size(), quantity_text(whole.worst, 3, quantity.unit),
+                  quantity_text(whole.worst_time, 5, prediction.time_unit)),
       script(drawing), Topic::fit};
 }
 

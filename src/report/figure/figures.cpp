@@ -53,6 +53,8 @@ bool shows_something(PredictedQuantity const& quantity) {
 
 std::vector<Figure> figures(Report const& report) {
   std::vector<Figure> out;
+  bool const several = report.predictions.size() > 1;
+  auto const where = [&](std::string const& experiment) { return several ? " on " + experiment : std::string(); };
   if (report.selection)
     out.push_back(report.selection->result.jumps ? model_figure(*report.selection) : population_figure(*report.selection));
   if (report.calibration && report.calibration->with_draws() > 0) {
@@ -69,21 +71,24 @@ std::vector<Figure> figures(Report const& report) {
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (shows_something(quantity) && prediction.time.size() > 1 && !repeats_a_channel(prediction, quantity)) {
-        out.push_back(fit_figure(prediction, quantity));
-        if (is_long(prediction, quantity)) out.push_back(whole_figure(prediction, quantity));
+        out.push_back(fit_figure(prediction, quantity, where(prediction.experiment)));
+        if (is_long(prediction, quantity)) out.push_back(whole_figure(prediction, quantity, where(prediction.experiment)));
         if (report.verb == "track")
-          out.back().caption = fmt::format("The parameter {} along the rows that were tracked, with its 95 % band.", quantity.name);
+          out.back().caption =
+              fmt::format("The parameter {} along the rows that were tracked, with its 95 % band.{}", quantity.name,
+                          quantity.alarms.empty() ? "" : " Upright lines: rows at which a change was found.");
       }
   for (Prediction const& states : report.states)
     for (PredictedQuantity const& quantity : states.quantities)
-      if (shows_something(quantity) && states.time.size() > 1) out.push_back(fit_figure(states, quantity));
+      if (shows_something(quantity) && states.time.size() > 1)
+        out.push_back(fit_figure(states, quantity, where(states.experiment)));
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
-      if (over_inputs(prediction, quantity)) out.push_back(input_figure(prediction, quantity));
+      if (over_inputs(prediction, quantity)) out.push_back(input_figure(prediction, quantity, where(prediction.experiment)));
   for (FunctionReport const& function : report.functions) out.push_back(function_figure(function));
   for (RestoringForce const& force : report.forces) {
-    out.push_back(loop_figure(force));
-    if (!force.surface.empty()) out.push_back(surface_figure(force));
+    out.push_back(loop_figure(force, where(force.experiment)));
+    if (!force.surface.empty()) out.push_back(surface_figure(force, where(force.experiment)));
   }
   if (std::size_t const records = records_of(report.forces); records > 0 && records < report.predictions.size())
     out.back().caption += fmt::format(" Restoring forces are shown along {} of {} records.", records, report.predictions.size());
@@ -94,8 +99,18 @@ std::vector<Figure> figures(Report const& report) {
     }
   if (report.selection) {
     Report const leading = leading_model(report);
-    if (leading.draws.total() > 1 && !leading.draws.names.empty()) out.push_back(posterior_figure(leading));
-    if (leading.draws.total() > 1 && leading.draws.names.size() > 1) out.push_back(pair_figure(leading.draws));
+    bool const particles =
+        !report.selection->result.jumps && !report.selection->has_chains(static_cast<std::size_t>(report.selection->leader()));
+    auto const add = [&](Figure figure) {
+      if (particles)
+        figure.caption +=
+            " These are the particles of the last population: how far they spread depends on the threshold, and is not the spread "
+            "of "
+            "the posterior.";
+      out.push_back(std::move(figure));
+    };
+    if (leading.draws.total() > 1 && !leading.draws.names.empty()) add(posterior_figure(leading, particles));
+    if (leading.draws.total() > 1 && leading.draws.names.size() > 1) add(pair_figure(leading.draws));
   }
   bool const has_draws = !report.draws.names.empty() && report.draws.total() > 1;
   if (has_draws && report.summary.size() == report.draws.names.size()) out.push_back(posterior_figure(report));
@@ -105,7 +120,7 @@ std::vector<Figure> figures(Report const& report) {
   if (has_draws && report.draws.chains.size() > 1) out.push_back(rank_figure(report.draws));
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
-      if (has_residuals(prediction, quantity)) out.push_back(residual_figure(prediction, quantity));
+      if (has_residuals(prediction, quantity)) out.push_back(residual_figure(prediction, quantity, where(prediction.experiment)));
   return out;
 }
 

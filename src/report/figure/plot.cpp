@@ -170,7 +170,9 @@ std::string legend(std::vector<Key> const& keys, double left, double right, doub
                              key.kind == Key::dashes ? "(6,4)" : "1", key.colour);
           break;
         case Key::points:
-          out += fmt::format("set label {} '' at {} point pt 7 ps 0.4 lc rgb '{}'\n", tag + 100, at(x + sample / 2, y), key.colour);
+        case Key::circles:
+          out += fmt::format("set label {} '' at {} point pt {} ps {} lc rgb '{}'\n", tag + 100, at(x + sample / 2, y),
+                             key.kind == Key::points ? 7 : 6, key.kind == Key::points ? 0.4 : 0.55, key.colour);
           break;
       }
       out += fmt::format("set label {} {} at {} left textcolor rgb '{}'\n", tag, quote(key.text), at(x + sample + gap, y), ink);

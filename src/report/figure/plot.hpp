@@ -103,7 +103,7 @@ std::string panel(Panel const& panel, int width, int height);
 /// What a colour stands for, in as many rows as are needed between `left` and `right`; gnuplot's own key breaks rows at its own
 /// discretion. It is drawn with the next plot; `end_legend` keeps it out of those that follow.
 struct Key {
-  enum Kind { area, line, points, dashes } kind;
+  enum Kind { area, line, points, circles, dashes } kind;
   std::string_view colour;
   std::string text;
 };

@@ -33,6 +33,10 @@ Series points(std::string_view table, int column, double size, std::string_view 
   return of(table, column_after_first(column), fmt::format("points pt 7 ps {} lc rgb '{}'", size, colour));
 }
 
+Series circles(std::string_view table, int column, double size, std::string_view colour) {
+  return of(table, column_after_first(column), fmt::format("points pt 6 ps {} lc rgb '{}'", size, colour));
+}
+
 Series linked_points(std::string_view table, std::string_view colour) {
   return of(table, column_after_first(2), fmt::format("linespoints lw 1.6 pt 7 ps 0.4 lc rgb '{}'", colour));
 }

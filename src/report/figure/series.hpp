@@ -27,6 +27,8 @@ Series dashed_line(std::string_view table, double width, std::string_view colour
 /// A line in the colour of the chain or model of this index.
 Series indexed_line(std::string_view table, double width, std::size_t index);
 Series points(std::string_view table, int column, double size, std::string_view colour);
+/// Open ones, which can be told from dots of another colour in every light.
+Series circles(std::string_view table, int column, double size, std::string_view colour);
 Series linked_points(std::string_view table, std::string_view colour);
 /// Column `2 + index`, in the colour of the chain or model of this index.
 Series indexed_linked_points(std::string_view table, std::size_t index);

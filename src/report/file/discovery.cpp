@@ -39,6 +39,10 @@ ReportTable term_table(DiscoveryReport const& discovery, DiscoveredEquation cons
       "form both are weighted integrals.",
       {"term", "", "coefficient", "sd", "unit", discovery.measure, "contribution"},
       {}};
+  if (discovery.validation)
+    table.caption +=
+        " The coefficients are those of the regression; the equation at the top has those of the fit by simulation, whose "
+        "table stands below.";
   if (discovery.measure == "contribution") table.header.pop_back();
   for (DiscoveredTerm const& term : equation.terms) {
     auto const [value, sd] = coefficient_text(term.coefficient, term.sd);

@@ -185,10 +185,12 @@ void to_json(json& out, PredictedQuantity const& quantity) {
   if (VarianceParts const& parts = quantity.variance; !parts.parameter.empty())
     out["variance"] = {parts.parameter.size(), parts.model.size(), parts.noise.size()};
   if (quantity.average) out["average"] = true;
+  if (!quantity.alarms.empty()) out["alarms"] = quantity.alarms;
 }
 void from_json(json const& stored, PredictedQuantity& quantity) {
   quantity_members(Reader(stored), quantity);
   quantity.average = stored.value("average", false);
+  quantity.alarms = stored.value("alarms", std::vector<double>());
   if (!stored.contains("variance")) return;
   quantity.variance.parameter = column_of(stored.at("variance").at(0));
   quantity.variance.model = column_of(stored.at("variance").at(1));
@@ -234,9 +236,13 @@ void candidate_members(Way way, Candidate& model) {
   way("died_in", model.died_in)("by_chance", model.by_chance)("parameters", model.parameters)("summaries", model.summaries);
   way.length("particles", model.weight);
 }
-void to_json(json& out, SelectedModel const& model) { candidate_members(Writer(out), model); }
+void to_json(json& out, SelectedModel const& model) {
+  candidate_members(Writer(out), model);
+  if (!model.absent.empty()) out["absent"] = model.absent;
+}
 void from_json(json const& stored, SelectedModel& model) {
   candidate_members(Reader(stored), model);
+  model.absent = stored.value("absent", std::vector<std::string>());
   model.distance = model.weight;
   model.declared = LaneArray(static_cast<int>(model.parameters.size()), static_cast<int>(model.weight.size()));
 }

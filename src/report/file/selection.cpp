@@ -10,6 +10,7 @@
 
 #include "core/numeric/random.hpp"
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "report/file/csv.hpp"
 #include "report/file/task_folder.hpp"
 #include "report/text/summary_text.hpp"
@@ -114,10 +115,14 @@ ReportTable parameter_table(SelectionReport const& selection, std::size_t m) {
       {"", "unit", "mean", "sd", "q5", "median", "q95"},
       {}};
   if (refined) table.header.push_back("from");
+  if (!model.absent.empty())
+    table.caption +=
+        fmt::format("{}Not in this model, so left at their priors: {}.", table.caption.empty() ? "" : "\n", listed(model.absent));
   for (WeightedSummary const& s : model.summaries)
-    add_row(table, as_summary(s, effective_particles(model.weight)), refined ? "particles" : "");
+    if (!model.is_absent(s.name)) add_row(table, as_summary(s, effective_particles(model.weight)), refined ? "particles" : "");
   if (refined)
-    for (Summary const& s : selection.refined[m]) add_row(table, s, "likelihood");
+    for (Summary const& s : selection.refined[m])
+      if (!model.is_absent(s.name)) add_row(table, s, "likelihood");
   return table;
 }
 
@@ -133,6 +138,7 @@ ReportTable shared_table(SelectionReport const& selection) {
                     "Averaged over the models that have them, weighted by the probabilities of the models.",
                     {"", "unit", "mean", "sd", "q5", "median", "q95"},
                     {}};
+  if (!selection.result.jumps) table.caption += " These are averages of particles, whose spread depends on the threshold.";
   for (WeightedSummary const& s : selection.shared) add_row(table, as_summary(s, effective_of(selection.result)), "");
   return table;
 }

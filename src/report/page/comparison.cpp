@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 
 #include "core/text/number.hpp"
@@ -29,17 +31,33 @@ std::string with_error(double value, std::optional<double> error, int decimals) 
   return text;
 }
 
+/// Three decimals, of which none reads as certain.
+std::string model_probability(double p, std::optional<double> error) {
+  if (p < 0.0005) return "< 0.001";
+  return p >= 0.9995 ? "> 0.999" : with_error(p, error, 3);
+}
+
+/// Places of the fits, the best first; those without an evidence last, in their order.
+std::vector<std::size_t> best_first(std::vector<ComparedFit> const& fits) {
+  std::vector<std::size_t> order(fits.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  auto const evidence = [&](std::size_t f) { return fits[f].log_evidence.value_or(-std::numeric_limits<double>::infinity()); };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return evidence(a) > evidence(b); });
+  return order;
+}
+
 ReportTable fits_table(Comparison const& comparison) {
   ReportTable table;
   table.title = fmt::format("fitted to {}; probabilities of the models for equal prior probabilities", comparison.data);
   table.header = {"fit",         "model", "noise", "parameters", "log evidence", "log Bayes factor", "evidence against",
                   "probability", "checks"};
-  for (ComparedFit const& fit : comparison.fits) {
+  for (std::size_t const f : best_first(comparison.fits)) {
+    ComparedFit const& fit = comparison.fits[f];
     table.rows.push_back({fit.name, fit.model, fit.noise, std::to_string(fit.parameters),
                           fit.log_evidence ? evidence_number(*fit.log_evidence, fit.error) : "-",
                           fit.log_bayes_factor ? with_error(*fit.log_bayes_factor, fit.bayes_factor_error, 1) : "-",
                           fit.strength.empty() ? "-" : fit.strength,
-                          fit.probability ? with_error(*fit.probability, fit.probability_error, 3) : "-",
+                          fit.probability ? model_probability(*fit.probability, fit.probability_error) : "-",
                           checks_text(fit.pass, fit.warnings)});
     std::string note;
     if (!fit.log_evidence) note = fmt::format("{} has no evidence: {}", fit.name, fit.without);

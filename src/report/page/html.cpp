@@ -19,7 +19,17 @@ namespace sysid {
 
 namespace {
 
+/// "bouc_wen(n = 2), linear"; of many models their number.
+std::string candidates_title(SelectionReport const& selection) {
+  constexpr std::size_t most = 60;
+  std::vector<std::string> names;
+  for (SelectedModel const& each : selection.result.models) names.push_back(each.name);
+  std::string const all = listed(names, "or");
+  return all.size() <= most ? capitalised(all) : fmt::format("Selection among {} models", names.size());
+}
+
 std::string title_of(Report const& report) {
+  if (report.selection && report.selection->result.models.size() > 1) return candidates_title(*report.selection);
   for (std::string const* each : {&report.model_title, &report.model_name, &report.task})
     if (!each->empty()) return *each;
   return "Report";
@@ -51,6 +61,24 @@ std::string all(std::vector<HtmlSection> const& sections, int level) {
 /// "A run of 5 tasks".
 std::string run_title(std::size_t tasks) { return "A run of " + counted(tasks, "task"); }
 
+/// The columns of a table of fits as a narrow screen needs them: what decides stands first.
+ReportTable answer_first(ReportTable table) {
+  std::size_t place = 1;
+  for (std::string_view const column : {"probability", "log Bayes factor", "evidence against", "log evidence", "checks"}) {
+    auto const at = static_cast<std::size_t>(std::find(table.header.begin(), table.header.end(), column) - table.header.begin());
+    if (at == table.header.size()) continue;
+    auto const move = [&](std::vector<std::string>& row) {
+      if (at < row.size())
+        std::rotate(row.begin() + static_cast<std::ptrdiff_t>(place), row.begin() + static_cast<std::ptrdiff_t>(at),
+                    row.begin() + static_cast<std::ptrdiff_t>(at) + 1);
+    };
+    move(table.header);
+    for (auto& row : table.rows) move(row);
+    ++place;
+  }
+  return table;
+}
+
 /// The models and predictions of a run side by side; empty where none can be compared.
 std::string together(RunReport const& run) {
   std::string out;
@@ -59,14 +87,16 @@ std::string together(RunReport const& run) {
     bool const fits = table.header.front() == "fit",
                scores = fits && std::find(table.header.begin(), table.header.end(), "elpd") != table.header.end();
     evidences = evidences || (fits && !scores);
-    out += table_html(table, fits && !scores ? 3 : 2, fits ? TitleBegins::with_a_word : TitleBegins::with_a_name);
+    bool const models = fits && !scores;
+    out += table_html(models ? answer_first(table) : table, models ? 1 : 2,
+                      fits ? TitleBegins::with_a_word : TitleBegins::with_a_name);
   }
   if (evidences || !run.apart.empty())
-    out += paragraph(
-        run.apart + (!evidences ? ""
-                                : "Log Bayes factors are relative to the best fit; a difference of 5 is strong. Evidences are "
-                                  "densities of the samples, so only fits to the same samples are compared."),
-        "note");
+    out += paragraph(run.apart + (!evidences ? ""
+                                             : "Log Bayes factors are relative to the best fit; a difference above 3 is strong, "
+                                               "above 5 very strong. Evidences are "
+                                               "densities of the samples, so only fits to the same samples are compared."),
+                     "note");
   return out;
 }
 

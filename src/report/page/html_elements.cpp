@@ -12,6 +12,7 @@
 #include "core/text/utf8.hpp"
 #include "core/text/xml.hpp"
 #include "report/figure/gnuplot.hpp"
+#include "report/text/report_text.hpp"
 
 namespace sysid {
 
@@ -135,7 +136,10 @@ std::string number_html(std::string const& text) {
   double value = 0;
   auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   bool const number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-  return number ? pretty_number(text) : escape(text);
+  if (number) return pretty_number(text);
+  // "5.0184e9 ± 2.4e7", "< 1e-6".
+  bool const numbers = text.find_first_of("0123456789") < 3 && text.find_first_of("\"`=") == std::string::npos;
+  return escape(numbers ? pretty_numbers(text) : text);
 }
 
 std::string code(std::string_view text) { return fmt::format("<code>{}</code>", escape(text)); }

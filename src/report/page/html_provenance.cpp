@@ -43,10 +43,14 @@ std::string repetition_html(Report const& report) {
         "<p>From the folder in which the run was started:</p>\n<pre class=\"command\" tabindex=\"0\" role=\"group\" "
         "aria-label=\"Command\"><code>{}</code></pre>\n",
         escape(report.command));
-  out += fmt::format(
-      "<p>Seed {}. The same file, data, seed and version of the program give the same draws, byte for byte, for any number "
-      "of threads.</p>\n",
-      report.seed);
+  // A track draws nothing, an optimum only where its search begins.
+  if (report.verb != "track")
+    out += fmt::format(
+        "<p>Seed {}. The same file, data, seed and version of the program give the same {}, byte for byte, for any number "
+        "of threads.</p>\n",
+        report.seed, report.draws.total() == 1 ? "result" : "draws");
+  else
+    out += "<p>The same file, data, fit and version of the program give the same table, byte for byte.</p>\n";
   return out + folded("The file that repeats this task, with all settings", report.resolved_text);
 }
 

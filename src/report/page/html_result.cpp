@@ -17,10 +17,19 @@ namespace sysid {
 
 namespace {
 
+/// "sigma 3.93 µm, nu 4": breaks after commas alone.
+std::string unbroken(std::string_view list) {
+  std::string out;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    out += list[i] == ' ' && (i == 0 || list[i - 1] != ',') ? std::string("\u00a0") : std::string(1, list[i]);
+  return out;
+}
+
 /// A cell of a table that other writers share: a number or a unit as a page shows it.
 std::string cell_html(std::string const& text, std::string const& column) {
   if (column == "unit") return escape(pretty_unit(text));
-  if (column == "noise") return escape(pretty_powers(text));
+  if (column == "noise") return escape(unbroken(pretty_powers(pretty_numbers(text))));
+  if (column == "prior") return escape(text);
   return number_html(text);
 }
 
@@ -70,7 +79,7 @@ std::string parameters(Report const& report) {
   table.header.push_back("prior");
   for (Summary const& s : report.summary) {
     if (s.coefficient) continue;
-    SummaryText const t = format_summary(s);
+    SummaryText const t = format_summary(s, true);
     auto const prior =
         std::find_if(report.priors.begin(), report.priors.end(), [&](PriorInfo const& each) { return each.name == s.name; });
     bool const known = prior != report.priors.end();
@@ -94,9 +103,10 @@ std::string parameters(Report const& report) {
              std::string(optimum
                              ? "sd: of the normal approximation at the optimum (Laplace); of a quantity that is derived from the "
                                "others by its first derivatives there (the delta method). "
-                             : "Numbers are rounded to their Monte Carlo error. ") +
+                             : "Numbers end at their Monte Carlo error, or at a hundredth of the sd. ") +
                  (priors ? "Below each prior is its 90 % interval. The bar beside it shows the 90 % interval of the posterior "
-                           "(dark, with a stroke at the mean) within that of the prior, on a logarithmic scale if the prior's "
+                           "(the thick bar, with a stroke at the mean) within that of the prior, on a logarithmic scale if the "
+                           "prior's "
                            "interval is positive and spans more than a decade; an arrow marks a posterior that extends beyond it."
                          : ""),
              "note");
@@ -113,13 +123,30 @@ std::string result_html(Report const& report) {
                               text));
   if (report.evidence)
     if (std::string const text = evidence_text(*report.evidence); !text.empty())
-      out += paragraph(fmt::format("The model as a whole: {}. {}", text,
-                                   report.evidence->log_evidence ? "It is meaningful only in comparison with another model of the "
-                                                                   "same samples (`sysid compare`); a difference of 5 is strong."
-                                                                 : ""));
+      out += paragraph(fmt::format("The model as a whole: {}. {}", pretty_numbers(text),
+                                   report.evidence->log_evidence
+                                       ? "It is meaningful only in comparison with another model of the "
+                                         "same samples (`sysid compare`): a difference above 3 is strong, above 5 "
+                                         "very strong."
+                                       : ""));
   for (ReportTable const& table : report.tables) out += table_html(table);
   return out;
 }
+
+namespace {
+
+/// Each on a line of its own.
+std::string notes(std::string_view lines) {
+  std::string out;
+  while (!lines.empty()) {
+    std::size_t const end = std::min(lines.find('\n'), lines.size());
+    out += paragraph(capitalised(pretty_numbers(lines.substr(0, end))), "note");
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
+  return out;
+}
+
+}  // namespace
 
 std::string table_html(ReportTable const& table, std::size_t words, TitleBegins title) {
   HtmlTable out{title == TitleBegins::with_a_name ? table.title : capitalised(table.title), {}, {}, words};
@@ -129,13 +156,17 @@ std::string table_html(ReportTable const& table, std::size_t words, TitleBegins 
     for (std::size_t c = 0; c < row.size(); ++c)
       out.rows.back().push_back(cell_html(row[c], c < table.header.size() ? table.header[c] : ""));
   }
-  return html(out) + paragraph(table.caption, "note");
+  return html(out) + notes(table.caption);
 }
 
 std::string modes_html(Report const& report) {
   if (report.modes.empty()) return "";
   HtmlTable table{"Modes found by the global search over the prior", {"mode", "share", "log density"}, {}, 1};
-  for (std::string const& name : report.sampled_names) table.header.push_back(escape(name));
+  for (std::string const& name : report.sampled_names) {
+    auto const known =
+        std::find_if(report.summary.begin(), report.summary.end(), [&](Summary const& each) { return each.name == name; });
+    table.header.push_back(known == report.summary.end() ? escape(name) : with_unit(name, known->unit));
+  }
   for (std::size_t m = 0; m < report.modes.size(); ++m) {
     Mode const& mode = report.modes[m];
     table.rows.push_back(

@@ -14,7 +14,12 @@ namespace sysid {
 
 namespace {
 
-std::string score_title(std::string const& name) {
+/// left_out: of a Gaussian process, whose scores are those of samples predicted from the others, but for two.
+std::string score_title(std::string const& name, bool left_out) {
+  if (left_out && (name == "rmse" || name == "coverage_95" || name == "chi_squared_per_sample"))
+    return score_title(name, false) + ", leave-one-out";
+  if (left_out && name == "nmse") return "NMSE of the fit [%]";
+  if (left_out && name == "coverage_3sd") return "share within 3 sd, of the fit";
   if (name == "nmse") return "NMSE [%]";
   if (name == "nmse_left_out") return "NMSE, leave-one-out [%]";
   if (name == "rmse") return "RMSE";
@@ -39,22 +44,25 @@ std::string scores_html(Report const& report) {
   for (FitLine const& line : lines)
     for (Score const& score : line.scores)
       if (std::find(names.begin(), names.end(), score.name) == names.end()) names.push_back(score.name);
+  bool const left_out = std::find(names.begin(), names.end(), "nmse_left_out") != names.end();
   auto const cell = [&](FitLine const& line, std::string const& name) {
     auto const score = std::find_if(line.scores.begin(), line.scores.end(), [&](Score const& each) { return each.name == name; });
     if (score == line.scores.end()) return std::string();
-    std::string const value = pretty_number(significant(score->value, 4));
-    return name == "rmse" && !line.unit.empty() ? with_unit(value, line.unit) : value;
+    bool const chance = name.starts_with("whiteness_p") || name.starts_with("input_correlation_p");
+    if (chance && score->value < 1e-4) return std::string("&lt;\u00a00.0001");
+    std::string const value = pretty_number(significant(score->value, chance ? 2 : 4));
+    return name.starts_with("rmse") && !line.unit.empty() ? with_unit(value, line.unit) : value;
   };
   std::string out;
   if (lines.size() == 1) {
     HtmlTable table{fmt::format("Scores of {}", lines[0].what()), {"score", "value", "meaning"}, {}, 1};
     table.last_words = 1;
     for (std::string const& name : names)
-      table.rows.push_back({score_title(name), cell(lines[0], name), escape(score_words(report, lines, name))});
+      table.rows.push_back({score_title(name, left_out), cell(lines[0], name), escape(score_words(report, lines, name))});
     out = html(table);
   } else {
     HtmlTable table{"Scores", {"channel"}, {}, 1};
-    for (std::string const& name : names) table.header.push_back(score_title(name));
+    for (std::string const& name : names) table.header.push_back(score_title(name, left_out));
     for (FitLine const& line : lines) {
       table.rows.push_back({escape(line.what())});
       for (std::string const& name : names) table.rows.back().push_back(cell(line, name));
@@ -62,13 +70,18 @@ std::string scores_html(Report const& report) {
     out = html(table) + "<dl>\n";
     for (std::string const& name : names)
       if (std::string const words = score_words(report, lines, name); !words.empty())
-        out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", score_title(name), escape(words));
+        out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", score_title(name, left_out), escape(words));
     out += "</dl>\n";
   }
-  return out + paragraph(
-                   "NMSE: mean squared error as a percentage of the measured variance; RMSE: root mean square error, in the "
-                   "channel's unit. Bands include the noise.",
-                   "note");
+  bool const with_noise =
+      std::any_of(names.begin(), names.end(), [](std::string const& each) { return each.starts_with("coverage"); });
+  return out +
+         paragraph(
+             fmt::format("NMSE: mean squared error as a percentage of the measured variance; RMSE: root mean square error, in the "
+                         "channel's unit.{}{}",
+                         with_noise ? " Bands include the noise." : "",
+                         left_out ? " Leave-one-out: each sample is predicted from the others." : ""),
+             "note");
 }
 
 }  // namespace sysid

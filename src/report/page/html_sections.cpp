@@ -44,8 +44,24 @@ std::string verdict_html(Report const& report) {
          "<p class=\"note\"><code>sysid explain CODE</code> explains a code such as those above.</p>\n";
 }
 
+/// A prediction of several fits; `average` itself is not stored.
+bool is_average(Report const& report) {
+  return report.verb == "predict" &&
+         std::any_of(report.settings.begin(), report.settings.end(), [](auto const& each) { return each.first == "weights"; });
+}
+
+/// Whose equations they are, where there are others.
+std::string which_model(Report const& report) {
+  if (report.selection)
+    if (std::size_t const models = report.selection->result.models.size(); models > 1) {
+      auto const lead = static_cast<std::size_t>(report.selection->leader());
+      return paragraph(fmt::format("`{}`, the most probable of {} models:", report.selection->result.models[lead].name, models));
+    }
+  return is_average(report) ? paragraph("The model of the fit with the largest weight:") : "";
+}
+
 std::string model_html(Report const& report) {
-  std::string out;
+  std::string out = report.equations.empty() ? "" : which_model(report);
   if (!report.equations.empty()) {
     out += "<div class=\"equations\" role=\"group\" tabindex=\"0\" aria-label=\"Equations\">\n";
     for (std::size_t i = 0; i < report.equations.size(); ++i) {
@@ -55,8 +71,11 @@ std::string model_html(Report const& report) {
     out += "</div>\n";
   }
   HtmlTable priors{"Priors", {"parameter", "prior"}, {}, 2};
+  // A prediction and a track begin with the draws of a fit.
+  bool const from_fit = report.verb == "predict" || report.verb == "track";
   for (PriorInfo const& prior : report.priors)
-    if (std::none_of(report.summary.begin(), report.summary.end(), [&](Summary const& s) { return s.name == prior.name; }))
+    if (!from_fit &&
+        std::none_of(report.summary.begin(), report.summary.end(), [&](Summary const& s) { return s.name == prior.name; }))
       priors.rows.push_back({with_unit(prior.name, prior.unit), code(prior.text)});
   if (!priors.rows.empty()) out += html(priors);
   // With the others where these have a table of their own.
@@ -71,7 +90,14 @@ std::string result_title(Report const& report) {
   if (report.selection) return "Models and their parameters";
   if (report.discovery) return "Terms and coefficients";
   if (report.calibration) return "Calibration";
+  if (is_average(report)) return "The average and its members";
+  if (report.verb == "track") return "Changes and parameters";
   return "Parameters: from prior to posterior";
+}
+
+std::string fit_title(Report const& report) {
+  if (report.verb == "track") return "Parameters along the rows";
+  return report.draws.total() == 0 && !report.selection ? "Prediction" : "Fit";
 }
 
 /// The figures of a page, numbered in the order in which its sections take them.
@@ -128,8 +154,7 @@ std::vector<HtmlSection> task_sections(Report const& report, std::vector<DrawnFi
   add("verdict", "Verdict", verdict_html(report), fmt::format("verdict {}", verdict_kind(report)));
   add("model", report.discovery ? "Equations found" : "Model", model_html(report));
   add("result", result_title(report), result_html(report) + pictures.of(plot::Topic::result));
-  add("fit", report.draws.total() == 0 && !report.selection ? "Prediction" : "Fit",
-      scores_html(report) + pictures.of(plot::Topic::fit));
+  add("fit", fit_title(report), scores_html(report) + pictures.of(plot::Topic::fit));
   add("states", "States and disturbances", states_html(report) + pictures.of(plot::Topic::states));
   add("criteria", "Predictive scores and information criteria", criteria_html(report));
   add("diagnostics", "Diagnostics of the chains", chains_html(report) + pictures.of(plot::Topic::chains));

@@ -76,7 +76,7 @@ tbody th { font-weight: 600; white-space: nowrap; }
 .n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 thead .n { white-space: normal; }
 .unit { color: var(--muted); font-weight: 400; font-size: 0.92em; white-space: nowrap; }
-td code { font-size: 0.88em; }
+td code { font-size: 0.88em; white-space: nowrap; }
 .range { width: 130px; height: 18px; vertical-align: middle; }
 .outside { color: var(--doubtful); font-size: 0.92em; }
 .range .wide { fill: var(--fig-band); } .range .narrow { fill: var(--accent); } .range .mean { fill: var(--ink); }
@@ -101,7 +101,15 @@ footer { margin-top: 3rem; padding-top: 0.7rem; border-top: 1px solid var(--rule
   .equations { padding-left: 0; }
   figure { overflow-x: auto; margin-left: -1rem; margin-right: -1rem; } figcaption { padding: 0 1rem; }
   tbody th { white-space: normal; }
-  .said td:last-child { min-width: 17rem; }
+  /* What a score says stands below it. */
+  .said, .said thead, .said tbody { display: block; }
+  .said tr { display: grid; grid-template-columns: 1fr auto; padding-top: 0.25rem; }
+  .said td:last-child { grid-column: 1 / -1; }
+  .said thead :last-child:not(tr) { display: none; }
+}
+@media screen and (min-width: 75rem) {
+  /* A wide table takes the margin to the right. */
+  .scroll { width: fit-content; max-width: calc(50vw + 27rem); }
 }
 @media print {
   @page { margin: 17mm 15mm; }
@@ -115,6 +123,8 @@ footer { margin-top: 3rem; padding-top: 0.7rem; border-top: 1px solid var(--rule
   figure, .scroll, tr, .headline, dt, dd { break-inside: avoid; }
   h2, h3, h4, caption, thead { break-after: avoid; }
   .whole + .whole { break-before: page; }
+  .command { break-before: avoid; }
+  .whole { border: 0; margin-top: 0; }
   .scroll, pre, .equations { overflow: visible; } .scroll, .equations, figure { background: none; }
   table { font-size: 8.5pt; } th, td { padding-right: 0.7rem; }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; }

@@ -21,17 +21,30 @@ namespace {
 /// A score on the channel where it is worst.
 struct Worst {
   double value;
-  std::string where;  // " (force on wave_06)"; empty where there is one line alone
+  std::string where;        // " (force on wave_06)"; empty where there is one line alone
+  std::size_t samples = 0;  // of it; 0: not known
 };
 
 std::string number(double value, int digits = 3) { return pretty_number(significant(value, digits)); }
 
-std::optional<Worst> worst(std::vector<FitLine> const& lines, std::string_view name, std::function<double(double)> const& badness) {
+/// Scored samples of a line: of a channel those that were measured.
+std::size_t samples_of(Report const& report, FitLine const& line) {
+  std::size_t count = 0;
+  for (Prediction const& prediction : report.predictions)
+    for (PredictedQuantity const& quantity : prediction.quantities)
+      if (prediction.experiment == line.experiment && quantity.name == line.channel)
+        for (std::size_t i = 0; i < quantity.measured.size(); ++i)
+          count += prediction.scored[i] != 0 && !std::isnan(quantity.measured[i]) ? 1 : 0;
+  return count;
+}
+
+std::optional<Worst> worst(Report const& report, std::vector<FitLine> const& lines, std::string_view name,
+                           std::function<double(double)> const& badness) {
   std::optional<Worst> out;
   for (FitLine const& line : lines)
     for (Score const& score : line.scores)
       if (score.name == name && std::isfinite(score.value) && (!out || badness(score.value) > badness(out->value)))
-        out = {score.value, lines.size() > 1 ? fmt::format(" ({})", line.what()) : ""};
+        out = {score.value, lines.size() > 1 ? fmt::format(" ({})", line.what()) : "", samples_of(report, line)};
   return out;
 }
 
@@ -43,14 +56,32 @@ std::string error_words(Worst const& nmse) {
   return out + "model and measurement can hardly be distinguished by eye.";
 }
 
+/// P(X = k), X ~ binomial(n, p), 0 < p < 1.
+double binomial(std::size_t k, std::size_t n, double p) {
+  auto const inside = static_cast<double>(k), all = static_cast<double>(n);
+  return std::exp(std::lgamma(all + 1) - std::lgamma(inside + 1) - std::lgamma(all - inside + 1) + inside * std::log(p) +
+                  (all - inside) * std::log1p(-p));
+}
+
+/// Whether a share as far off on the same side would come about by chance once in a hundred times. Of samples that nobody has
+/// counted: no.
+bool by_chance(Worst const& share, double expected) {
+  if (share.samples == 0) return false;
+  auto const inside = static_cast<std::size_t>(std::llround(share.value * static_cast<double>(share.samples)));
+  bool const more = share.value > expected;
+  double chance = 0;
+  for (std::size_t k = more ? inside : 0; k <= (more ? share.samples : inside); ++k) chance += binomial(k, share.samples, expected);
+  return chance >= 0.01;
+}
+
 std::string coverage_words(Worst const& coverage, double expected) {
   // Five in a hundred may be missing where 95 % are expected, one in a hundred where 99.7 % are: chance goes by the root.
   double const off = coverage.value - expected, short_of = std::sqrt(0.05 * (1 - expected));
   return fmt::format("{} % of the scored samples lie inside{}, {} % are expected: {}.", number(100 * coverage.value),
                      coverage.where, number(100 * expected),
-                     off < -short_of ? "the bands are too narrow for these data"
-                     : off > 0.035   ? "the bands are too wide for these data"
-                                     : "the width of the bands is consistent with the data");
+                     off < -short_of && !by_chance(coverage, expected) ? "the bands are too narrow for these data"
+                     : off > 0.035 && !by_chance(coverage, expected)   ? "the bands are too wide for these data"
+                                                                       : "the width of the bands is consistent with the data");
 }
 
 /// The check knows how much of it is chance. fitted: the noise is a parameter, which takes the size that the residuals leave.
@@ -116,6 +147,12 @@ std::string calibration_meaning(Report const& report) {
 std::string verdict_meaning(Report const& report) {
   if (!has_verdict(report)) return "";
   if (report.calibration) return calibration_meaning(report);
+  if (report.verb == "track" && grade(report) == Severity::warning)
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [](Finding const& each) { return each.code == FindingCode::parameter_changed; })
+               ? "The parameters were moved where the rows show a change. The rows do not show its cause: the structure, its "
+                 "surroundings or a sensor."
+               : "No change was found, but check the points below: with them the sds and alarms of the track are not as stated.";
   bool const bands = !report.selection && !report.discovery && report.draws.total() == 0;
   std::string_view const numbers = report.discovery ? "the equations" : bands ? "the bands" : "the numbers";
   switch (grade(report)) {
@@ -141,7 +178,7 @@ std::string verdict_meaning(Report const& report) {
 
 std::string score_words(Report const& report, std::vector<FitLine> const& lines, std::string const& score) {
   auto const say = [&](std::function<double(double)> const& badness, auto const& words) {
-    auto const found = worst(lines, score, badness);
+    auto const found = worst(report, lines, score, badness);
     return found ? words(*found) : std::string();
   };
   auto const high = [](double value) { return value; };

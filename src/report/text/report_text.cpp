@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 
 namespace sysid {
@@ -58,6 +60,47 @@ std::vector<std::string> without_sd_texts(Report const& report) {
   for (Summary const& each : report.summary)
     if (!each.without_sd.empty()) out.push_back(fmt::format("no sd of `{}`: {}", each.name, each.without_sd));
   return out;
+}
+
+std::string pretty_numbers(std::string_view words) {
+  auto const digit = [&](std::size_t at) { return at < words.size() && words[at] >= '0' && words[at] <= '9'; };
+  auto const letter = [&](std::size_t at) {
+    return at < words.size() && (std::isalnum(static_cast<unsigned char>(words[at])) != 0 || words[at] == '_' || words[at] == '\'');
+  };
+  std::string out;
+  bool code = false;
+  for (std::size_t i = 0; i < words.size();) {
+    if (words[i] == '`') code = !code;
+    char const before = i == 0 ? ' ' : words[i - 1];
+    bool const free = before == ' ' || before == '(' || before == '[' || before == '\n' || (before == '\xa0' && i > 1);
+    std::size_t end = i + (words[i] == '-' ? 1 : 0);
+    if (code || !free || !digit(end)) {
+      out += words[i++];
+      continue;
+    }
+    while (digit(end)) ++end;
+    if (end + 1 < words.size() && words[end] == '.' && digit(end + 1))
+      for (++end; digit(end);) ++end;
+    std::size_t power = end;
+    if (power < words.size() && words[power] == 'e') {
+      power += power + 1 < words.size() && (words[power + 1] == '-' || words[power + 1] == '+') ? 2 : 1;
+      if (digit(power)) {
+        while (digit(power)) ++power;
+        end = power;
+      }
+    }
+    std::string_view const number = words.substr(i, end - i);
+    // Part of a name, of a range or of a date.
+    bool const alone = !letter(end) && !(end + 1 < words.size() && (words[end] == '.' || words[end] == '-') && letter(end + 1));
+    out += alone ? pretty_number(number) : std::string(number);
+    i = end;
+  }
+  return out;
+}
+
+std::string quantity_text(double value, int digits, std::string_view unit) {
+  std::string const shown = pretty_unit(unit);
+  return pretty_number(significant(value, digits)) + (shown.empty() || shown == "-" ? "" : "\u00a0" + shown);
 }
 
 std::string_view severity_word(Severity severity) {

@@ -21,6 +21,12 @@ std::string likelihood_text(Report const& report);
 /// "no sd of ratio: the data leave open a direction along which it changes", of each that has none.
 std::vector<std::string> without_sd_texts(Report const& report);
 
+/// Words with each number in them as pages show it: "-324.37 ± 0.01", "5.47e-8 (5e-10)" with minus signs and powers of ten. What
+/// stands in backquotes, and what is part of a name, stays.
+std::string pretty_numbers(std::string_view words);
+/// A value with its unit in one piece: a line does not end within it.
+std::string quantity_text(double value, int digits, std::string_view unit);
+
 /// "error", "warning", "note".
 std::string_view severity_word(Severity severity);
 

@@ -11,7 +11,7 @@
 
 namespace sysid {
 
-SummaryText format_summary(Summary const& s) {
+SummaryText format_summary(Summary const& s, bool for_page) {
   SummaryText out;
   double largest = 0;
   for (double const v : {s.mean, s.median, s.q5, s.q95})
@@ -19,7 +19,8 @@ SummaryText format_summary(Summary const& s) {
   int const power = largest > 0 ? decade(largest) : 0;
   int const exponent = needs_exponent(power) ? power : 0;
   // The last digit shown is the leading digit of the error: what lies below it is chance.
-  double const error = std::isfinite(s.mcse_mean) && s.mcse_mean > 0 ? s.mcse_mean : s.sd / 10;
+  double error = std::isfinite(s.mcse_mean) && s.mcse_mean > 0 ? s.mcse_mean : s.sd / 10;
+  if (for_page && s.sd > 0) error = std::max(error, s.sd / 100);
   int const decimals = std::isfinite(error) && error > 0 ? exponent - decade(error) : exponent - power + 3;
   auto const location = [&](double v) { return std::isfinite(v) ? with_exponent(v, decimals, exponent) : std::string("-"); };
   // A spread is known to 1/sqrt(2 ess) of itself: two digits.

@@ -12,7 +12,8 @@ namespace sysid {
 struct SummaryText {
   std::string mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail;
 };
-SummaryText format_summary(Summary const& summary);
+/// for_page: no digit below a hundredth of the sd, however well the mean is known, so that columns stay narrow.
+SummaryText format_summary(Summary const& summary, bool for_page = false);
 
 /// "1.00004 ± 0.00063", "(5.000 ± 0.033)·10⁹".
 std::string mean_and_sd(Summary const& summary);

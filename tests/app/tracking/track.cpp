@@ -126,6 +126,8 @@ TEST_CASE("a track has a line for every row, an alarm where the stiffness has fa
   CHECK(result.exit == 1);
   CHECK(result.notices.find("`k` fell by ") != std::string::npos);
   CHECK(result.out.find("1 change found in 1000 rows") != std::string::npos);
+  CHECK(result.out.find("warning[parameter_changed]: `k` fell by ") != std::string::npos);
+  CHECK(result.out.find(" N/m") != std::string::npos);
   std::vector<std::string> const table = beam.table();
   REQUIRE(table.size() == 1001);
   CHECK(table.front() ==
@@ -140,6 +142,12 @@ TEST_CASE("a track has a line for every row, an alarm where the stiffness has fa
   CHECK(summary.at("verb") == "track");
   CHECK(summary.at("settings").at("parameters") == "c, k");
   CHECK(summary.at("settings").at("fixed") == "sigma");
+  CHECK(summary.at("findings").front().at("code") == "parameter_changed");
+  CHECK(summary.at("findings").front().at("names") == nlohmann::json{"k"});
+  std::string const page = read_file(beam.folder.path() / "tracked/posterior/report.html");
+  CHECK(page.find("class=\"part verdict doubtful\"") != std::string::npos);
+  CHECK(page.find("That nothing was found") == std::string::npos);
+  CHECK(page.find("<th scope=\"col\" class=\"n\">from the fit</th>") != std::string::npos);
   CHECK(std::filesystem::exists(beam.folder.path() / "tracked/posterior/report.html"));
   CHECK(!std::filesystem::exists(beam.folder.path() / "tracked/posterior/track.csv.partial"));
 }
@@ -164,6 +172,25 @@ TEST_CASE("rows that are appended one by one give the table of the whole record,
   tracking.join();
   CHECK(followed.exit == 0);
   CHECK(beam.table("followed") == beam.table());
+  // Without a change and with the noise of the fit there is nothing to warn of.
+  CHECK(followed.out.find("no change found in 300 rows") != std::string::npos);
+  CHECK(followed.out.find("warning[") == std::string::npos);
+}
+
+TEST_CASE("innovations that are larger than expected are a warning, and settling rows no change") {
+  Beam beam;
+  for (std::size_t i = 500; i < beam.rows.size(); ++i) {  // three times the noise, alternating
+    std::size_t const at = beam.rows[i].rfind(',');
+    std::string const sample = beam.rows[i].substr(at + 1);
+    if (sample.size() > 1) beam.rows[i] = fmt::format("{},{:.5f}\n", beam.rows[i].substr(0, at), std::stod(sample) + (i % 2 == 0 ? 15 : -15));
+  }
+  beam.write(900);
+  TrackOptions options = beam.options();
+  options.first_row = 501;
+  options.last_row = 900;
+  TrackResult const result = beam.run(options);
+  CHECK(result.out.find("warning[innovation_size]: the rms of the innovations is ") != std::string::npos);
+  CHECK(result.out.find("larger than expected") != std::string::npos);
 }
 
 TEST_CASE("an interruption ends a track that follows, with its results; one of a whole record leaves nothing") {
