@@ -10,7 +10,7 @@
 #include "app/session/fit_target.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/system/interrupt.hpp"
-#include "likelihood/drawn_disturbances.hpp"
+#include "likelihood/particle/drawn_disturbances.hpp"
 #include "likelihood/trajectory.hpp"
 #include "model/lags.hpp"
 

@@ -12,8 +12,8 @@
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
-#include "likelihood/drawn_disturbances.hpp"
 #include "likelihood/first_rows.hpp"
+#include "likelihood/particle/drawn_disturbances.hpp"
 #include "likelihood/trajectory.hpp"
 #include "linear_algebra/decompositions.hpp"
 

@@ -23,7 +23,7 @@
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
 #include "experiment/experiments.hpp"
-#include "likelihood/drawn_disturbances.hpp"
+#include "likelihood/particle/drawn_disturbances.hpp"
 #include "likelihood/trajectory.hpp"
 #include "report/file/simulated_csv.hpp"
 

@@ -1,5 +1,5 @@
 // Leaves of disturbances become leaves of inputs.
-#include "likelihood/drawn_disturbances.hpp"
+#include "likelihood/particle/drawn_disturbances.hpp"
 
 #include <cmath>
 #include <utility>

@@ -1,5 +1,5 @@
 // Disturbances that simulations draw: the motion that they cause has the variance that white noise gives it.
-#include "likelihood/drawn_disturbances.hpp"
+#include "likelihood/particle/drawn_disturbances.hpp"
 
 #include <doctest/doctest.h>
 
