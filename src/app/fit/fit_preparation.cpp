@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/fit/advice.hpp"
 #include "app/fit/hierarchies.hpp"
 #include "app/preflight/check_file.hpp"
@@ -19,6 +21,7 @@
 #include "search/hierarchy/standardised.hpp"
 #include "search/improper/propriety.hpp"
 #include "search/improper/references.hpp"
+#include "search/refit.hpp"
 
 namespace sysid {
 namespace {
@@ -117,10 +120,13 @@ bool FitPreparation::require_proper(SearchResult& found, Preparation& preparatio
   auto const checked = [&](SearchResult const& of) {
     auto const posterior = target(preparation.solver);
     Mode mode = of.modes.front();
-    // An optimum of the declared parameters may lie at a bound, where coordinates have no mass: what has ends far from it.
-    Ledger untold;
-    if (objective_kind_ == ObjectiveKind::declared_posterior)
-      mode = refit(*posterior, ObjectiveKind::posterior, {mode}, context.seed, untold, context.interrupted).front();
+    if (objective_kind_ == ObjectiveKind::declared_posterior) {
+      // An optimum of the declared parameters may lie at a bound, where coordinates have no mass: what has ends far from it.
+      Ledger untold;
+      Mode const in_coordinates =
+          refit(*posterior, ObjectiveKind::posterior, {mode}, context.seed, untold, context.interrupted).front();
+      if (std::isfinite(in_coordinates.log_density)) mode = in_coordinates;
+    }
     return unbounded::check_propriety(*posterior, mode, context.seed, context.interrupted);
   };
   unbounded::Propriety propriety = checked(found);

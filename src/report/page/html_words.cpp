@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <functional>
 
@@ -56,21 +57,14 @@ std::string error_words(Worst const& nmse) {
   return out + "model and measurement can hardly be distinguished by eye.";
 }
 
-/// P(X = k), X ~ binomial(n, p), 0 < p < 1.
-double binomial(std::size_t k, std::size_t n, double p) {
-  auto const inside = static_cast<double>(k), all = static_cast<double>(n);
-  return std::exp(std::lgamma(all + 1) - std::lgamma(inside + 1) - std::lgamma(all - inside + 1) + inside * std::log(p) +
-                  (all - inside) * std::log1p(-p));
-}
-
 /// Whether a share as far off on the same side would come about by chance once in a hundred times. Of samples that nobody has
 /// counted: no.
 bool by_chance(Worst const& share, double expected) {
   if (share.samples == 0) return false;
   auto const inside = static_cast<std::size_t>(std::llround(share.value * static_cast<double>(share.samples)));
-  bool const more = share.value > expected;
-  double chance = 0;
-  for (std::size_t k = more ? inside : 0; k <= (more ? share.samples : inside); ++k) chance += binomial(k, share.samples, expected);
+  boost::math::binomial_distribution<double> const counts(static_cast<double>(share.samples), expected);
+  double const chance =
+      share.value > expected ? cdf(complement(counts, static_cast<double>(inside) - 1)) : cdf(counts, static_cast<double>(inside));
   return chance >= 0.01;
 }
 
