@@ -98,7 +98,7 @@ Work declare_track(CLI::App& verb) {
       ->delimiter(',')
       ->type_name("NAMES");
   verb.add_option("--drift", options->drift,
-                  "relative sd of the change of a parameter in 1000 rows, or in a time as in 0.05/day")
+                  "relative sd of the change of a parameter in 1000 rows; with a unit of time, per that time: 0.05/day")
       ->type_name("DRIFT")
       ->check([&track](std::string const& text) { return read_drift(text, track.drift); })
       ->default_str("0.01");

@@ -139,8 +139,8 @@ Findings other_terms(ValidationReport const& validation) {
   return {{FindingCode::other_terms_fit,
            Severity::warning,
            {validation.outside},
-           fmt::format("with terms that the dictionary lacks another equation describes the record as well or better, `{}`: "
-                       "the terms that were found may imitate it",
+           fmt::format("an equation with terms outside the dictionary describes the record as well or better: `{}`; "
+                       "the terms that were found may only imitate it",
                        validation.outside),
            "if such terms make sense, add them to the dictionary and run again; a record of another amplitude decides"}};
 }

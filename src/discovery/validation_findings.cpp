@@ -37,8 +37,8 @@ std::optional<Finding> given_up(ValidationReport const& validation) {
   if (names.empty()) return std::nullopt;
   return Finding{
       FindingCode::not_refitted, Severity::warning, names,
-      fmt::format("{} skipped: implicit equations are simulated one after the other, and {} more simulations than are allowed",
-                  quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it takes" : "they take"),
+      fmt::format("{} skipped: {} more simulations than are allowed for implicit equations, which are simulated one by one",
+                  quoted(names) + (names.size() == 1 ? " is" : " are"), names.size() == 1 ? "it needs" : "they need"),
       "use fewer rows, or a smaller `top`, or remove the implicit terms from the dictionary"};
 }
 

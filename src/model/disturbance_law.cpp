@@ -10,7 +10,7 @@ constexpr DisturbanceArgumentRow ornstein_uhlenbeck_arguments[] = {{"sd", 1, 0},
 /// white: E[w(t) w(s)] = q delta(t - s). ornstein_uhlenbeck: stationary, E[w(t) w(s)] = sd^2 exp(-|t - s|/time), so that
 /// w' = -w/time + v with white v of intensity 2 sd^2/time (Gardiner 2009, section 4.4.4).
 constexpr DisturbanceLawRow rows[] = {
-    {"white", "white(intensity = q)", "white noise; the unit of its intensity is that of the disturbance squared, times seconds",
+    {"white", "white(intensity = q)", "white noise; the unit of its intensity: the square of the disturbance's unit, times seconds",
      white_arguments, false},
     {"ornstein_uhlenbeck", "ornstein_uhlenbeck(sd = s, time = T)",
      "correlated noise of standard deviation s, correlation exp(-t/T)", ornstein_uhlenbeck_arguments, true},

@@ -34,7 +34,7 @@ std::string with_sd(Estimate const& of) { return fmt::format("{} ± {}", signifi
 /// Which of both the record prefers. Nothing is said of an evidence that is not there.
 std::string preference(Comparison const& comparison) {
   if (comparison.fits.size() != 2 || !comparison.fits[0].log_bayes_factor || !comparison.fits[1].log_bayes_factor)
-    return "without an evidence of both fits nothing says which model the record prefers; look at their residuals\n";
+    return "one of the evidences is not known, so the models cannot be compared by it; compare the residuals of both fits\n";
   double const factor = *comparison.fits[1].log_evidence - *comparison.fits[0].log_evidence;
   std::string const size = fmt::format("log Bayes factor {:+.1f}", factor);
   if (factor >= 3) return fmt::format("the record prefers the model with the disturbance: {}\n", size);

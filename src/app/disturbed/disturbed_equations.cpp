@@ -271,7 +271,7 @@ std::vector<DisturbedEquation> disturbed_equations(Source const& source, Checked
   if (places.empty())
     throw refused(fit.span, fmt::format("`{}` has no equation of motion that a disturbance could stand in", model.name),
                   discrete ? "a model that predicts from measured samples takes every error as a disturbance already"
-                           : "a disturbance stands in an equation with a derivative");
+                           : "a disturbance can be added only to an equation that contains a derivative");
   Diagnostics ignored;
   auto const tree = parse(source, ignored);
   std::vector<DisturbedEquation> found;
@@ -285,7 +285,7 @@ std::vector<DisturbedEquation> disturbed_equations(Source const& source, Checked
     for (ast::Equation const* equation : here) found.push_back(reader.read(*equation, here.size() == 1));
   }
   if (found.empty())
-    throw refused(fit.span, fmt::format("the equations of `{}` stand in a module, which is not changed", model.name),
+    throw refused(fit.span, fmt::format("the equations of `{}` are in a module, and modules are not changed", model.name),
                   "copy the model into this file under another name and fit that");
   return found;
 }

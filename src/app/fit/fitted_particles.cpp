@@ -138,8 +138,8 @@ std::unique_ptr<Target> FittedParticles::with_solver(std::shared_ptr<ParameterSp
 
 std::string FittedParticles::chosen() const {
   std::string const number = fmt::format(
-      "{} particles: the log likelihood has an sd of {:.2g} between estimates at the mode, and at most {:.2g} at three quarters "
-      "of the places around it",
+      "{} particles: repeated estimates of the log likelihood have an sd of {:.2g} at the mode, and of at most {:.2g} at three in "
+      "four points around it",
       need_.particles, need_.sd, around_);
   return what_.particles_because.empty() ? number
                                          : fmt::format("filter = particle, because {}; {}", what_.particles_because, number);
@@ -238,9 +238,8 @@ std::optional<Finding> FittedParticles::check_lines() const {
     if (particle_model_->noises[d].white) white.push_back(model_.disturbances[d].name);
   if (white.empty() || (solver_->fixed_step() && !solver_->row().exact)) return std::nullopt;
   return Finding{FindingCode::noise_in_lines, Severity::note, white,
-                 fmt::format("with `solver = {}` the white noise {} is a straight line between two samples: the variance of motion "
-                             "that decays within a "
-                             "sampling interval is underestimated",
+                 fmt::format("with `solver = {}` the white noise {} is replaced by a straight line between two samples: the "
+                             "variance of motion that decays within a sampling interval is underestimated",
                              solver_->method, listed(white)),
                  "where the motion may be that fast, use `solver = rk4(substeps = 4)`, which draws new noise in each step, or "
                  "`filter = unscented`"};
@@ -259,8 +258,7 @@ Findings FittedParticles::check(std::vector<LaneArray> const& parameters, ConstL
         {FindingCode::particles_degenerate,
          effective < hardly_any ? Severity::warning : Severity::note,
          {along.name},
-         fmt::format("at row {}{} only {:.1f} of {} particles are effective after the sample: the different states that remain "
-                     "are few",
+         fmt::format("at row {}{} only {:.1f} of {} particles are effective after the sample: few different states remain",
                      along.first_row + outcome.least_effective_at, data_.size() > 1 ? " of " + along.name : "", effective,
                      need_.particles),
          "check this sample for an outlier, and use noise with heavy tails if it is a measurement; else use more "

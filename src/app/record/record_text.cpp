@@ -20,7 +20,7 @@ std::string six_digits(double value) { return fmt::format("{:.6g}", value); }
 
 std::string time_line(RecordLook const& look) {
   TimeLook const& time = look.time;
-  if (time.column.empty()) return "time      no column has it\n";
+  if (time.column.empty()) return "time      not found in any column\n";
   std::string out = fmt::format("time      `{}`{}: {} s to {} s, ", time.column, time.stamps ? ", dates and times" : "",
                                 six_digits(time.first), six_digits(time.last));
   if (time.step > 0) out += fmt::format("{} Hz ({} s), ", six_digits(1 / time.step), six_digits(time.step));
@@ -81,7 +81,7 @@ std::string record_text(RecordLook const& look) {
   }
   if (!said.empty()) out += "\n" + said;
   if (!look.question.empty())
-    out += fmt::format("\n{}: here it is the first; choose between {}\n", look.question, quoted(look.readings, "and"));
+    out += fmt::format("\n{}: the first is used here; choose between {}\n", look.question, quoted(look.readings, "and"));
   return out + "\n" + look.block;
 }
 

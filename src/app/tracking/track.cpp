@@ -105,7 +105,8 @@ class Tracking {
             "write `hold zero_order` or `hold linear` in the data block to follow a record");
     if (needs_whole_file(block_.rules))
       throw no_tracking("the data block has `read` with settings that need the whole file",
-                        "of `read`, only `separator`, `decimal`, `thousands`, `missing` and `ragged` go with rows that arrive");
+                        "for rows that arrive, only these settings of `read` are possible: `separator`, `decimal`, `thousands`, "
+                        "`missing`, `ragged` and `units = names`");
     bool const standard_input = fit_.options.record == "-";
     auto const path = standard_input ? std::filesystem::path("-") : session_.folder() / block_.path;
     gathered_.file = standard_input ? "standard input" : block_.path;

@@ -32,8 +32,8 @@ void require_trackable(Model const& model) {
     throw no_tracking(name + " has equations that are not of the form y' = f: it cannot be tracked",
                       "solve the equations for the highest derivatives by hand");
   if (!model.memories.empty())
-    throw no_tracking(name + " remembers earlier values with `previous`: it cannot be tracked",
-                      "write what is remembered as a state");
+    throw no_tracking(name + " uses `since_last`, which needs values at the previous row: it cannot be tracked",
+                      "observe the quantity itself, or make its change a state of its own");
   for (Channel const& channel : model.channels)
     if (!channel.noise.row->gaussian || channel.noise.lower || channel.noise.upper)
       throw no_tracking(fmt::format("the noise of `{}` is not normal: a Kalman filter cannot track {}", channel.name, name),

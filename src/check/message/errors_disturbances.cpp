@@ -58,8 +58,8 @@ Diagnostic sd_of_white_noise(Span argument, std::string const& name) {
 Diagnostic unit_of_intensity(Span argument, std::string const& name, std::string const& given, std::string const& wanted) {
   return about({name}, error("E3302", argument,
                              fmt::format("the intensity of `{}` must be in [{}], but this is in [{}]", name, wanted, given),
-                             "the intensity is the variance of its integral per second; a disturbance of standard deviation s "
-                             "that is correlated over a time T is `ornstein_uhlenbeck(sd = s, time = T)`"));
+                             "the intensity is the variance of the integral of the disturbance, per second; a disturbance of "
+                             "standard deviation s that is correlated over a time T is `ornstein_uhlenbeck(sd = s, time = T)`"));
 }
 
 Diagnostic law_reads(Span law, std::string const& name, std::string const& what) {

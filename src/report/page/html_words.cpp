@@ -105,9 +105,9 @@ std::string calibration_meaning(Report const& report) {
     case Severity::warning:
       return "Check the points below before you rely on intervals of such fits.";
     default:
-      return "For records that are simulated with the model itself, with true values from its priors, no difference was found "
-             "between how often the intervals of these fits contain the true values and how often they should. This does not prove "
-             "the model: a real record does not come from it.";
+      return "Records were simulated with the model itself, with true values from its priors. No difference was found between how "
+             "often the intervals of these fits contain the true values and how often they should. This does not prove the model: "
+             "a real record does not come from it.";
   }
 }
 
@@ -129,9 +129,8 @@ std::string verdict_meaning(Report const& report) {
       break;
   }
   if (report.verb == "track")
-    return "The model follows the rows, or was moved where they show a change. That nothing was found does not prove that nothing "
-           "has "
-           "changed: a slow change may be taken for drift, one of the noise for none.";
+    return "The model follows the rows; where they show a change, its parameters were moved. If no change was found, there may "
+           "still be one: a slow change may be taken for drift, and a change of the noise is not reported as a change.";
   if (bands) return "No check failed. The bands are valid if the model is valid on this record: compare them with the measurement.";
   if (report.discovery)
     return "No check failed. The equations are the best from the terms of the dictionary; this does not prove that no other term "
