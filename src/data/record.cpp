@@ -8,11 +8,11 @@
 #include <memory>
 
 #include "core/text/words.hpp"
+#include "data/cell/rounded_times.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/format/open_record.hpp"
-#include "data/rounded_times.hpp"
 #include "data/table/file_errors.hpp"
-#include "data/table/serial_time.hpp"
-#include "data/table/unit_text.hpp"
 #include "data/table_record.hpp"
 
 namespace sysid {
@@ -84,11 +84,8 @@ class Columns {
       if (column.unit && column.unit->dimension != unit_atom("s").value().dimension)
         throw UserError(data_errors::unit_of_another_kind(file_.name(), column.column, column.unit->text, "s", column.mention));
       time_unit_ = column.unit;
-      bool const in_plain_seconds = !column.unit || column.unit->scale == 1;
       // Rows that arrive one by one cannot be read with `stamp`.
-      if (SerialTime const* const counts = seems_serial(written, column.column);
-          counts && in_plain_seconds && whole && file_.row_count() && !request_.independent_rows)
-        throw UserError(data_errors::times_are_dates(file_.place(0, column.column), written.front(), counts->word, column.mention));
+      if (whole && !request_.independent_rows) refuse_counts_since_a_date(written, column);
     }
     auto const in_seconds = [&](std::vector<double>& time) {
       if (!file_.has_stamps()) to_si(time, column);
@@ -130,6 +127,19 @@ class Columns {
   std::optional<Unit> const& time_unit() const { return time_unit_; }
 
  private:
+  void refuse_counts_since_a_date(std::vector<double> const& written, ColumnRequest const& column) const {
+    SerialTime const* const counts = seems_serial(written, column.column);
+    if (counts == nullptr || (column.unit && column.unit->scale != 1)) return;
+    bool const is_text = file_.row_count().has_value();
+    // Seconds since 1970 are seconds; a text has digits of them that a number loses.
+    if (!is_text && counts->word == "seconds") return;
+    auto const split = split_name(column.column);
+    auto const unit = split ? unit_of_text(split->unit) : std::nullopt;
+    bool const stated = column.unit || (unit && same_unit(*unit, unit_atom("s").value()));
+    if (stated && counts->word == "days") return;
+    throw UserError(
+        data_errors::times_are_dates(file_.place(0, column.column), written.front(), counts->word, is_text, column.mention));
+  }
   std::vector<double> of_one_length(std::vector<double> values, ColumnRequest const& column) {
     if (!rows_) {
       rows_ = values.size();

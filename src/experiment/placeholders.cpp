@@ -9,7 +9,7 @@
 
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
-#include "data/table/doubtful_number.hpp"
+#include "data/cell/doubtful_number.hpp"
 
 namespace sysid {
 namespace {

@@ -10,15 +10,16 @@
 
 #include "core/numeric/unit.hpp"
 #include "core/text/number.hpp"
+#include "data/cell/rounded_times.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/format/open_record.hpp"
 #include "data/look/paste_block.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/gzip.hpp"
 #include "data/table/proposal.hpp"
 #include "data/table/record_bytes.hpp"
-#include "data/table/serial_time.hpp"
 #include "data/table/table.hpp"
-#include "data/table/unit_text.hpp"
 
 namespace sysid {
 namespace {
@@ -120,6 +121,7 @@ void look_at_time(RecordLook& look) {
   std::vector<double> const& t = look.times;
   time.first = t.front();
   time.last = t.back();
+  time.unequal = time.gaps = 0;
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
   if (steps.empty()) return;
@@ -134,6 +136,7 @@ void look_at_time(RecordLook& look) {
       ++time.unequal;
     }
   }
+  if (time.gaps == 0) time.step = (time.last - time.first) / static_cast<double>(steps.size());
 }
 
 class Looking {
@@ -217,23 +220,46 @@ class Looking {
       Unit unit = unit_atom("s").value();
       if (auto const stated = unit_of_text(column.unit); stated && stated->dimension == unit.dimension) unit = *stated;
       time.column = column.name;
-      if (SerialTime const* const counts = seems_serial(look_.values[c], column.name);
-          counts && unit.scale == 1 && file_->row_count()) {
-        chosen_.rules.stamp = counts->word;
-        chosen_.rules.time_column = column.name;
-        look_.reading = reading_statement(chosen_.rules);
-        if (!look_.readings.empty()) look_.readings.front() = look_.reading;
-        file_ = open_record(path_, chosen_.rules);
-        time.stamps = true;
-        look_.times = file_->times(column.name);
-        return look_at_time(look_);
+      SerialTime const* const counts = unit.scale == 1 ? seems_serial(look_.values[c], column.name) : nullptr;
+      bool const is_text = file_->row_count().has_value();
+      if (counts != nullptr && is_text && read_stamps(*counts, column.name)) return look_at_time(look_);
+      // Where a file has no `read`, a unit says what its numbers count; seconds need none.
+      if (counts != nullptr && !is_text && counts->word != "seconds") {
+        unit = unit_atom(counts->unit).value();
+        time.since_first = true;
       }
       time.unit = unit.text;
-      look_.times = look_.values[c];
-      for (double& value : look_.times) value *= unit.scale;
-      return look_at_time(look_);
+      look_at_numbers(look_.values[c], unit.scale);
+      if (time.unequal == 0 || time.gaps > 0) return;
+      if (auto const equal = equal_times_before_rounding(look_.values[c])) look_at_numbers(*equal, unit.scale);
+      return;
     }
     for (std::size_t i = 0; i < look_.rows; ++i) look_.times.push_back(static_cast<double>(i + 1));
+  }
+
+  void look_at_numbers(std::vector<double> const& values, double scale) {
+    double const from = look_.time.since_first ? values.front() : 0;
+    look_.times.clear();
+    for (double const value : values) look_.times.push_back((value - from) * scale);
+    look_at_time(look_);
+  }
+  /// Numbers that count from a date, where all of them can be read so.
+  bool read_stamps(SerialTime const& counts, std::string const& column) {
+    ReadingRules rules = chosen_.rules;
+    rules.stamp = counts.word;
+    rules.time_column = column;
+    std::unique_ptr<RecordFile> file = open_record(path_, rules);
+    try {
+      look_.times = file->times(column);
+    } catch (UserError const&) {
+      return false;
+    }
+    chosen_.rules = std::move(rules);
+    file_ = std::move(file);
+    look_.reading = reading_statement(chosen_.rules);
+    if (!look_.readings.empty()) look_.readings.front() = look_.reading;
+    look_.time.stamps = look_.time.since_first = true;
+    return true;
   }
 
   std::string const& path_;

@@ -9,10 +9,10 @@
 #include <set>
 
 #include "core/system/interrupt.hpp"
-#include "data/table/cells.hpp"
-#include "data/table/number_notation.hpp"
-#include "data/table/time_stamp.hpp"
-#include "data/table/unit_text.hpp"
+#include "data/cell/cells.hpp"
+#include "data/cell/number_notation.hpp"
+#include "data/cell/time_stamp.hpp"
+#include "data/cell/unit_text.hpp"
 
 namespace sysid {
 namespace {

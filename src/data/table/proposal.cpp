@@ -9,13 +9,14 @@
 
 #include "core/text/diagnostic.hpp"
 #include "core/text/words.hpp"
-#include "data/table/cells.hpp"
-#include "data/table/doubtful_number.hpp"
+#include "data/cell/cells.hpp"
+#include "data/cell/doubtful_number.hpp"
+#include "data/cell/number_notation.hpp"
+#include "data/cell/time_stamp.hpp"
+#include "data/cell/unit_text.hpp"
+#include "data/cell/usual_stamps.hpp"
 #include "data/table/encoding.hpp"
-#include "data/table/number_notation.hpp"
 #include "data/table/table.hpp"
-#include "data/table/time_stamp.hpp"
-#include "data/table/unit_text.hpp"
 
 namespace sysid {
 namespace {
@@ -201,10 +202,7 @@ void add_stamps(Layout const& layout, Proposal& proposal, Alternatives& all) {
       made.back().stamp = pattern;
       if (date) made.back().date = layout.columns[*date];
     }
-  if (patterns.size() > 1)
-    all.question += (all.question.empty() ? "" : "; ") +
-                    (patterns.front() == "hh:mm" ? fmt::format("`{}` may be hours and minutes or minutes and seconds", cells.back())
-                                                 : fmt::format("`{}` may have the day or the month first", cells.front()));
+  if (patterns.size() > 1) all.question += (all.question.empty() ? "" : "; ") + question_of(patterns, cells);
   all.rules = std::move(made);
 }
 

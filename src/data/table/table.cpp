@@ -10,16 +10,16 @@
 #include "core/system/digest.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/words.hpp"
-#include "data/table/cells.hpp"
-#include "data/table/doubtful_number.hpp"
+#include "data/cell/cells.hpp"
+#include "data/cell/doubtful_number.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/time_stamp.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/file_errors.hpp"
 #include "data/table/gzip.hpp"
 #include "data/table/proposal.hpp"
 #include "data/table/record_bytes.hpp"
-#include "data/table/serial_time.hpp"
 #include "data/table/table_parser.hpp"
-#include "data/table/time_stamp.hpp"
 
 namespace sysid {
 namespace {
@@ -211,9 +211,7 @@ std::vector<double> Table::numbers_as_told(std::string const& column, std::optio
                     : kind == CellKind::out_of_range ? data_errors::out_of_range(where, shown, mention)
                                                      : data_errors::not_a_number(where, shown, shows, mention));
   }
-  if (int const row = row_of_doubtful_points(index))
-    throw UserError(
-        data_errors::points_or_groups(place(static_cast<std::size_t>(row - 1), column), unquoted_cell(cell(row, index)), mention));
+  refuse_doubtful_points(index, mention);
   if (!rules_.asked_for_missing)
     if (auto const doubtful = doubtful_numbers(values); !doubtful.empty())
       throw UserError(data_errors::doubtful_sample(place(doubtful.front().places.front(), column), doubtful.front().value,
@@ -247,27 +245,29 @@ int Table::row_of_doubtful_points(int column) const {
   return separator_ != ',' || comma ? first : 0;
 }
 
+void Table::refuse_doubtful_points(int column, std::optional<Span> mention) const {
+  int const row = row_of_doubtful_points(column);
+  if (row == 0) return;
+  std::string const& name = columns_[static_cast<std::size_t>(column)];
+  throw UserError(
+      data_errors::points_or_groups(place(static_cast<std::size_t>(row - 1), name), unquoted_cell(cell(row, column)), mention));
+}
+
 std::vector<double> Table::serial_times_as_told(std::string const& column, SerialTime const& unit,
                                                 std::optional<Span> mention) const {
   int const index = index_of(column, mention);
-  std::vector<TimeStamp> stamps;
-  int decimals = 0;
+  std::vector<SerialStamp> stamps;
   for (int row = 1; row <= rows_; ++row) {
     if (row % rows_between_looks == 0) stop_if_interrupted();
     std::string const text = unquoted_cell(cell(row, index));
-    auto const read = read_serial(text, unit);
+    auto const read = read_serial(text, unit, notation_);
     if (!read)
       throw UserError(data_errors::not_a_stamp(place(static_cast<std::size_t>(row - 1), column), row > 1 ? text : std::string(),
                                                rules_.stamp, mention));
-    decimals = std::max(decimals, read->decimals);
-    stamps.push_back(read->stamp);
+    stamps.push_back(*read);
   }
-  std::vector<double> seconds;
-  for (TimeStamp& stamp : stamps) {
-    stamp = without_rounding(stamp, unit, decimals);
-    seconds.push_back(seconds_between(stamps.front(), stamp));
-  }
-  return seconds;
+  refuse_doubtful_points(index, mention);
+  return seconds_of(stamps, unit);
 }
 
 std::vector<double> Table::times_as_told(std::string const& column, std::optional<Span> mention) const {
@@ -289,10 +289,14 @@ std::vector<double> Table::times_as_told(std::string const& column, std::optiona
       throw UserError(data_errors::not_a_stamp(place(static_cast<std::size_t>(row - 1), column), shows ? text : std::string(),
                                                rules_.stamp, mention));
     }
+    if (row == 1) first = *stamp;
+    if (stamp->has_zone != first.has_zone)
+      throw UserError(data_errors::zones_differ(place(static_cast<std::size_t>(row - 1), column), text, stamp->has_zone, mention));
+    if (pattern->has_counted_fraction() && stamp->decimals != first.decimals)
+      throw UserError(data_errors::fractions_differ(place(static_cast<std::size_t>(row - 1), column), text, mention));
     // Time of day that falls by more than half a day has passed midnight, minutes and seconds that fall by half an hour the hour.
     if (!pattern->has_date() && row > 1 && before.second - (stamp->second + turns * turn) > turn / 2) ++turns;
     stamp->second += turns * turn;
-    if (row == 1) first = *stamp;
     before = *stamp;
     seconds[static_cast<std::size_t>(row - 1)] = seconds_between(first, *stamp);
   }

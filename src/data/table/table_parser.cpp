@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "core/system/interrupt.hpp"
-#include "data/table/cells.hpp"
+#include "data/cell/cells.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/table/file_errors.hpp"
-#include "data/table/unit_text.hpp"
 
 namespace sysid {
 namespace {

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "core/text/diagnostic.hpp"
+#include "data/cell/doubtful_number.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/record.hpp"
-#include "data/table/doubtful_number.hpp"
 #include "data/table/proposal.hpp"
-#include "data/table/serial_time.hpp"
 #include "data/table/table.hpp"
-#include "data/table/unit_text.hpp"
 #include "data/temporary_file.hpp"
 
 using namespace sysid;

@@ -1,5 +1,5 @@
 // Spellings of units that the language does not know, and what it calls them.
-#include "data/table/unit_text.hpp"
+#include "data/cell/unit_text.hpp"
 
 #include <algorithm>
 #include <charconv>

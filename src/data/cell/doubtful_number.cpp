@@ -1,5 +1,5 @@
 // A spike of another size may be a measurement: it is left to the residuals.
-#include "data/table/doubtful_number.hpp"
+#include "data/cell/doubtful_number.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // A line is cut at its separators; what stands in quotes is one cell.
-#include "data/table/cells.hpp"
+#include "data/cell/cells.hpp"
 
 #include <algorithm>
 
@@ -29,6 +29,13 @@ std::string unquoted_cell(std::string_view cell) {
     if (cell[i] == '"') ++i;
   }
   return std::string(trimmed(text, cell_blanks));
+}
+
+std::string with_plain_blanks(std::string_view text) {
+  std::string plain(text);
+  for (std::string_view const blank : wide_blanks)
+    for (std::size_t at; (at = plain.find(blank)) != std::string::npos;) plain.replace(at, blank.size(), " ");
+  return plain;
 }
 
 char find_separator(std::string_view header) {
