@@ -8,11 +8,11 @@
 #include <memory>
 
 #include "core/text/words.hpp"
+#include "data/cell/rounded_times.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_doubt.hpp"
 #include "data/cell/unit_text.hpp"
 #include "data/format/open_record.hpp"
-#include "data/rounded_times.hpp"
 #include "data/table/file_errors.hpp"
 #include "data/table_record.hpp"
 
@@ -130,10 +130,9 @@ class Columns {
  private:
   /// Numbers that count something else than the unit they are taken for.
   void refuse_no_seconds(std::vector<double> const& written, ColumnRequest const& column) const {
+    refuse_counts_since_a_date(written, column);
     bool const is_text = file_.row_count().has_value();
     double const scale = column.unit ? column.unit->scale : 1;
-    if (SerialTime const* const counts = seems_serial(written, column.column); counts && scale == 1 && is_text)
-      throw UserError(data_errors::times_are_dates(file_.place(0, column.column), written.front(), counts->word, column.mention));
     if (ClockDoubt doubt = seems_clock(written, is_text); !doubt.patterns.empty() && (scale == 1 || scale == 60)) {
       for (std::string& pattern : doubt.patterns)  // the sign of a fraction is that of the file
         std::replace(pattern.begin(), pattern.end(), '.', request_.rules.decimal);
@@ -142,6 +141,19 @@ class Columns {
     }
     if (!column.unit && !(request_.step > 0) && counts_rows(written, column.column))
       throw UserError(data_errors::times_are_counts(file_.place(0, column.column), column.mention));
+  }
+  void refuse_counts_since_a_date(std::vector<double> const& written, ColumnRequest const& column) const {
+    SerialTime const* const counts = seems_serial(written, column.column);
+    if (counts == nullptr || (column.unit && column.unit->scale != 1)) return;
+    bool const is_text = file_.row_count().has_value();
+    // Seconds since 1970 are seconds; a text has digits of them that a number loses.
+    if (!is_text && counts->word == "seconds") return;
+    auto const split = split_name(column.column);
+    auto const unit = split ? unit_of_text(split->unit) : std::nullopt;
+    bool const stated = column.unit || (unit && same_unit(*unit, unit_atom("s").value()));
+    if (stated && counts->word == "days") return;
+    throw UserError(
+        data_errors::times_are_dates(file_.place(0, column.column), written.front(), counts->word, is_text, column.mention));
   }
   std::vector<double> of_one_length(std::vector<double> values, ColumnRequest const& column) {
     if (!rows_) {

@@ -52,7 +52,7 @@ struct Record {
 
 /// Reads the file and everything asked for. What is wrong with it is added to `diagnostics`, one message per column at most;
 /// nothing is returned then. IoError when the file cannot be read. Times that are equal steps before they were rounded are read as
-/// such (data/rounded_times.hpp).
+/// such (data/cell/rounded_times.hpp).
 std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics);
 
 /// Rows of a record from 1, both included; last = 0 means its last row.

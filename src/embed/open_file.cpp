@@ -7,6 +7,9 @@
 
 #include "check/checked/task_kinds.hpp"
 #include "core/system/files.hpp"
+#include "data/cell/number_notation.hpp"
+#include "data/cell/serial_time.hpp"
+#include "data/table/reading_rules.hpp"
 #include "syntax/parse.hpp"
 
 namespace sysid::embed {
@@ -23,6 +26,53 @@ std::string names_of(Items const& items) {
   throw UserError({Severity::error, {}, std::move(message), std::nullopt, {}, std::move(help)});
 }
 
+/// E4025 at the column.
+[[noreturn]] void refuse(DataBlock const& block, ColumnUse const& column, std::string_view message, std::string help) {
+  throw UserError({Severity::error,
+                   "E4025",
+                   fmt::format("`{}`, column `{}`: {}", block.shown_path, column.column, message),
+                   Label{column.span, {}},
+                   {},
+                   std::move(help)});
+}
+
+/// Units and dates that the block has read of its file are not in arrays, and numbers without them would be in other units.
+void refuse_what_only_the_file_states(DataBlock const& block) {
+  bool const has_dates = !block.rules.stamp.empty() && find_serial_time(block.rules.stamp) == nullptr;
+  if (block.time && !block.time->unit && has_dates)
+    refuse(block, *block.time, "`read stamp` makes seconds of the dates of the file, and numbers of an array are no dates",
+           fmt::format("write the unit that they have: `time {}`; it changes nothing for the file",
+                       column_text(block.time->column, "s")));
+  if (block.rules.units == UnitsPlace::none) return;
+  auto const check = [&](ColumnUse const& column, std::string_view example) {
+    if (!column.unit)
+      refuse(block, column, "`read units` takes its unit from the file, and an array has none",
+             fmt::format("write the unit of the array behind the column, such as `{}`; plain numbers have `[1]`",
+                         column_text(column.column, example)));
+  };
+  if (block.time && block.rules.stamp.empty()) check(*block.time, "s");
+  for (DataInputUse const& input : block.inputs) check(input, "N");
+  for (DataMeasureUse const& channel : block.measured) check(channel, "mm");
+}
+
+/// The table of arrays is plain, however the file is written that it replaces. What numbers mean stays: marks of missing samples,
+/// written with a point here, and what times count since a date.
+ReadingRules rules_of_arrays(ReadingRules const& of_file) {
+  ReadingRules rules;
+  rules.names = 1;
+  rules.separator = ',';
+  rules.asked_for_missing = of_file.asked_for_missing;
+  rules.no_other_mark = of_file.no_other_mark;
+  NumberNotation const notation{of_file.decimal, of_file.thousands};
+  for (std::string const& word : of_file.missing) {
+    double value = 0;
+    bool const is_number = parse_cell(word, notation, value) == CellKind::number;
+    rules.missing.push_back(is_number ? in_plain_notation(word, notation).value_or(word) : word);
+  }
+  if (find_serial_time(of_file.stamp) != nullptr) rules.stamp = of_file.stamp;
+  return rules;
+}
+
 void point(CheckedFile& file, std::map<std::string, std::string> const& records) {
   for (auto const& [name, path] : records) {
     auto const block = std::find_if(file.data.begin(), file.data.end(), [&](DataBlock const& each) { return each.name == name; });
@@ -30,10 +80,8 @@ void point(CheckedFile& file, std::map<std::string, std::string> const& records)
       unknown(fmt::format("there is no data block `{}` in this file", name), fmt::format("it has {}", names_of(file.data)));
     block->path = path;
     block->shown_path = fmt::format("{} (arrays)", name);
-    // The table of the arrays is plain, however the file is written that it replaces.
-    block->rules = {};
-    block->rules.names = 1;
-    block->rules.separator = ',';
+    refuse_what_only_the_file_states(*block);
+    block->rules = rules_of_arrays(block->rules);
   }
 }
 

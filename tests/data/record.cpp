@@ -263,3 +263,23 @@ TEST_CASE("a unit in the name of a column goes against another one of the data b
   CHECK(loaded(with("acc (g)", "g_n")).rows() == 2);
   CHECK(loaded(request(file.path(), {}, {"F [kN]"})).measured[0][1] == 2);
 }
+
+TEST_CASE("who states seconds means seconds, unless they would be older than the earth") {
+  auto const file_of = [](double first, double step) {
+    std::string text = "t,y\n";
+    for (int i = 0; i < 30; ++i) text += fmt::format("{},{}\n", first + i * step, i % 5);
+    return text;
+  };
+  TemporaryFile const days(file_of(45356.5, 1.0 / 86400)), milliseconds(file_of(1.7145e12, 1000));
+  RecordRequest wanted = request(days.path(), {}, {"y"});
+  std::vector<Diagnostic> const asked = errors(wanted);
+  CHECK(asked.at(0).code == "E4029");
+  CHECK(asked.at(0).help.find("`time t [s]`") != std::string::npos);
+  wanted.time->unit = atom("s");
+  CHECK(loaded(wanted).time[0] == 45356.5);
+  wanted = request(milliseconds.path(), {}, {"y"});
+  wanted.time->unit = atom("s");
+  CHECK(errors(wanted).at(0).code == "E4029");
+  wanted.time->unit = atom("ms");
+  CHECK(loaded(wanted).time[1] - loaded(wanted).time[0] == 1);
+}

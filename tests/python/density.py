@@ -27,6 +27,22 @@ data bench {
 }
 posterior = fit line to bench with mh, seed = 1
 """
+CLOCK = """model decay {
+  state y [mm]
+  initial y = 1
+  parameter k [1/s] ~ log_uniform(1e-4, 1)
+  parameter sd [mm] ~ log_uniform(0.01, 1e4)
+  y' = -k*y
+  observe d ~ normal(y, sd = sd)
+}
+data bench {
+  file    "nowhere.csv"
+  RULES
+  time    t
+  measure d = d [mm]
+}
+posterior = fit decay to bench with map, seed = 1
+"""
 PURE = LINE.replace("slope [m/V]", "slope").replace("slope*u", "slope*(1 [m/V])*u")
 U = np.linspace(-1, 1, 20)
 D = 1e3 * (2 * U + 0.1 * np.cos(37 * U))  # [mm]
@@ -287,11 +303,11 @@ class Data(unittest.TestCase):
         for rules in (
             'decimal = ",", thousands = "."',
             "values = 4",
-            "units = 2",
             "missing = 0",
             'separator = ";"',
             "encoding = utf16",
             "names = 3",
+            "units = 2",  # the columns have theirs in the block
         ):
             with self.subTest(rules=rules):
                 text = LINE.replace('"nowhere.csv"\n', f'"nowhere.csv"\n  read    {rules}\n')
@@ -300,6 +316,49 @@ class Data(unittest.TestCase):
             with self.subTest(name=name):
                 text = LINE.replace("u = u [V]", f'u = "{name}" [V]')
                 self.assertEqual(sysid.loads(text, data={name: U, "d": D}).log_density(np.zeros(2)), expected)
+
+    def test_what_numbers_mean_holds_for_arrays(self):
+        """Marks of missing samples, and what times count since a date, are rules of the block, and the lines of messages work."""
+
+        def load(rules, d=D, time=None):
+            text = LINE.replace('"nowhere.csv"\n', f'"nowhere.csv"\n  read    {rules}\n' if rules else '"nowhere.csv"\n')
+            data = {"u": U, "d": d}
+            if time is not None:
+                text, data = CLOCK.replace("RULES", f"read {rules}" if rules else ""), {"t": time, "d": d}
+            return sysid.loads(text, data=data)
+
+        theta = np.zeros(2)
+        holes, marks, real = (np.where(np.arange(20) == 5, mark, D) for mark in (np.nan, -777.5, -9999.0))
+        expected = load("", holes).log_density(theta)
+        self.assertEqual(load('missing = "-777.5"', marks).log_density(theta), expected)
+        self.assertEqual(load('missing = "-777,5", decimal = ","', marks).log_density(theta), expected)  # as the file writes it
+        self.assertNotEqual(load("", marks).log_density(theta), expected)
+        with self.assertRaisesRegex(sysid.Error, "E4022"):
+            load("", real).log_density(theta)
+        self.assertEqual(load('missing = "-9999"', real).log_density(theta), expected)
+        self.assertTrue(np.isfinite(load("missing = none", real).log_density(theta)))
+        seconds = 60.0 * np.arange(20)
+        expected = load("", time=seconds).log_density(theta)
+        for start, scale, word in ((1714500000, 1, "seconds"), (1714500000000, 1e3, "milliseconds"), (45356.5, 1 / 86400, "days")):
+            times = start + seconds * scale
+            with self.subTest(word=word):
+                with self.assertRaisesRegex(sysid.Error, f"E4029(.|\n)*`read stamp = {word}`"):
+                    load("", time=times).log_density(theta)
+                np.testing.assert_allclose(load(f"stamp = {word}", time=times).log_density(theta), expected, rtol=1e-9)
+
+    def test_what_only_the_file_states_is_asked_for(self):
+        seconds = 60.0 * np.arange(20)
+        text = CLOCK.replace("RULES", "read stamp = iso")
+        with self.assertRaisesRegex(sysid.Error, r"E4025(.|\n)*`time t \[s\]`"):
+            sysid.loads(text, data={"t": seconds, "d": D})
+        stated = sysid.loads(text.replace("time    t", "time    t [s]"), data={"t": seconds, "d": D})
+        plain = sysid.loads(CLOCK.replace("RULES", ""), data={"t": seconds, "d": D})
+        self.assertEqual(stated.log_density(np.zeros(2)), plain.log_density(np.zeros(2)))
+        bare = LINE.replace("u = u [V]", "u = u").replace('"nowhere.csv"\n', '"nowhere.csv"\n  read    units = names\n')
+        with self.assertRaisesRegex(sysid.Error, "E4025(.|\n)*column `u`"):
+            sysid.loads(bare, data={"u": U, "d": D})
+        stated = sysid.loads(bare.replace("u = u", "u = u [V]"), data={"u": U, "d": D})
+        self.assertEqual(stated.log_density(np.zeros(2)), sysid.loads(LINE, data={"u": U, "d": D}).log_density(np.zeros(2)))
 
     def test_rows_that_are_missing_at_the_end_are_rows(self):
         text = """model decay {

@@ -21,8 +21,9 @@ std::string six_digits(double value) { return fmt::format("{:.6g}", value); }
 std::string time_line(RecordLook const& look) {
   TimeLook const& time = look.time;
   if (time.column.empty()) return "time      not found in any column\n";
-  std::string out = fmt::format("time      `{}`{}: {} s to {} s, ", time.column, time.stamps ? ", dates and times" : "",
-                                six_digits(time.first), six_digits(time.last));
+  std::string out =
+      fmt::format("time      `{}`{}: {} s to {} s, ", time.column, time.stamps || time.since_first ? ", dates and times" : "",
+                  six_digits(time.first), six_digits(time.last));
   if (time.step > 0) out += fmt::format("{} Hz ({} s), ", six_digits(1 / time.step), six_digits(time.step));
   if (time.unequal == 0)
     out += "equal steps";

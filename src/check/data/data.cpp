@@ -99,7 +99,10 @@ class DataChecker {
       }
       if (!fresh(settings_, setting.name, "setting")) continue;
       ReadingValue value{{}, setting.range};
-      for (ast::ReadingItem const& item : setting.items) value.items.push_back(item.value);
+      for (ast::ReadingItem const& item : setting.items) {
+        value.items.push_back(item.value);
+        value.quoted.push_back(item.quoted);
+      }
       if (std::string const wanted = row->take(block_.rules, value); !wanted.empty())
         diagnostics_.add(errors::bad_reading(setting.span, setting.name.text, wanted, std::string(row->usage)));
     }

@@ -31,6 +31,13 @@ std::string unquoted_cell(std::string_view cell) {
   return std::string(trimmed(text, cell_blanks));
 }
 
+std::string with_plain_blanks(std::string_view text) {
+  std::string plain(text);
+  for (std::string_view const blank : wide_blanks)
+    for (std::size_t at; (at = plain.find(blank)) != std::string::npos;) plain.replace(at, blank.size(), " ");
+  return plain;
+}
+
 char find_separator(std::string_view header) {
   std::size_t counts[3] = {};
   constexpr std::string_view candidates = ",;\t";

@@ -10,7 +10,8 @@
 
 namespace sysid {
 
-inline constexpr std::string_view cell_blanks = " \t";  // within a cell a line end is text
+inline constexpr std::string_view cell_blanks = " \t";                                           // within a cell a line end is text
+inline constexpr std::string_view wide_blanks[] = {"\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x89"};  // unbreakable, narrow, thin
 
 constexpr bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -71,6 +72,9 @@ bool split_cells(std::string const& bytes, std::size_t begin, std::size_t end, c
 bool is_quoted_cell(std::string_view trimmed_cell);
 /// The text between the quotes, `""` read as one quote; an unquoted cell as it stands. Without blanks around.
 std::string unquoted_cell(std::string_view cell);
+
+/// With blanks in place of wide ones: programs write a narrow one before PM.
+std::string with_plain_blanks(std::string_view text);
 
 /// Which of comma, semicolon and tab occurs most often outside quotes; the comma when none does.
 char find_separator(std::string_view header);

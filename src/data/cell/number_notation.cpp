@@ -13,8 +13,6 @@
 namespace sysid {
 namespace {
 
-constexpr std::string_view wide_blanks[] = {"\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x89"};  // unbreakable, narrow, thin
-
 CellKind parse_plain(std::string_view cell, double& value) {
   if (!cell.empty() && cell.front() == '+') {
     cell.remove_prefix(1);
@@ -32,7 +30,8 @@ CellKind parse_plain(std::string_view cell, double& value) {
   return std::isfinite(value) ? CellKind::number : CellKind::not_finite;
 }
 
-/// With a point and without groups; nothing where groups are not of three digits. What is no number stays none.
+}  // namespace
+
 std::optional<std::string> in_plain_notation(std::string_view cell, NumberNotation const& notation) {
   std::string out;
   std::size_t at = 0, group = 0;  // digits since the last sign
@@ -72,6 +71,8 @@ std::optional<std::string> in_plain_notation(std::string_view cell, NumberNotati
   return out + std::string(cell.substr(at));
 }
 
+namespace {
+
 /// word: in the notation of the file or, where it is no number there, with a point.
 bool same_number(std::string const& word, NumberNotation const& notation, double value) {
   double number = 0;
@@ -109,9 +110,7 @@ std::string text_of_number(double value, NumberNotation const& notation) {
 NotationEvidence notation_of(std::string_view cell) {
   cell = trimmed(cell, cell_blanks);
   if (is_quoted_cell(cell)) cell = trimmed(cell.substr(1, cell.size() - 2), cell_blanks);
-  std::string text(cell);
-  for (std::string_view const blank : wide_blanks)
-    for (std::size_t at; (at = text.find(blank)) != std::string::npos;) text.replace(at, blank.size(), " ");
+  std::string const text = with_plain_blanks(cell);
   NotationEvidence evidence;
   std::size_t at = text.empty() || (text[0] != '+' && text[0] != '-') ? 0 : 1;
   std::vector<std::size_t> digits{0};

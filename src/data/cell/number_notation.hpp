@@ -1,5 +1,6 @@
 // Numbers as programs and countries write them.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,10 @@ struct NumberNotation {
 
   bool plain() const { return decimal == '.' && thousands == 0; }
 };
+
+/// The text of a number with a point and without groups; nothing where groups are not of three digits, or where the sign of another
+/// notation stands. What is no number stays none.
+std::optional<std::string> in_plain_notation(std::string_view cell, NumberNotation const& notation);
 
 /// The number of a cell, quoted or not, with blanks and a + around; missing where the cell is empty, NA or one of the words. Groups
 /// of digits have three digits each, and stand before the decimal sign.

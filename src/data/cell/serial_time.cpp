@@ -2,21 +2,24 @@
 #include "data/cell/serial_time.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "core/text/words.hpp"
 #include "data/cell/cells.hpp"
+#include "data/cell/rounded_times.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr std::int64_t second = 1000000000000;
 constexpr std::int64_t day = 86400 * second;
-constexpr SerialTime serial_times[] = {{"seconds", second},
-                                       {"milliseconds", second / 1000},
-                                       {"microseconds", second / 1000000},
-                                       {"nanoseconds", second / 1000000000},
-                                       {"days", day}};
+constexpr SerialTime serial_times[] = {{"seconds", second, "s"},
+                                       {"milliseconds", second / 1000, "ms"},
+                                       {"microseconds", second / 1000000, "us"},
+                                       {"nanoseconds", second / 1000000000, "ns"},
+                                       {"days", day, "d"}};
 
 __extension__ typedef __int128 Wide;
 
@@ -26,11 +29,111 @@ TimeStamp stamp_of(Wide picoseconds) {
   return {static_cast<std::int64_t>(whole), static_cast<std::int64_t>(rest)};
 }
 
+/// `Date`, `datenum`, `start_date`, `StartDate`, and not `update`: a word of the name begins so.
 bool is_date_name(std::string_view column) {
-  std::string small;
-  for (char const c : column) small += c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
-  for (std::string_view const word : {"date", "datum", "excel", "serial"})
-    if (small.find(word) != std::string::npos) return true;
+  std::string words = " ";
+  bool small_before = false;
+  for (char const c : column) {
+    bool const capital = c >= 'A' && c <= 'Z', small = c >= 'a' && c <= 'z';
+    if ((capital && small_before) || !(capital || small)) words += ' ';
+    if (capital || small) words += capital ? static_cast<char>(c | 0x20) : c;
+    small_before = small;
+  }
+  for (std::string_view const word : {" date", " datum", " excel", " serial"})
+    if (words.find(word) != std::string::npos) return true;
+  return false;
+}
+
+/// A number as it is written: its digits, and how many of them stand behind the point.
+struct Digits {
+  std::string digits;
+  int decimals = 0;
+};
+
+/// Nothing for what is no decimal number without a sign, of a size that fits.
+std::optional<Digits> digits_of(std::string_view plain) {
+  Digits found;
+  bool point = false;
+  std::size_t at = 0;
+  for (; at < plain.size() && (is_decimal_digit(plain[at]) || (plain[at] == '.' && !point)); ++at) {
+    if (plain[at] == '.') {
+      point = !found.digits.empty();
+      if (!point) return std::nullopt;
+    } else {
+      found.digits += plain[at];
+      found.decimals += point ? 1 : 0;
+    }
+  }
+  if (found.digits.empty()) return std::nullopt;
+  if (at == plain.size()) return found;
+  if (plain[at] != 'e' && plain[at] != 'E') return std::nullopt;
+  constexpr int largest_exponent = 40;
+  int exponent = 0;
+  char const *begin = plain.data() + at + 1, *const end = plain.data() + plain.size();
+  if (begin != end && *begin == '+') ++begin;
+  auto const [stop, error] = std::from_chars(begin, end, exponent);
+  if (error != std::errc{} || stop != end || exponent > largest_exponent || exponent < -largest_exponent) return std::nullopt;
+  found.decimals -= exponent;
+  if (found.decimals < 0) found.digits.append(static_cast<std::size_t>(-found.decimals), '0'), found.decimals = 0;
+  if (found.decimals >= static_cast<int>(found.digits.size()))
+    found.digits.insert(0, static_cast<std::size_t>(found.decimals) + 1 - found.digits.size(), '0');
+  return found;
+}
+
+/// 10^-decimals days.
+double digit_of_days(int decimals) { return 86400 * std::pow(10, -decimals); }
+
+/// Digits behind the point that tell one double of this size from the next.
+int decimals_of_double(double size) {
+  double const distance = std::nextafter(size, 2 * size + 1) - size;
+  return static_cast<int>(std::floor(-std::log10(distance)));
+}
+
+/// Days with this many decimals, to the power of ten of a second that is nearest to their last digit: 45356.4173611111 is a minute.
+TimeStamp to_round_time(TimeStamp const& stamp, int decimals) {
+  Wide last_digit = day, grid = 1;
+  for (int i = 0; i < decimals; ++i) last_digit /= 10;
+  while (grid < last_digit) grid *= 10;
+  Wide const picoseconds = static_cast<Wide>(stamp.second) * second + stamp.picosecond;
+  return stamp_of((picoseconds + grid / 2) / grid * grid);
+}
+
+/// Equal steps to the last bit.
+bool are_even(std::vector<double> const& times) {
+  double const last = times.back(), step = last / static_cast<double>(times.size() - 1);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (!(std::fabs(times[i] - static_cast<double>(i) * step) <= 1e-15 * last)) return false;
+  return true;
+}
+
+/// Of the numbers as they were written, which were the shortest that read back.
+int decimals_written(std::vector<double> const& values) {
+  int most = 0;
+  for (double const value : values) {
+    char text[400];
+    char const* const end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed).ptr;
+    char const* const point = std::find(static_cast<char const*>(text), end, '.');
+    if (point != end) most = std::max(most, static_cast<int>(end - point) - 1);
+  }
+  return most;
+}
+
+/// Whether all steps of days are whole seconds, or tenths to thousandths of one, to within the digits that the numbers have, where
+/// so many digits are no chance. Steps that are multiples of 27 ms have an end as decimal numbers of days, as other numbers have.
+bool are_steps_of_clocks(std::vector<double> const& days) {
+  double const tolerance =
+      std::max(digit_of_days(decimals_written(days)), 2 * 86400 * (std::nextafter(days.back(), 2 * days.back()) - days.back()));
+  constexpr double share = 0.05;  // of a unit, that chance may hit
+  for (double const unit : {1.0, 0.1, 0.01, 0.001}) {
+    if (tolerance > share * unit) return false;
+    bool whole = true, endless = false;
+    for (std::size_t i = 1; i < days.size() && whole; ++i) {
+      double const units = (days[i] - days[i - 1]) * 86400 / unit, nearest = std::round(units);
+      whole = nearest >= 1 && std::fabs(units - nearest) * unit <= tolerance;
+      endless = endless || std::fmod(nearest, 27) != 0;
+    }
+    if (whole) return endless;
+  }
   return false;
 }
 
@@ -42,53 +145,63 @@ SerialTime const* find_serial_time(std::string_view word) {
   return found == std::end(serial_times) ? nullptr : found;
 }
 
-std::optional<SerialStamp> read_serial(std::string_view cell, SerialTime const& unit) {
-  cell = trimmed(cell, cell_blanks);
-  constexpr std::size_t most_digits = 19, most_decimals = 18;
-  std::size_t at = 0;
-  std::int64_t whole = 0;
-  for (; at < cell.size() && is_decimal_digit(cell[at]); ++at) {
-    if (at + 1 >= most_digits + (unit.picoseconds < second ? 1 : 0)) return std::nullopt;
-    whole = whole * 10 + (cell[at] - '0');
+std::optional<SerialStamp> read_serial(std::string_view cell, SerialTime const& unit, NumberNotation const& notation) {
+  std::optional<std::string> const plain = in_plain_notation(trimmed(cell, cell_blanks), notation);
+  if (!plain) return std::nullopt;
+  std::string_view text = *plain;
+  bool const negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  auto const read = digits_of(text);
+  if (!read) return std::nullopt;
+  std::size_t const behind = static_cast<std::size_t>(read->decimals);
+  std::string_view whole_digits = std::string_view(read->digits).substr(0, read->digits.size() - behind);
+  whole_digits.remove_prefix(std::min(whole_digits.find_first_not_of('0'), whole_digits.size() - 1));
+  // Beyond these, whole seconds have more than 64 bits.
+  std::size_t const most_digits = unit.picoseconds > second ? 13 : unit.picoseconds < second ? 19 : 18;
+  if (whole_digits.size() > most_digits) return std::nullopt;
+  Wide whole = 0, fraction = 0, power = 1;
+  for (char const c : whole_digits) whole = whole * 10 + (c - '0');
+  constexpr std::size_t most_decimals = 18;
+  for (char const c : std::string_view(read->digits).substr(read->digits.size() - behind, most_decimals)) {
+    fraction = fraction * 10 + (c - '0');
+    power *= 10;
   }
-  if (at == 0) return std::nullopt;
-  Wide fraction = 0, power = 1;
-  int decimals = 0;
-  if (at < cell.size() && (cell[at] == '.' || cell[at] == ',')) {
-    for (++at; at < cell.size() && is_decimal_digit(cell[at]); ++at) {
-      if (static_cast<std::size_t>(decimals) >= most_decimals) continue;
-      fraction = fraction * 10 + (cell[at] - '0');
-      power *= 10;
-      ++decimals;
-    }
-  }
-  if (at != cell.size()) return std::nullopt;
-  Wide const picoseconds = static_cast<Wide>(whole) * unit.picoseconds + (fraction * unit.picoseconds + power / 2) / power;
-  return SerialStamp{stamp_of(picoseconds), decimals};
+  Wide const picoseconds = whole * unit.picoseconds + (fraction * unit.picoseconds + power / 2) / power;
+  return SerialStamp{stamp_of(negative ? -picoseconds : picoseconds), static_cast<int>(std::min(behind, most_decimals))};
 }
 
-std::optional<SerialStamp> read_duration(std::string_view cell) {
-  constexpr SerialTime units[] = {{"sec", second},       {"s", second},        {"ms", second / 1000}, {"min", 60 * second},
-                                  {"hr", 3600 * second}, {"h", 3600 * second}, {"days", day},         {"day", day}};
+std::optional<SerialStamp> read_duration(std::string_view cell, NumberNotation const& notation) {
+  constexpr SerialTime units[] = {{"sec", second, "s"},        {"s", second, "s"},         {"ms", second / 1000, "ms"},
+                                  {"min", 60 * second, "min"}, {"hr", 3600 * second, "h"}, {"h", 3600 * second, "h"},
+                                  {"days", day, "d"},          {"day", day, "d"}};
   cell = trimmed(cell, cell_blanks);
   std::size_t const blank = cell.find(' ');
   if (blank == std::string_view::npos) return std::nullopt;
   std::string_view const word = trimmed(cell.substr(blank));
   for (SerialTime const& each : units)
-    if (each.word == word) return read_serial(cell.substr(0, blank), each);
+    if (each.word == word) return read_serial(cell.substr(0, blank), each, notation);
   return std::nullopt;
 }
 
 bool is_stamp_word(std::string_view text) { return text == "iso" || text == duration_word || find_serial_time(text) != nullptr; }
 
-TimeStamp without_rounding(TimeStamp const& stamp, SerialTime const& unit, int decimals) {
+std::vector<double> seconds_of(std::vector<SerialStamp> const& stamps, SerialTime const& unit) {
+  std::vector<double> seconds, rounded;
+  int decimals = 0;
+  for (SerialStamp const& each : stamps) {
+    decimals = std::max(decimals, each.decimals);
+    seconds.push_back(seconds_between(stamps.front().stamp, each.stamp));
+  }
   constexpr int fewest = 6;
-  if (unit.picoseconds != day || decimals < fewest) return stamp;
-  Wide last_digit = day, grid = 1;
-  for (int i = 0; i < decimals; ++i) last_digit /= 10;
-  while (grid < last_digit) grid *= 10;
-  Wide const picoseconds = static_cast<Wide>(stamp.second) * second + stamp.picosecond;
-  return stamp_of((picoseconds + grid / 2) / grid * grid);
+  if (unit.picoseconds != day || decimals < fewest) return seconds;
+  decimals = std::min(decimals, decimals_of_double(static_cast<double>(stamps.back().stamp.second) / 86400));
+  TimeStamp const first = to_round_time(stamps.front().stamp, decimals);
+  for (SerialStamp const& each : stamps) rounded.push_back(seconds_between(first, to_round_time(each.stamp, decimals)));
+  if (are_even(rounded)) return rounded;
+  auto equal = seconds.size() > 2 && std::is_sorted(seconds.begin(), seconds.end())
+                   ? equal_times_before_rounding(seconds, digit_of_days(decimals))
+                   : std::nullopt;
+  return equal ? std::move(*equal) : rounded;
 }
 
 SerialTime const* seems_serial(std::vector<double> const& values, std::string_view column) {
@@ -105,11 +218,7 @@ SerialTime const* seems_serial(std::vector<double> const& values, std::string_vi
   if (!within(of_1970_in_spreadsheets, of_1970_in_spreadsheets + days_to_2100) &&
       !within(of_1970_in_matlab, of_1970_in_matlab + days_to_2100))
     return nullptr;
-  double const step = (last - first) / static_cast<double>(values.size() - 1), seconds = step * 86400;
-  constexpr double decimal_parts = 1e4, nearly = 1e-3;
-  bool const short_decimal = std::fabs(step * decimal_parts - std::round(step * decimal_parts)) < nearly;
-  bool const whole_seconds = seconds > 0.5 && std::fabs(seconds - std::round(seconds)) < nearly * seconds;
-  return is_date_name(column) || (whole_seconds && !short_decimal) ? find_serial_time("days") : nullptr;
+  return is_date_name(column) || are_steps_of_clocks(values) ? find_serial_time("days") : nullptr;
 }
 
 }  // namespace sysid

@@ -1,8 +1,6 @@
 // Patterns are read into tokens once; a cell is matched token by token, without going back.
 #include "data/cell/time_stamp.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 
@@ -30,7 +28,7 @@ int days_in(std::int64_t year, int month) {
   return days[static_cast<std::size_t>(month - 1)] + (month == 2 && is_leap(year) ? 1 : 0);
 }
 
-/// English and German; `Mär` may have lost its dots.
+/// English and German; `Mär` may have lost its dots. In full they are read as well, and no other words: `marraskuu` is November.
 struct MonthName {
   std::string_view name;
   int month;
@@ -38,6 +36,20 @@ struct MonthName {
 constexpr MonthName month_names[] = {{"jan", 1},  {"feb", 2},  {"mar", 3},  {"mär", 3},  {"mrz", 3}, {"apr", 4},
                                      {"may", 5},  {"mai", 5},  {"jun", 6},  {"jul", 7},  {"aug", 8}, {"sep", 9},
                                      {"oct", 10}, {"okt", 10}, {"nov", 11}, {"dec", 12}, {"dez", 12}};
+constexpr MonthName full_names[] = {{"january", 1},   {"januar", 1},   {"jänner", 1},   {"february", 2}, {"februar", 2},
+                                    {"march", 3},     {"märz", 3},     {"maerz", 3},    {"marz", 3},     {"april", 4},
+                                    {"june", 6},      {"juni", 6},     {"july", 7},     {"juli", 7},     {"august", 8},
+                                    {"september", 9}, {"sept", 9},     {"october", 10}, {"oktober", 10}, {"november", 11},
+                                    {"december", 12}, {"dezember", 12}};
+
+/// word: in small letters; 0: it is none.
+int month_of(std::string_view word) {
+  for (MonthName const& each : month_names)
+    if (word == each.name) return each.month;
+  for (MonthName const& each : full_names)
+    if (word == each.name) return each.month;
+  return 0;
+}
 
 constexpr std::string_view iso = "iso";
 
@@ -45,7 +57,7 @@ constexpr std::string_view iso = "iso";
 
 double seconds_between(TimeStamp const& from, TimeStamp const& to) {
   __extension__ typedef __int128 Wide;
-  Wide const picoseconds = static_cast<Wide>(to.second - from.second) * 1000000000000 + (to.picosecond - from.picosecond);
+  Wide const picoseconds = (static_cast<Wide>(to.second) - from.second) * 1000000000000 + (to.picosecond - from.picosecond);
   return static_cast<double>(static_cast<long double>(picoseconds) / 1e12L);
 }
 
@@ -99,6 +111,8 @@ struct StampPattern::Reader {
   std::size_t at = 0;
   std::int64_t year = 1970, offset_minutes = 0, picosecond = 0;
   int month = 1, day = 1, day_of_year = 0, hour = 0, minute = 0, second = 0;
+  int decimals = 0;
+  bool has_zone = false;
   std::optional<bool> afternoon{};
 
   bool number(int& value, int most_digits, bool exact) {
@@ -110,7 +124,7 @@ struct StampPattern::Reader {
   }
   void fraction() {
     std::int64_t unit = 100000000000;
-    for (; at < cell.size() && is_decimal_digit(cell[at]); ++at, unit /= 10) picosecond += (cell[at] - '0') * unit;
+    for (; at < cell.size() && is_decimal_digit(cell[at]); ++at, unit /= 10, ++decimals) picosecond += (cell[at] - '0') * unit;
   }
   void blanks() {
     while (at < cell.size() && cell[at] == ' ') ++at;
@@ -120,12 +134,9 @@ struct StampPattern::Reader {
     std::size_t end = at;
     while (end < cell.size() && (lower(cell[end]) >= 'a' || static_cast<unsigned char>(cell[end]) >= 0x80U))
       word += lower(cell[end++]);
-    auto const found = std::find_if(std::begin(month_names), std::end(month_names),
-                                    [&](MonthName const& each) { return word.starts_with(each.name); });
-    if (found == std::end(month_names)) return false;
-    month = found->month;
+    month = month_of(word);
     at = end;
-    return true;
+    return month > 0;
   }
   bool half_of_day() {
     blanks();
@@ -137,6 +148,7 @@ struct StampPattern::Reader {
     return true;
   }
   bool zone() {
+    has_zone = true;
     blanks();
     if (at < cell.size() && (cell[at] == 'Z' || cell[at] == 'z')) return ++at, true;
     if (cell.substr(at).starts_with("UTC") || cell.substr(at).starts_with("GMT")) return at += 3, true;
@@ -198,7 +210,7 @@ struct StampPattern::Reader {
     }
     if (hours > 23 && (hours > 24 || minute > 0 || second > 0 || picosecond > 0)) return std::nullopt;
     std::int64_t const days = day_of_year > 0 ? days_from_civil(year, 1, 1) + day_of_year - 1 : days_from_civil(year, month, day);
-    return TimeStamp{((days * 24 + hours) * 60 + minute - offset_minutes) * 60 + second, picosecond};
+    return TimeStamp{((days * 24 + hours) * 60 + minute - offset_minutes) * 60 + second, picosecond, decimals, has_zone};
   }
   std::optional<TimeStamp> iso_stamp() {
     int value = 0;
@@ -227,7 +239,8 @@ std::size_t StampPattern::packed_digits(std::size_t token) const {
   return tokens_[last].exact ? 0 : 2 * (last - token + 1);
 }
 
-std::optional<TimeStamp> StampPattern::read(std::string_view cell) const {
+std::optional<TimeStamp> StampPattern::read(std::string_view text) const {
+  std::string const cell = with_plain_blanks(text);
   Reader reader{.cell = trimmed(cell)};
   if (tokens_.empty()) return reader.iso_stamp();
   std::string padded;
@@ -252,10 +265,13 @@ std::optional<TimeStamp> StampPattern::read(std::string_view cell) const {
   return reader.at == reader.cell.size() ? reader.stamp() : std::nullopt;
 }
 
-bool is_time_stamp(std::string_view text) {
-  if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.size() - 2);
+bool is_time_stamp(std::string_view cell) {
   constexpr std::size_t longest = 48;
-  if (text.empty() || text.size() > longest) return false;
+  if (cell.size() > longest) return false;
+  std::string const with_blanks = with_plain_blanks(cell);
+  std::string_view text = with_blanks;
+  if (text.size() >= 2 && text.front() == '"') text = text.substr(1, text.size() - 2);
+  if (text.empty()) return false;
   // Names of months, and nothing but digits and signs beside them.
   std::string plain;
   int letters = 0;
@@ -287,51 +303,6 @@ bool is_time_stamp(std::string_view text) {
                          day.find_first_of(",'") == std::string_view::npos &&
                          (day.rfind('.') + 5 == day.size() || day.rfind('.') + 3 == day.size());
   return count(':') > 0 || count('/') == 2 || by_dashes || by_points;
-}
-
-std::vector<std::string> patterns_of(std::vector<std::string> const& cells) {
-  static constexpr std::string_view dates[] = {"",           "YYYY-MM-DD", "YYYY/MM/DD", "YYYY.MM.DD",  "DD.MM.YYYY",
-                                               "DD/MM/YYYY", "MM/DD/YYYY", "DD-MM-YYYY", "MM-DD-YYYY",  "DD.MM.YY",
-                                               "DD/MM/YY",   "MM/DD/YY",   "YY/MM/DD",   "DD-MMM-YYYY", "DD MMM YYYY",
-                                               "DD-MMM-YY",  "YYYY-DDD",   "YYYY-DD-MM", "MMM DD YYYY", "YYYYMMDD"};
-  static constexpr std::string_view between[] = {" ", "T", ", ", "-", "_", ","};
-  static constexpr std::string_view times[] = {"",           "hh:mm:ss",    "hh:mm:ss.f",    "hh:mm:ss,f",
-                                               "hh:mm:ss:f", "hh:mm:ss AP", "hh:mm:ss.f AP", "hh:mm",
-                                               "hh:mm AP",   "mm:ss.f",     "mm:ss",         "hhmmss"};
-  std::vector<std::string> found;
-  if (cells.empty()) return found;
-  auto const fits = [&](std::string const& text) {
-    auto const pattern = StampPattern::parse(text);
-    if (!pattern || !pattern->read(cells.front())) return false;
-    return std::all_of(cells.begin(), cells.end(), [&](std::string const& cell) { return pattern->read(cell).has_value(); });
-  };
-  if (fits(std::string(iso))) return {std::string(iso)};
-  // `2024-13` is no thirteenth day of a year.
-  auto const digit = [](std::string const& cell, std::size_t at) { return at < cell.size() && is_decimal_digit(cell[at]); };
-  bool const days_of_year = std::all_of(cells.begin(), cells.end(), [&](std::string const& cell) {
-    return digit(cell, 5) && digit(cell, 6) && digit(cell, 7) && !digit(cell, 8);
-  });
-  for (std::string_view const date : dates) {
-    bool taken = false;
-    if ((date == "YYYY-DDD" && !days_of_year) || (date == "YYYY-DD-MM" && !found.empty())) continue;
-    for (std::string_view const time : times) {
-      if (date.empty() && (time.empty() || time == "hhmmss")) continue;
-      for (std::string_view const joint : between) {
-        if ((date.empty() || time.empty()) && joint != between[0]) continue;
-        for (std::string_view const zone : {std::string_view(), std::string_view("zone")}) {
-          if (time.empty() && !zone.empty()) continue;  // `-04` behind a date is no zone
-          std::string text = fmt::format("{}{}{}{}", date, date.empty() || time.empty() ? "" : joint, time, zone);
-          if (taken || !fits(text)) continue;
-          // `00:01` may be hours and minutes, or minutes and seconds.
-          bool const either = date.empty() && text == "hh:mm" && fits("mm:ss");
-          found.push_back(std::move(text));
-          if (either) found.emplace_back("mm:ss");
-          taken = true;
-        }
-      }
-    }
-  }
-  return found;
 }
 
 }  // namespace sysid

@@ -11,6 +11,8 @@ namespace sysid {
 struct TimeStamp {
   std::int64_t second = 0;      // since 1970-01-01 00:00, or since midnight where the pattern has no date
   std::int64_t picosecond = 0;  // of the second
+  int decimals = 0;             // digits of a fraction that stand there
+  bool has_zone = false;        // one stands there
 };
 
 /// [s], correctly rounded.
@@ -37,6 +39,8 @@ class StampPattern {
   /// [s] after which a pattern without a date begins again: a day, or an hour where it has no hours.
   std::int64_t turn() const { return has_hours_ ? 86400 : 3600; }
   std::string const& text() const { return text_; }
+  /// Whether a colon stands before the fraction, as programs also write frames and whole milliseconds: `10:00:00:7`.
+  bool has_counted_fraction() const { return text_.find(":f") != std::string::npos; }
 
  private:
   enum class Part {
@@ -72,9 +76,5 @@ class StampPattern {
 
 /// Digits in groups between the signs of dates and times: `2024-05-01 12:00:00.5`, `1.5.2024`, `5/1/24 3:00 PM`, `12:00:01`.
 bool is_time_stamp(std::string_view text);
-
-/// The usual patterns that fit all of these cells, the best first; where two of them order day and month differently, or
-/// `00:01` may be minutes or seconds, both.
-std::vector<std::string> patterns_of(std::vector<std::string> const& cells);
 
 }  // namespace sysid

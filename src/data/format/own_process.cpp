@@ -87,17 +87,25 @@ class Child {
     wait();
   }
   Child(Child const&) = delete;
-  /// Whether it has used processor time since this was last asked.
+  /// Whether it has used processor time since this was last asked, or waits for a processor or a disk and not for a lock.
   bool computes() {
     clockid_t clock{};
     timespec used{};
     if (::clock_getcpuclockid(process_, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return true;  // it has ended
     double const now = static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
-    return std::exchange(used_, now) != now;
+    return std::exchange(used_, now) != now || runs();
   }
   bool ended_well() { return wait() == 0; }
 
  private:
+  bool runs() const {
+    char state = 0;
+    if (std::FILE* const file = std::fopen(fmt::format("/proc/{}/stat", process_).c_str(), "r")) {
+      if (std::fscanf(file, "%*d (%*[^)]) %c", &state) != 1) state = 0;
+      std::fclose(file);
+    }
+    return state == 'R' || state == 'D';
+  }
   int wait() {
     if (waited_) return status_;
     while (::waitpid(process_, &status_, 0) < 0 && errno == EINTR) {

@@ -14,33 +14,23 @@
 namespace sysid {
 namespace {
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_part_of_name(char c) { return is_letter(c) || (c >= '0' && c <= '9'); }
-
 /// A name of the language for what a column is called: `Kraft (N)` is `kraft`.
 std::string name_for(std::string const& column, std::set<std::string>& taken) {
   auto const split = split_name(column);
   std::string name;
   for (char const c : split ? split->name : column) {
-    if (is_part_of_name(c))
+    if (is_part_of_a_name(c))
       name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     else if (!name.empty() && name.back() != '_')
       name += '_';
   }
   while (!name.empty() && name.back() == '_') name.pop_back();
-  if (name.empty() || !is_letter(name[0])) name = "y" + (name.empty() ? "" : "_" + name);
+  if (name.empty() || !begins_a_name(name[0])) name = "y" + (name.empty() ? "" : "_" + name);
   static std::set<std::string> const reserved{"if", "then", "else", "and", "or", "not"};
   if (reserved.contains(name)) name += "_";
   std::string const plain = name;
   for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
   return name;
-}
-
-/// As a column is written in a block: in quotes where it is no name.
-std::string column_text(std::string const& column, std::string const& unit) {
-  bool const is_name = is_letter(column[0]) && std::all_of(column.begin(), column.end(), is_part_of_name);
-  static std::set<std::string> const reserved{"if", "then", "else", "and", "or", "not"};
-  return (is_name && !reserved.contains(column) ? column : quoted_text(column)) + (unit.empty() ? "" : fmt::format(" [{}]", unit));
 }
 
 }  // namespace
@@ -52,7 +42,7 @@ std::string paste_block(RecordLook const& look) {
   taken.clear();
   if (!look.reading.empty()) out += "  read    " + look.reading.substr(5) + "\n";
   if (!look.time.column.empty())
-    out += fmt::format("  time    {}\n", column_text(look.time.column, look.time.stamps ? "" : look.time.unit));
+    out += fmt::format("  time    {}\n", column_text(look.time.column, look.time.unit));
   else
     out += "  rate    1 [Hz]  # no column has the time: write the sampling rate here\n";
   for (ColumnLook const& column : look.columns) {

@@ -10,6 +10,7 @@
 
 #include "core/numeric/unit.hpp"
 #include "core/text/number.hpp"
+#include "data/cell/rounded_times.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_doubt.hpp"
 #include "data/cell/unit_text.hpp"
@@ -123,6 +124,7 @@ void look_at_time(RecordLook& look) {
   std::vector<double> const& t = look.times;
   time.first = t.front();
   time.last = t.back();
+  time.unequal = time.gaps = 0;
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
   if (steps.empty()) return;
@@ -137,6 +139,7 @@ void look_at_time(RecordLook& look) {
       ++time.unequal;
     }
   }
+  if (time.gaps == 0) time.step = (time.last - time.first) / static_cast<double>(steps.size());
 }
 
 class Looking {
@@ -220,41 +223,63 @@ class Looking {
       Unit unit = unit_atom("s").value();
       if (auto const stated = unit_of_text(column.unit); stated && stated->dimension == unit.dimension) unit = *stated;
       time.column = column.name;
-      if (std::vector<std::string> const stamps = stamps_of_numbers(c); !stamps.empty() && unit.scale == 1 && file_->row_count()) {
-        read_stamps(column.name, stamps);
-        return look_at_time(look_);
+      SerialTime const* const counts = unit.scale == 1 ? seems_serial(look_.values[c], column.name) : nullptr;
+      bool const is_text = file_->row_count().has_value();
+      if (is_text && unit.scale == 1 && read_stamps(column.name, stamps_of_numbers(c, counts))) return look_at_time(look_);
+      // Where a file has no `read`, a unit says what its numbers count; seconds need none.
+      if (counts != nullptr && !is_text && counts->word != "seconds") {
+        unit = unit_atom(counts->unit).value();
+        time.since_first = true;
       }
       time.unit = unit.text;
-      look_.times = look_.values[c];
-      for (double& value : look_.times) value *= unit.scale;
-      return look_at_time(look_);
+      look_at_numbers(look_.values[c], unit.scale);
+      if (time.unequal == 0 || time.gaps > 0) return;
+      if (auto const equal = equal_times_before_rounding(look_.values[c])) look_at_numbers(*equal, unit.scale);
+      return;
     }
     for (std::size_t i = 0; i < look_.rows; ++i) look_.times.push_back(static_cast<double>(i + 1));
   }
 
   /// What `stamp` may say of numbers that are no seconds; empty: they are.
-  std::vector<std::string> stamps_of_numbers(std::size_t c) const {
-    if (SerialTime const* const counts = seems_serial(look_.values[c], look_.columns[c].name)) return {std::string(counts->word)};
+  std::vector<std::string> stamps_of_numbers(std::size_t c, SerialTime const* counts) const {
+    if (counts != nullptr) return {std::string(counts->word)};
     std::vector<std::string> patterns = seems_clock(look_.values[c], true).patterns;
     for (std::string& each : patterns) std::replace(each.begin(), each.end(), '.', chosen_.rules.decimal);
     return patterns;
   }
-  void read_stamps(std::string const& column, std::vector<std::string> const& stamps) {
+  /// Numbers that are stamps, where all of them can be read so. stamps: the likeliest first; empty: they are none.
+  bool read_stamps(std::string const& column, std::vector<std::string> const& stamps) {
+    if (stamps.empty()) return false;
+    std::vector<std::string> readings;
+    ReadingRules rules = chosen_.rules;
+    for (std::string const& stamp : stamps) {
+      rules.stamp = stamp;
+      readings.push_back(reading_statement(rules));
+    }
+    rules.stamp = stamps.front();
+    std::unique_ptr<RecordFile> file = open_record(path_, rules);
+    try {
+      look_.times = file->times(column);
+    } catch (UserError const&) {
+      return false;
+    }
+    chosen_.rules = std::move(rules);
+    file_ = std::move(file);
+    look_.reading = readings.front();
     if (stamps.size() > 1 && look_.question.empty()) {
       look_.question = fmt::format("`{}` may have hours, minutes and seconds or hours and minutes", column);
-      look_.readings.clear();
-      for (std::string const& stamp : stamps) {
-        chosen_.rules.stamp = stamp;
-        look_.readings.push_back(reading_statement(chosen_.rules));
-      }
+      look_.readings = std::move(readings);
+    } else if (!look_.readings.empty()) {
+      look_.readings.front() = look_.reading;
     }
-    chosen_.rules.stamp = stamps.front();
-    look_.reading = reading_statement(chosen_.rules);
-    if (!look_.readings.empty()) look_.readings.front() = look_.reading;
-    file_ = open_record(path_, chosen_.rules);
-    look_.time.column = column;
-    look_.time.stamps = true;
-    look_.times = file_->times(column);
+    look_.time.stamps = look_.time.since_first = true;
+    return true;
+  }
+  void look_at_numbers(std::vector<double> const& values, double scale) {
+    double const from = look_.time.since_first ? values.front() : 0;
+    look_.times.clear();
+    for (double const value : values) look_.times.push_back((value - from) * scale);
+    look_at_time(look_);
   }
 
   std::string const& path_;

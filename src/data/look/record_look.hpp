@@ -11,9 +11,10 @@ namespace sysid {
 struct TimeLook {
   std::string column;               // empty: no column has the time
   bool stamps = false;              // dates and times
+  bool since_first = false;         // s since the first row, where the numbers count from a date
   std::string unit;                 // of its numbers
   double first = 0, last = 0;       // s
-  double step = 0;                  // median, s
+  double step = 0;                  // s: the mean, or where there are gaps the median
   std::size_t unequal = 0;          // steps that differ from the median by more than 0.1 %, gaps apart
   std::size_t gaps = 0;             // steps of more than one and a half medians
   double longest_gap = 0;           // s

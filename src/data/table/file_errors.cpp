@@ -11,6 +11,7 @@
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_stamp.hpp"
 #include "data/cell/unit_text.hpp"
+#include "data/table/reading_rules.hpp"
 
 namespace sysid::data_errors {
 namespace {
@@ -219,7 +220,15 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Men
       std::count(text.begin(), text.end(), ',') == 1 && text.find_first_not_of("\"0123456789+-eE,") == std::string_view::npos;
   std::string const grouped = without_groups(text);
   std::string help = "a missing sample of a measured column is an empty cell or NA; an input needs a number in every row";
-  if (is_time_stamp(text))
+  if (is_time_stamp(text) && std::count(text.begin(), text.end(), ':') == 3)
+    help = fmt::format(
+        "frames or a fraction of a second may stand behind the last colon: for frames give `rate` in place of the time column; for "
+        "a "
+        "fraction {}",
+        text.find_first_not_of("0123456789:") == std::string_view::npos
+            ? "add this line to the data block: `read stamp = \"hh:mm:ss:f\"`"
+            : "write `read stamp` with `hh:mm:ss:f` behind the date");
+  else if (is_time_stamp(text))
     help =
         "dates and times of day are read in the time column, with `read stamp`: name it after `time`, or give `rate` in its place";
   else if (std::size_t const d = text.find_first_of("dD");
@@ -286,10 +295,12 @@ Diagnostic stamp_among_numbers(Cell const& cell, std::string_view text, Mention 
       "the cells above it are numbers: correct this cell, for a time to seconds or the unit of the column, or delete the line");
 }
 
-Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, Mention mention) {
+Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, bool is_text, Mention mention) {
   std::string help =
       fmt::format("add this line to the data block: `read stamp = {}`; times then begin with 0 at the first row", word);
-  if (word == "days") help += "; if they are seconds, `read stamp = seconds`";
+  if (!is_text)
+    help = fmt::format("write their unit in the data block: `time {}`", column_text(cell.column, find_serial_time(word)->unit));
+  if (word == "days") help += fmt::format("; if they are seconds, `time {}`", column_text(cell.column, "s"));
   return error("E4029", mention,
                fmt::format("{}: {:.15g} as a time in seconds looks like {} since {}", place(cell), value, word,
                            word == "days" ? "1900 or the year 0, as spreadsheets and MATLAB count them" : "1970"),
@@ -321,12 +332,29 @@ Diagnostic times_are_counts(Cell const& cell, Mention mention) {
                "write `rate` or `step` in place of `time` in the data block; if it counts seconds, write `[s]` behind the column");
 }
 
+Diagnostic zones_differ(Cell const& cell, std::string_view text, bool has_zone, Mention mention) {
+  return error("E4024", mention,
+               fmt::format("{}: `{}` has {} zone, and the first row has {}", place(cell), shown(text), has_zone ? "a" : "no",
+                           has_zone ? "none" : "one"),
+               "write the zone in all rows, or in none: times without one are not taken for those of any zone");
+}
+
+Diagnostic fractions_differ(Cell const& cell, std::string_view text, Mention mention) {
+  return error("E4024", mention,
+               fmt::format("{}: `{}` has another number of digits behind its last colon than the first row, so they are no "
+                           "fraction of a second",
+                           place(cell), shown(text)),
+               "write the time in seconds, or give `rate` in place of the time column");
+}
+
 Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention) {
+  bool const is_count = find_serial_time(pattern) != nullptr;
   std::string const what = text.empty() ? "the cell is not" : fmt::format("`{}` is not", shown(text));
   return error(
       "E4024", mention,
       fmt::format("{}: {} a time as in `stamp = {}`", place(cell), what, is_stamp_word(pattern) ? pattern : "\"" + pattern + "\""),
-      "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
+      is_count ? fmt::format("{} are a number in every row, in the notation of the file: `1714500000` or `45356.25`", pattern)
+               : "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
 }
 
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,

@@ -74,14 +74,18 @@ Diagnostic points_or_groups(Cell const& cell, std::string_view text, Mention men
 /// value: as the file writes it.
 Diagnostic doubtful_sample(Cell const& cell, std::string const& value, int times, Mention mention);
 /// text: empty where it may not be shown.
-/// word: what `stamp` would say of them.
-Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, Mention mention);
+/// word: what `stamp` would say of them. is_text: `read` can be said of the file.
+Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, bool is_text, Mention mention);
 /// A date or a time of day below numbers.
 Diagnostic stamp_among_numbers(Cell const& cell, std::string_view text, Mention mention);
 /// `115958, 115959, 120000`: a time of day as one number. patterns: of `stamp`, those that may be meant.
 Diagnostic times_are_clock(Cell const& cell, double before, double now, std::vector<std::string> const& patterns, bool is_text,
                            Mention mention);
 Diagnostic times_are_counts(Cell const& cell, Mention mention);
+/// E4024. has_zone: the cell, and not the first one; or the other way about.
+Diagnostic zones_differ(Cell const& cell, std::string_view text, bool has_zone, Mention mention);
+/// E4024. `10:00:00:7` below `10:00:00:07`.
+Diagnostic fractions_differ(Cell const& cell, std::string_view text, Mention mention);
 Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention);
 /// E4026. stated: in the data block; found: in the file.
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,

@@ -1,11 +1,10 @@
 // Times: the pattern of the dates and times in a column, and the column with the date beside a time of day.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <optional>
 
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_stamp.hpp"
+#include "data/cell/usual_stamps.hpp"
 #include "data/table/proposal_steps.hpp"
 
 namespace sysid {
@@ -36,9 +35,10 @@ std::optional<std::size_t> index_of(Layout const& layout, std::string const& col
   return static_cast<std::size_t>(found - layout.columns.begin());
 }
 
-bool are_durations(std::vector<std::string> const& cells) {
-  return !cells.empty() &&
-         std::all_of(cells.begin(), cells.end(), [](std::string const& cell) { return read_duration(cell).has_value(); });
+bool are_durations(std::vector<std::string> const& cells, ReadingRules const& rules) {
+  NumberNotation const notation{rules.decimal, rules.thousands};
+  return !cells.empty() && std::all_of(cells.begin(), cells.end(),
+                                       [&](std::string const& cell) { return read_duration(cell, notation).has_value(); });
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ bool are_durations(std::vector<std::string> const& cells) {
 void add_stamps(Layout const& layout, std::string const& wanted, Proposal& proposal, Alternatives& all) {
   if (wanted.empty() || !all.rules.front().stamp.empty()) return;
   auto column = index_of(layout, wanted);
-  if (column && layout.looks[*column] == CellLook::text && are_durations(filled_cells(layout, *column))) {
+  if (column && layout.looks[*column] == CellLook::text && are_durations(filled_cells(layout, *column), all.rules.front())) {
     for (ReadingRules& rules : all.rules) rules.stamp = duration_word;
     return;
   }
@@ -82,10 +82,7 @@ void add_stamps(Layout const& layout, std::string const& wanted, Proposal& propo
       made.back().stamp = pattern;
       if (date) made.back().date = layout.columns[*date];
     }
-  if (patterns.size() > 1)
-    all.question += (all.question.empty() ? "" : "; ") +
-                    (patterns.front() == "hh:mm" ? fmt::format("`{}` may be hours and minutes or minutes and seconds", cells.back())
-                                                 : fmt::format("`{}` may have the day or the month first", cells.front()));
+  if (patterns.size() > 1) all.question += (all.question.empty() ? "" : "; ") + question_of(patterns, cells);
   all.rules = std::move(made);
 }
 

@@ -130,8 +130,13 @@ Taken take_encoding(ReadingRules& rules, ReadingValue const& value) {
 Taken take_missing(ReadingRules& rules, ReadingValue const& value) {
   if (value.range || value.items.empty()) return "must be a word, or several in parentheses: `(\"NaN\", \"-9999\")`";
   rules.asked_for_missing = true;
-  rules.missing = value.items;
-  rules.no_other_mark = std::erase(rules.missing, "none") > 0;
+  rules.missing.clear();
+  rules.no_other_mark = false;
+  for (std::size_t i = 0; i < value.items.size(); ++i)  // "none" in quotes is a word of the file
+    if (value.is_word(i, "none"))
+      rules.no_other_mark = true;
+    else
+      rules.missing.push_back(value.items[i]);
   return {};
 }
 Taken take_stamp(ReadingRules& rules, ReadingValue const& value) {
@@ -184,8 +189,7 @@ constexpr ReadingRow rows[] = {
      &take_missing},
     {"stamp", "stamp = \"DD.MM.YYYY hh:mm:ss\"",
      "the pattern of dates and times in the time column, `iso`, `duration` (`0.01 sec`), or what numbers there count since some "
-     "date "
-     "(`seconds`, `days`); they become seconds since the first row",
+     "date (`seconds`, `days`); they become seconds since the first row",
      "iso duration seconds milliseconds microseconds nanoseconds days", &take_stamp},
     {"date", "date = \"Datum\"", "the column with the date, where the time column holds the time of day", "", &take_date},
     {"ragged", "ragged = yes",
@@ -216,6 +220,11 @@ std::string refuse(ReadingRules const& rules) {
     return fmt::format("`separator` and `decimal` are both `{}`", rules.decimal);
   if (rules.separator != 0 && rules.separator == rules.thousands) return "`separator` and `thousands` are the same";
   if (!rules.date.empty() && rules.stamp.empty()) return "`date` needs `stamp`, the pattern of the date and the time after it";
+  if (!rules.date.empty() && rules.stamp != "iso" && is_stamp_word(rules.stamp))
+    return fmt::format(
+        "`date` goes with a pattern of the date and the time of day, and not with `stamp = {}`: write such a pattern, or leave "
+        "`date` out where all rows are of one day",
+        rules.stamp);
   int const above = std::max(rules.names, rules.units_line);
   if (rules.first_value != 0 && rules.first_value <= above) return "`values` must lie below `names` and `units`";
   return {};
@@ -230,6 +239,14 @@ std::string quoted_text(std::string_view text) {
   return out + "\"";
 }
 
+std::string column_text(std::string_view column, std::string_view unit) {
+  constexpr std::string_view reserved[] = {"if", "then", "else", "and", "or", "not"};
+  bool const is_name = !column.empty() && begins_a_name(column[0]) &&
+                       std::all_of(column.begin(), column.end(), is_part_of_a_name) &&
+                       std::find(std::begin(reserved), std::end(reserved), column) == std::end(reserved);
+  return (is_name ? std::string(column) : quoted_text(column)) + (unit.empty() ? "" : fmt::format(" [{}]", unit));
+}
+
 namespace {
 
 /// A setting as it is written; empty where it has its default.
@@ -240,9 +257,10 @@ struct Written {
 
 std::string missing_text(ReadingRules const& rules) {
   if (rules.missing.empty()) return rules.asked_for_missing ? "none" : "";
-  std::vector<std::string> words = rules.missing;
-  if (rules.no_other_mark) words.push_back("none");
-  return list_of(words);
+  if (!rules.no_other_mark) return list_of(rules.missing);
+  std::string text;
+  for (std::string const& word : rules.missing) text += quoted_text(word) + ", ";
+  return "(" + text + "none)";
 }
 
 std::vector<Written> written_settings(ReadingRules const& rules) {

@@ -36,7 +36,11 @@ struct ReadingRules {
 /// What stands after `=`: `","`, `5`, `5..20`, `("NaN", "n/a")`.
 struct ReadingValue {
   std::vector<std::string> items;
-  bool range = false;  // two items with `..` between them
+  bool range = false;          // two items with `..` between them
+  std::vector<bool> quoted{};  // of the items; empty: none is a text in quotes
+  bool is_word(std::size_t item, std::string_view word) const {
+    return items[item] == word && !(item < quoted.size() && quoted[item]);
+  }
   friend bool operator==(ReadingValue const&, ReadingValue const&) = default;
 };
 
@@ -59,6 +63,12 @@ std::string reading_statement(ReadingRules const& rules);
 std::optional<std::string> added_settings(ReadingRules const& rules, ReadingRules const& current);
 /// A text of the language in quotes.
 std::string quoted_text(std::string_view text);
+
+/// Of names of the language: letters of ASCII and `_`, and digits behind the first.
+constexpr bool begins_a_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+constexpr bool is_part_of_a_name(char c) { return begins_a_name(c) || (c >= '0' && c <= '9'); }
+/// As a column is written in a block: in quotes where it is no name; unit: empty, or what stands in brackets behind it.
+std::string column_text(std::string_view column, std::string_view unit);
 
 /// What is read of a file depends on the places of its lines, so rows that arrive one by one cannot be read by them.
 bool needs_whole_file(ReadingRules const& rules);

@@ -213,9 +213,7 @@ std::vector<double> Table::numbers_as_told(std::string const& column, std::optio
                     : kind == CellKind::out_of_range ? data_errors::out_of_range(where, shown, mention)
                                                      : data_errors::not_a_number(where, shown, shows, mention));
   }
-  if (int const row = row_of_doubtful_points(index))
-    throw UserError(
-        data_errors::points_or_groups(place(static_cast<std::size_t>(row - 1), column), unquoted_cell(cell(row, index)), mention));
+  refuse_doubtful_points(index, mention);
   if (!rules_.asked_for_missing)
     if (auto const doubtful = doubtful_numbers(values); !doubtful.empty())
       throw UserError(data_errors::doubtful_sample(place(doubtful.front().places.front(), column),
@@ -250,27 +248,29 @@ int Table::row_of_doubtful_points(int column) const {
   return separator_ != ',' || comma ? first : 0;
 }
 
+void Table::refuse_doubtful_points(int column, std::optional<Span> mention) const {
+  int const row = row_of_doubtful_points(column);
+  if (row == 0) return;
+  std::string const& name = columns_[static_cast<std::size_t>(column)];
+  throw UserError(
+      data_errors::points_or_groups(place(static_cast<std::size_t>(row - 1), name), unquoted_cell(cell(row, column)), mention));
+}
+
 std::vector<double> Table::serial_times_as_told(std::string const& column, SerialTime const* unit,
                                                 std::optional<Span> mention) const {
   int const index = index_of(column, mention);
-  std::vector<TimeStamp> stamps;
-  int decimals = 0;
+  std::vector<SerialStamp> stamps;
   for (int row = 1; row <= rows_; ++row) {
     if (row % rows_between_looks == 0) stop_if_interrupted();
     std::string const text = unquoted_cell(cell(row, index));
-    auto const read = unit != nullptr ? read_serial(text, *unit) : read_duration(text);
+    auto const read = unit != nullptr ? read_serial(text, *unit, notation_) : read_duration(text, notation_);
     if (!read)
       throw UserError(data_errors::not_a_stamp(place(static_cast<std::size_t>(row - 1), column), row > 1 ? text : std::string(),
                                                rules_.stamp, mention));
-    decimals = std::max(decimals, read->decimals);
-    stamps.push_back(read->stamp);
+    stamps.push_back(*read);
   }
-  std::vector<double> seconds;
-  for (TimeStamp& stamp : stamps) {
-    if (unit != nullptr) stamp = without_rounding(stamp, *unit, decimals);
-    seconds.push_back(seconds_between(stamps.front(), stamp));
-  }
-  return seconds;
+  refuse_doubtful_points(index, mention);
+  return seconds_of(stamps, unit != nullptr ? *unit : *find_serial_time("seconds"));
 }
 
 std::vector<double> Table::times_as_told(std::string const& column, std::optional<Span> mention) const {
@@ -293,10 +293,14 @@ std::vector<double> Table::times_as_told(std::string const& column, std::optiona
       throw UserError(data_errors::not_a_stamp(place(static_cast<std::size_t>(row - 1), column), shows ? text : std::string(),
                                                rules_.stamp, mention));
     }
+    if (row == 1) first = *stamp;
+    if (stamp->has_zone != first.has_zone)
+      throw UserError(data_errors::zones_differ(place(static_cast<std::size_t>(row - 1), column), text, stamp->has_zone, mention));
+    if (pattern->has_counted_fraction() && stamp->decimals != first.decimals)
+      throw UserError(data_errors::fractions_differ(place(static_cast<std::size_t>(row - 1), column), text, mention));
     // Time of day that falls by more than half a day has passed midnight, minutes and seconds that fall by half an hour the hour.
     if (!pattern->has_date() && row > 1 && before.second - (stamp->second + turns * turn) > turn / 2) ++turns;
     stamp->second += turns * turn;
-    if (row == 1) first = *stamp;
     before = *stamp;
     seconds[static_cast<std::size_t>(row - 1)] = seconds_between(first, *stamp);
   }

@@ -70,6 +70,7 @@ class Table final : public RecordFile {
   /// The first row of a column whose points may stand between groups of digits: `1.234` beside `999`, and nothing that decides; or
   /// 0.
   int row_of_doubtful_points(int column) const;
+  void refuse_doubtful_points(int column, std::optional<Span> mention) const;
   [[noreturn]] void rethrow_with_proposal(UserError const& error, std::string const& column) const;
   std::string_view cell(int row, int column) const;
   /// The first row holds words where the second holds numbers.

@@ -2,6 +2,7 @@
 #include "data/format/variables.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <hdf5.h>
 #include <matio.h>
 #include <netcdf.h>
@@ -21,6 +22,8 @@
 #include "core/text/diagnostic.hpp"
 #include "data/format/open_record.hpp"
 #include "data/format/own_process.hpp"
+#include "data/look/record_look.hpp"
+#include "data/record.hpp"
 #include "data/temporary_file.hpp"
 
 using namespace sysid;
@@ -412,4 +415,44 @@ TEST_CASE("damaged MATLAB and NetCDF files are refused or read, and end no progr
   damage(seven.path, 24);
   damage(classic.path, 24);
   damage(four.path, 24);
+}
+
+TEST_CASE("MATLAB's days and milliseconds since a date are no seconds: the unit that is asked for reads them") {
+  struct Count {
+    char const* unit;
+    double first, of_second;
+    bool asked;
+  };
+  for (Count const& each : {Count{"d", 739000.5, 1.0 / 86400, true}, Count{"ms", 1.7145e12, 1e3, true},
+                            Count{"s", 1.7145e9, 1, false}, Count{"s", 0, 1, false}}) {
+    CAPTURE(each.unit);
+    CAPTURE(each.first);
+    Numbers time, samples;
+    for (int i = 0; i < 60; ++i) time.push_back(each.first + 60 * i * each.of_second), samples.push_back(i % 7);
+    Scratch const scratch("counts.mat");
+    mat_t* const file = Mat_CreateVer(scratch.path.c_str(), nullptr, MAT_FT_MAT5);
+    put(file, doubles("t", time.size(), 1, time.data()));
+    put(file, doubles("y", time.size(), 1, samples.data()));
+    Mat_Close(file);
+    RecordRequest request;
+    request.path = scratch.path;
+    request.time = ColumnRequest{"t", {}, {}, {}};
+    request.measured = {ColumnRequest{"y", {}, {}, {}}};
+    Diagnostics diagnostics;
+    CHECK(load(request, diagnostics).has_value() != each.asked);
+    if (each.asked) {
+      REQUIRE(diagnostics.all().size() == 1);
+      CHECK(diagnostics.all()[0].code == "E4029");
+      CHECK(contains(diagnostics.all()[0].help, fmt::format("`time t [{}]`", each.unit).c_str()));
+    }
+    request.time->unit = unit_atom(each.unit).value();
+    auto const record = load(request, diagnostics);
+    REQUIRE(record);
+    for (std::size_t i = 0; i < 60; ++i) CHECK(std::fabs(record->time[i] - record->time[0] - 60.0 * static_cast<double>(i)) < 2e-5);
+    RecordLook const look = look_at_record(scratch.path);
+    CHECK(look.time.unit == each.unit);
+    CHECK(look.time.step == doctest::Approx(60).epsilon(1e-6));
+    CHECK(look.time.first == (each.asked ? 0 : each.first));
+    CHECK(contains(look.block, fmt::format("time    t [{}]", each.unit).c_str()));
+  }
 }

@@ -1,5 +1,5 @@
 // The last digit follows from the shortest decimal that reads back as the number, or is binary.
-#include "data/rounded_times.hpp"
+#include "data/cell/rounded_times.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -90,8 +90,9 @@ double of_least_spread(std::span<double const> time, double step, double unit) {
 
 }  // namespace
 
-std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time) {
-  double const middle = static_cast<double>(time.size() - 1) / 2, unit = last_unit(time);
+std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time, double unit) {
+  double const middle = static_cast<double>(time.size() - 1) / 2;
+  if (unit == 0) unit = last_unit(time);
   double sum = 0, squares = 0;
   for (std::size_t i = 0; i < time.size(); ++i) {
     double const n = static_cast<double>(i) - middle;

@@ -1,5 +1,5 @@
 // Times of equal steps as files hold them, and times that only look like it.
-#include "data/rounded_times.hpp"
+#include "data/cell/rounded_times.hpp"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
