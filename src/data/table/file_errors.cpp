@@ -128,7 +128,7 @@ Diagnostic not_a_record(std::string const& file, std::string_view what, std::str
 }
 
 Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Mention mention) {
-  return error("E4025", mention, fmt::format("`{}` is a {}, but `read` says how a text file is written", file, what),
+  return error("E4025", mention, fmt::format("`{}` is a {}, but `read` is allowed for text files only", file, what),
                "remove `read` from the data block");
 }
 
@@ -151,7 +151,7 @@ Diagnostic linked_elsewhere(std::string const& file, std::string const& target, 
 
 Diagnostic no_such_line(std::string const& file, std::string const& setting, int line, int lines, Mention mention) {
   return error("E4025", mention,
-               fmt::format("`{} = {}`: no such line above the values of `{}`, of which {} looked at", setting, line, file,
+               fmt::format("`{} = {}`: there is no such line above the values of `{}` ({} looked at)", setting, line, file,
                            lines == 1 ? "1 line was" : fmt::format("{} lines were", lines)),
                "lines are counted from 1 at the top of the file, with empty ones and comments");
 }
@@ -175,8 +175,9 @@ Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int
 }
 
 Diagnostic broken_table(std::string const& file, int line, Mention mention) {
-  return error("E4010", mention, fmt::format("line {} of `{}` is no row of values as the lines above and below it are", line, file),
-               "correct the line or delete it; `read values` reads the lines before or behind it alone");
+  return error("E4010", mention,
+               fmt::format("line {} of `{}` is not a row of values, unlike the lines above and below it", line, file),
+               "correct the line or delete it; to read only the lines before it or after it, state them with `read values`");
 }
 
 Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention) {
@@ -230,7 +231,8 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Men
             : "write `read stamp` with `hh:mm:ss:f` behind the date");
   else if (is_time_stamp(text))
     help =
-        "dates and times of day are read in the time column, with `read stamp`: name it after `time`, or give `rate` in its place";
+        "dates and times of day are read only in the time column: name this column after `time` and add `read stamp`, or give "
+        "`rate` in its place";
   else if (std::size_t const d = text.find_first_of("dD");
            d != std::string_view::npos && text.find_first_not_of("0123456789+-.dD") == std::string_view::npos)
     help = fmt::format("write the exponent with `e`: `{}e{}`", text.substr(0, d), text.substr(d + 1));
@@ -284,15 +286,16 @@ Diagnostic points_or_groups(Cell const& cell, std::string_view text, Mention men
 Diagnostic doubtful_sample(Cell const& cell, std::string const& value, int times, Mention mention) {
   return error(
       "E4022", mention,
-      fmt::format("{}: {} is far from all other samples ({}), as a mark for missing ones is", place(cell), value,
-                  times == 1 ? "once" : fmt::format("{} times", times)),
+      fmt::format("{}: {} (in {}) is far from all other samples, like a mark for missing samples", place(cell), value,
+                  times == 1 ? "one row" : fmt::format("{} rows", times)),
       fmt::format("add this line to the data block: `read missing = \"{}\"`; or, if it is a sample, `read missing = none`", value));
 }
 
 Diagnostic stamp_among_numbers(Cell const& cell, std::string_view text, Mention mention) {
   return error(
       "E4010", mention, fmt::format("{}: `{}` is not a number", place(cell), shown(text)),
-      "the cells above it are numbers: correct this cell, for a time to seconds or the unit of the column, or delete the line");
+      "the cells above it are numbers: correct this cell (write a time in the unit of the column, such as seconds) or delete the "
+      "line");
 }
 
 Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, bool is_text, Mention mention) {
@@ -302,7 +305,7 @@ Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word
     help = fmt::format("write their unit in the data block: `time {}`", column_text(cell.column, find_serial_time(word)->unit));
   if (word == "days") help += fmt::format("; if they are seconds, `time {}`", column_text(cell.column, "s"));
   return error("E4029", mention,
-               fmt::format("{}: {:.15g} as a time in seconds looks like {} since {}", place(cell), value, word,
+               fmt::format("{}: {:.15g} is probably not a time in seconds of the record, but {} since {}", place(cell), value, word,
                            word == "days" ? "1900 or the year 0, as spreadsheets and MATLAB count them" : "1970"),
                std::move(help));
 }
@@ -359,8 +362,9 @@ Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string cons
 
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,
                         Mention mention) {
-  return error("E4026", mention, fmt::format("column `{}` is in [{}] here, but in `{}` as {}", shown(column), stated, file, found),
-               "one of the two is wrong: write the unit that its numbers have, or none to take that of the file");
+  return error("E4026", mention,
+               fmt::format("column `{}` is in [{}] here, but `{}` states its unit as {}", shown(column), stated, file, found),
+               "one of the two is wrong: write the unit that the numbers have, or no unit to use the one in the file");
 }
 
 Diagnostic unit_differs_from_name(std::string const& file, NamedUnit const& name, TwoUnits const& units, bool is_text,
@@ -372,8 +376,8 @@ Diagnostic unit_differs_from_name(std::string const& file, NamedUnit const& name
         "columns`",
         shown(name.bare));
   return error("E4026", mention,
-               fmt::format("column `{}` is in [{}] here, but by its name in `{}` in {}", shown(name.column), units.stated, file,
-                           shown(units.found)),
+               fmt::format("column `{}` is in [{}] here, but in `{}` its name has the unit {}", shown(name.column), units.stated,
+                           file, shown(units.found)),
                std::move(help));
 }
 
@@ -414,8 +418,8 @@ Diagnostic unequal_lengths(std::string const& file, std::string const& a, std::s
                            std::size_t rows_b, Mention mention) {
   return error(
       "E4028", mention,
-      fmt::format("`{}` has {} numbers and `{}` has {} in `{}`: they are no rows of one record", b, rows_b, a, rows_a, file),
-      "give each of them a data block and a time of its own, or bring them to one time before");
+      fmt::format("`{}` has {} numbers and `{}` has {} in `{}`: they cannot be columns of one record", b, rows_b, a, rows_a, file),
+      "give each of them a data block and a time of its own, or resample them to the same times first");
 }
 
 Diagnostic rows_outside(std::string const& file, std::string const& what, int first, int last, int rows, Mention mention) {

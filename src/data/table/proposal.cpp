@@ -83,7 +83,7 @@ std::string advice(std::vector<ReadingRules> const& rules, ReadingRules const& c
     replaces = replaces || !added;
     lines.push_back(added ? *added : reading_statement(each));
   }
-  return fmt::format("{}: {}", replaces ? "write in place of `read` in the data block" : "add this line to the data block",
+  return fmt::format("{}: {}", replaces ? "replace `read` in the data block by this line" : "add this line to the data block",
                      quoted(lines, "or"));
 }
 

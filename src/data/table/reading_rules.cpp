@@ -42,7 +42,7 @@ Taken take_units(ReadingRules& rules, ReadingValue const& value) {
     return {};
   }
   auto const line = item ? line_number(*item) : std::nullopt;
-  if (!line) return "must be the number of a line, counted from 1, or `names` where they stand behind the names";
+  if (!line) return "must be the number of a line, counted from 1, or `names` if the units follow the names";
   rules.units = UnitsPlace::line;
   rules.units_line = *line;
   return {};
@@ -66,7 +66,7 @@ Taken take_columns(ReadingRules& rules, ReadingValue const& value) {
     if (value.items[i].empty()) return "must list names, none of them empty";
     if (std::find(value.items.begin(), value.items.begin() + static_cast<std::ptrdiff_t>(i), value.items[i]) !=
         value.items.begin() + static_cast<std::ptrdiff_t>(i))
-      return fmt::format("must list different names; `{}` stands there twice", value.items[i]);
+      return fmt::format("must list different names; `{}` is listed twice", value.items[i]);
   }
   rules.columns = value.items;
   return {};
@@ -145,9 +145,9 @@ Taken take_stamp(ReadingRules& rules, ReadingValue const& value) {
     rules.stamp = *item;
     return {};
   }
-  return "must be `iso`, `duration`, `seconds`, `milliseconds`, `microseconds`, `nanoseconds` or `days` of a count since some "
-         "date, or a "
-         "pattern such as `\"DD.MM.YYYY hh:mm:ss,f\"` (YYYY, YY, MM, MMM, DD, DDD, hh, mm, ss, f, AP, zone)";
+  return "must be `iso`; `duration`; for numbers that count from a date, `seconds`, `milliseconds`, `microseconds`, `nanoseconds` "
+         "or "
+         "`days`; or a pattern such as `\"DD.MM.YYYY hh:mm:ss,f\"` (YYYY, YY, MM, MMM, DD, DDD, hh, mm, ss, f, AP, zone)";
 }
 Taken take_date(ReadingRules& rules, ReadingValue const& value) {
   auto const item = single(value);
@@ -172,11 +172,11 @@ Taken take_comments(ReadingRules& rules, ReadingValue const& value) {
 
 constexpr ReadingRow rows[] = {
     {"names", "names = 4", "the line that names the columns, counted from 1 at the top of the file", "", &take_names},
-    {"units", "units = 5", "the line with the units of the columns, or `names` where they stand behind the names: `Force (N)`",
-     "names", &take_units},
+    {"units", "units = 5", "the line with the units of the columns, or `names` if the units follow the names: `Force (N)`", "names",
+     &take_units},
     {"values", "values = 7", "the first line with values, or a range of lines: `7..1006`", "", &take_values},
-    {"columns", "columns = (t, force, y)",
-     "names for all columns in their order, where the file has none, or some of them twice or empty", "", &take_columns},
+    {"columns", "columns = (t, force, y)", "names of all columns in order, if the file has none, or repeated or empty ones", "",
+     &take_columns},
     {"encoding", "encoding = latin1", "how characters are stored: latin1 (and Windows-1252), utf16 or utf8", "latin1 utf16 utf8",
      &take_encoding},
     {"separator", "separator = \";\"", "what stands between cells: \",\", \";\", \"|\", tab, or blank for any number of blanks",
@@ -185,15 +185,15 @@ constexpr ReadingRow rows[] = {
     {"thousands", "thousands = \".\"", "the sign between groups of three digits: \".\", \",\", \"'\" or blank", "blank",
      &take_thousands},
     {"missing", "missing = (\"NaN\", \"-9999\")",
-     "words and numbers that stand for a missing sample; `none`, alone or behind them: no other number does", "none",
+     "words and numbers that stand for a missing sample; `none`, alone or in the list: no other number stands for one", "none",
      &take_missing},
     {"stamp", "stamp = \"DD.MM.YYYY hh:mm:ss\"",
-     "the pattern of dates and times in the time column, `iso`, `duration` (`0.01 sec`), or what numbers there count since some "
-     "date (`seconds`, `days`); they become seconds since the first row",
+     "the pattern of dates and times in the time column, `iso`, or `duration` (`0.01 sec`); if it has numbers that count from a "
+     "date, their unit (`seconds`, `days`); all become seconds since the first row",
      "iso duration seconds milliseconds microseconds nanoseconds days", &take_stamp},
     {"date", "date = \"Datum\"", "the column with the date, where the time column holds the time of day", "", &take_date},
-    {"ragged", "ragged = yes",
-     "lines may end with more separators than the names, or before the last cells, which are missing then", "yes no", &take_ragged},
+    {"ragged", "ragged = yes", "lines may have extra empty cells at the end, or lack the last cells, which are then missing",
+     "yes no", &take_ragged},
     {"comments", "comments = \"%\"", "the sign that begins comments, which may then stand anywhere", "", &take_comments},
 };
 
