@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "core/numeric/order.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
@@ -16,12 +17,22 @@ namespace {
 
 constexpr std::size_t least_draws = 50;  // fewer cannot tell a density
 
+/// The central 90 % of its prior; 0 where they are not known.
+double spread_of(ParameterInfo const& parameter, std::span<PriorInfo const> priors) {
+  if (parameter.improper != Improper::no) return infinity;
+  for (PriorInfo const& prior : priors)
+    if (prior.name == parameter.name && prior.q5 && prior.q95) return *prior.q95 - *prior.q5;
+  return 0;
+}
+
 }  // namespace
 
-BoundCheck check_bounds(std::span<double const> draws, double lower, double upper) {
-  if (draws.size() < least_draws || !std::isfinite(lower) || !std::isfinite(upper)) return {};
+BoundCheck check_bounds(std::span<double const> draws, double lower, double upper, double prior_spread) {
+  bool const one_bound = std::isfinite(lower) != std::isfinite(upper);
+  if (draws.size() < least_draws || (!std::isfinite(lower) && !std::isfinite(upper)) || (one_bound && (lower == 0 || upper == 0)))
+    return {};
   std::vector<double> x(draws.begin(), draws.end());
-  if (lower > 0 && upper >= 10 * lower) {
+  if (!one_bound && lower > 0 && upper >= 10 * lower) {
     for (double& v : x) v = elementary::log(v);
     lower = elementary::log(lower);
     upper = elementary::log(upper);
@@ -29,7 +40,7 @@ BoundCheck check_bounds(std::span<double const> draws, double lower, double uppe
   if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) return {};
   sort_numbers(x);
   double const spread = sorted_quantile(x, 0.95) - sorted_quantile(x, 0.05);
-  if (!(spread > 0) || spread > 0.5 * (upper - lower)) return {};
+  if (!(spread > 0) || spread > 0.5 * (one_bound ? prior_spread : upper - lower)) return {};
   double const window = 0.1 * spread;
   std::ptrdiff_t peak = 0;
   for (auto from = x.begin(), to = x.begin(); from != x.end(); ++from) {
@@ -41,14 +52,14 @@ BoundCheck check_bounds(std::span<double const> draws, double lower, double uppe
   return {2 * low >= peak, 2 * high >= peak};
 }
 
-Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws) {
+Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws, std::span<PriorInfo const> priors) {
   Findings findings;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     std::vector<double> values;
     for (Chain const& chain : draws.chains)
       for (auto const& draw : chain.values) values.push_back(draw[p]);
     ParameterInfo const& info = parameters[p];
-    BoundCheck const check = check_bounds(values, info.lower, info.upper);
+    BoundCheck const check = check_bounds(values, info.lower, info.upper, spread_of(info, priors));
     if (!check.at_lower && !check.at_upper) continue;
     findings.push_back(
         {FindingCode::piles_up_at_bound,

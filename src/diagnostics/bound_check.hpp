@@ -5,6 +5,7 @@
 #include "likelihood/target.hpp"
 #include "result/draws.hpp"
 #include "result/finding.hpp"
+#include "result/report.hpp"
 
 namespace sysid {
 
@@ -14,11 +15,12 @@ struct BoundCheck {
 
 /// Piles up at a bound: the density of the draws there is at least half its peak, while their central 90 % is narrower than half
 /// the prior (a posterior as wide as its prior does not pile up, it has learnt nothing). Density: share of draws in a window of a
-/// tenth of the central 90 %. On a log scale when both bounds are positive and a decade or more apart. Silent unless both bounds
-/// are finite: zero below a scale parameter is natural, not a choice.
-BoundCheck check_bounds(std::span<double const> draws, double lower, double upper);
+/// tenth of the central 90 %. On a log scale when both bounds are positive and a decade or more apart. prior_spread: the central 90
+/// % of a prior with one bound only; infinite where it is improper, 0 where it is not known. Silent about a bound of 0 alone: zero
+/// below a scale parameter is natural, not a choice.
+BoundCheck check_bounds(std::span<double const> draws, double lower, double upper, double prior_spread = 0);
 
-/// One warning per parameter that piles up, over all chains.
-Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws);
+/// One warning per parameter that piles up, over all chains. priors: of the parameters, by name.
+Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws, std::span<PriorInfo const> priors = {});
 
 }  // namespace sysid

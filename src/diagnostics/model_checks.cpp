@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text/words.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/residual_checks.hpp"
 #include "likelihood/output.hpp"
@@ -48,6 +49,21 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
            fmt::format("write `{}` in the non-centred form: `parameter z per experiment ~ normal(0, sd = 1)`, `let {} = mean + "
                        "spread*z` (docs/methods/several_experiments.md), or sample it with tempering",
                        member->name, member->name)}};
+}
+
+Findings check_populations(Model const& model) {
+  std::vector<ParameterRole> const roles = parameter_roles(model);
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < roles.size(); ++p)
+    if (model.parameters[p].prior && roles[p] == ParameterRole::prior) names.push_back(model.parameters[p].name);
+  if (names.empty()) return {};
+  std::string const said = quoted(names);
+  bool const one = names.size() == 1;
+  return {{FindingCode::optimum_of_hierarchy, Severity::warning, std::move(names),
+           fmt::format("the likelihood, which `ml` maximises, does not contain {}: {} value is where the search began, and {} sd "
+                       "means nothing",
+                       said, one ? "its" : "their", one ? "its" : "their"),
+           "sample it with mh to estimate the population; the other parameters are not affected"}};
 }
 
 Findings check_use(Model const& model, StartRule const& start) {

@@ -11,10 +11,13 @@
 namespace sysid {
 
 /// What an estimated spread of a population does to a result (docs/methods/several_experiments.md): to chains, when `found` says
-/// that they have not mixed, and to an optimum, whose density may grow without bound where the spread vanishes. non_centred: names
-/// of parameters that are sampled relative to their population, where a small spread does not slow chains.
+/// that they have not mixed, and to an optimum of the posterior, whose density may grow without bound where the spread vanishes.
+/// non_centred: names of parameters that are sampled relative to their population, where a small spread does not slow chains.
 Findings check_hierarchy(Model const& model, Draws const& draws, Findings const& found,
                          std::span<std::string const> non_centred = {});
+
+/// Of an optimum of the likelihood, which does not contain them: parameters that only priors of others read.
+Findings check_populations(Model const& model);
 
 /// Parameters with a prior that nothing in the model uses: their posterior is their prior.
 Findings check_use(Model const& model, StartRule const& start);

@@ -136,9 +136,9 @@ std::vector<FitLine> fit_lines(Report const& report) {
       std::vector<Score> const found = scores(quantity, prediction.scored);
       if (found.empty()) continue;
       auto line = std::find_if(lines.begin(), lines.end(), [&](FitLine const& each) {
-        return each.experiment == prediction.experiment && each.channel == quantity.name;
+        return each.experiment == prediction.experiment && each.channel == quantity.name && each.optimum_of.empty();
       });
-      if (line == lines.end()) line = lines.insert(line, {prediction.experiment, quantity.name, "", {}});
+      if (line == lines.end()) line = lines.insert(line, {prediction.experiment, quantity.name, "", {}, {}});
       line->unit = quantity.unit;
       for (Score const& score : found)
         if (std::none_of(line->scores.begin(), line->scores.end(), [&](Score const& other) { return other.name == score.name; }))

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
 #include "core/text/number.hpp"
@@ -15,9 +14,8 @@
 #include "inference/backend/checkpoint.hpp"
 #include "inference/evidence/weighted_draws.hpp"
 #include "search/journal.hpp"
-#include "search/laplace.hpp"
+#include "search/mode/at_bound.hpp"
 #include "search/objective.hpp"
-#include "search/refit.hpp"
 #include "search/search.hpp"
 #include "search/settle.hpp"
 
@@ -26,41 +24,28 @@ namespace {
 
 constexpr std::uint64_t bound_step = 8'000'000;  // of Purpose::start
 
-bool has_one_bound(ParameterInfo const& parameter) { return std::isfinite(parameter.lower) != std::isfinite(parameter.upper); }
-
-/// Whether a parameter with one bound a lies there, where no width of its support says what is near. Its coordinate is log |x - a|.
-/// It does if the objective is the same a thousand times nearer to the bound and a thousand times as far from it, but falls by half
-/// a nat before the prior ends. Where it never falls, the data do not determine the parameter, which is another finding.
-bool at_one_bound(Objective const& objective, Mode const& mode, std::size_t parameter) {
-  constexpr double thousand = 3 * std::numbers::ln10, same = 1e-3, fallen = 0.5;  // nats
-  constexpr int further = 8;
-  auto const p = static_cast<Eigen::Index>(parameter);
-  Eigen::VectorXd const theta = theta_of(mode);
-  double const prior_ends = objective.centre(p) + 3 * objective.scale(p), room = prior_ends - (theta(p) + thousand);
-  if (!(room > 0)) return false;
-  std::vector<double> moves{0, -thousand, thousand};
-  for (int k = 1; k <= further; ++k) moves.push_back(thousand + k * room / further);
-  std::vector<Eigen::VectorXd> places(moves.size(), theta);
-  for (std::size_t k = 0; k < moves.size(); ++k) places[k](p) += moves[k];
-  Ledger untold;  // places that nobody asked for
-  std::vector<double> const density = log_density_in_blocks(objective, to_lanes(places), untold);
-  return density[1] > density[0] - same && density[2] > density[0] - fallen &&
-         std::any_of(density.begin() + 3, density.end(), [&](double each) { return each < density[0] - fallen; });
-}
-
-std::vector<std::size_t> parameters_at_bound(Target const& target, ObjectiveKind objective_kind, Mode const& mode,
-                                             std::uint64_t seed) {
-  std::vector<std::size_t> found;
-  std::optional<Objective> objective;
-  for (std::size_t p = 0; p < target.parameters().size(); ++p) {
-    bool at = at_bound(target.parameters()[p], mode.declared[p], 0);
-    if (!at && has_one_bound(target.parameters()[p])) {
-      if (!objective) objective.emplace(make_objective(target, objective_kind, seed, bound_step));
-      at = at_one_bound(*objective, mode, p);
-    }
-    if (at) found.push_back(p);
+/// Whether and where the optimum lies at bounds.
+Finding at_bounds(Target const& target, Mode const& best, std::vector<ModeAtBound> const& bounds) {
+  std::vector<std::string> names, values, endless;
+  for (ModeAtBound const& each : bounds) {
+    ParameterInfo const& parameter = target.parameters()[static_cast<std::size_t>(each.parameter)];
+    double const value = best.declared[static_cast<std::size_t>(each.parameter)];
+    names.push_back(parameter.name);
+    values.push_back(fmt::format("{} = {:.4g}{}", parameter.name, value, unit_after_number(parameter.unit)));
+    if (each.unbounded)
+      endless.push_back(fmt::format("`{}` approaches {:.4g}", parameter.name, each.upper ? parameter.upper : parameter.lower));
   }
-  return found;
+  std::string const others = bounds.size() < best.declared.size()
+                                 ? fmt::format(", and the other sds are those with {} kept there", quoted(names))
+                                 : std::string();
+  std::string const sds = fmt::format("{} not meaningful{}", names.size() == 1 ? "its sd is" : "their sds are", others);
+  std::string message = fmt::format("the optimum lies at a bound of the prior: {}; {}", fmt::join(values, ", "), sds);
+  if (!endless.empty())
+    message = fmt::format("the density has no maximum, since it grows without end as {}: {}; {}", fmt::join(endless, " and as "),
+                          fmt::join(values, ", "), sds);
+  return {FindingCode::at_bound, Severity::warning, std::move(names), std::move(message),
+          endless.empty() ? "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"
+                          : "use mh, which describes the whole posterior, or a prior whose density is finite at the bound"};
 }
 
 /// Of an optimum that was not reached.
@@ -87,11 +72,12 @@ struct Misfit {
   double size() const { return std::max(std::fabs(std::log(ratio)), 0.4 * std::fabs(shift)); }
 };
 
-/// skipped: parameters whose sds are known to mean nothing.
-std::vector<Misfit> misfits(Mode const& best, WeightedDraws const& draws, std::vector<std::size_t> const& skipped) {
+/// skipped: their sds are known to mean nothing.
+std::vector<Misfit> misfits(Mode const& best, WeightedDraws const& draws, std::vector<ModeAtBound> const& skipped) {
   std::vector<Misfit> found;
   for (std::size_t p = 0; p < best.sd.size(); ++p) {
-    bool flat = std::find(skipped.begin(), skipped.end(), p) != skipped.end();
+    bool flat =
+        std::any_of(skipped.begin(), skipped.end(), [&](ModeAtBound const& each) { return each.parameter == static_cast<int>(p); });
     for (std::size_t at = p; at < best.flat.size(); at += best.sd.size()) flat = flat || best.flat[at] != 0;
     if (flat || !(best.sd[p] > 0)) continue;
     Misfit const each{p, draws.sd[p] / best.sd[p], (draws.mean[p] - best.declared[p]) / draws.sd[p]};
@@ -102,7 +88,7 @@ std::vector<Misfit> misfits(Mode const& best, WeightedDraws const& draws, std::v
 }
 
 /// Whether the posterior has the widths of the normal distribution at its highest mode. Several modes are a finding of their own.
-std::optional<Finding> check_widths(Target const& target, std::vector<Mode> const& modes, std::vector<std::size_t> const& at_bound,
+std::optional<Finding> check_widths(Target const& target, std::vector<Mode> const& modes, std::vector<ModeAtBound> const& at_bound,
                                     RunContext& context) {
   Ledger extra;
   auto const stop = [&] { return context.stop_requested(); };
@@ -181,22 +167,18 @@ FitResult run(std::string_view backend, Target const& target, ObjectiveKind obje
   result.search_told = true;
   // By a gradient, searches end where it is small: what Newton's step promises then is of the differences of its curvature.
   if (best.gain > (target.is_expensive() ? 10 * large_gain : large_gain)) result.findings.push_back(not_reached(best));
-  std::vector<std::string> names, bound;
-  std::vector<std::size_t> const at_bound = parameters_at_bound(target, objective_kind, best, context.seed);
-  for (std::size_t const p : at_bound) {
-    names.push_back(target.parameters()[p].name);
-    bound.push_back(fmt::format("{} = {:.4g}", names.back(), best.declared[p]));
-  }
-  if (!names.empty()) {
-    std::string const kept = quoted(names);
+  std::vector<ModeAtBound> const at_bound = modes_at_bounds(make_objective(target, objective_kind, context.seed, bound_step), best);
+  if (!at_bound.empty()) {
+    auto const there = [&](std::string const& name) {
+      return std::any_of(at_bound.begin(), at_bound.end(), [&](ModeAtBound const& each) {
+        return target.parameters()[static_cast<std::size_t>(each.parameter)].name == name;
+      });
+    };
     // Coordinates end there at infinity: of course they are flat.
-    std::erase_if(result.findings, [](Finding const& each) { return each.code == FindingCode::flat_direction; });
-    result.findings.push_back(
-        {FindingCode::at_bound, Severity::warning, std::move(names),
-         fmt::format(
-             "the optimum lies at a bound of the prior: {}; {} not meaningful, and the other sds are those with {} kept there",
-             fmt::join(bound, ", "), bound.size() == 1 ? "its sd is" : "their sds are", kept),
-         "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"});
+    std::erase_if(result.findings, [&](Finding const& each) {
+      return each.code == FindingCode::flat_direction && std::all_of(each.names.begin(), each.names.end(), there);
+    });
+    result.findings.push_back(at_bounds(target, best, at_bound));
   }
   if (objective_kind == ObjectiveKind::declared_posterior)
     if (std::optional<Finding> misfit = check_widths(target, result.modes, at_bound, context))

@@ -192,6 +192,20 @@ void settle_doubts(Objective const& objective, Eigen::VectorXd const& theta, boo
   }
 }
 
+/// Of a likelihood, directions that are measured as about as long as the prior is wide: the differences that measure them are taken
+/// on a straight line of that length, which leaves a ridge that bends, as p q = 1 does in the coordinates of an interval. They are
+/// flat if the ridge goes on, both ways, to where a normal density of this width has fallen by six nats.
+void follow_long_directions(Objective const& objective, Eigen::VectorXd const& theta, Spectrum& spectrum, Ledger& ledger) {
+  constexpr double as_long = 0.5, sds = 3.5;
+  if (objective.objective_kind != ObjectiveKind::likelihood || objective.target.is_expensive()) return;
+  for (Eigen::Index k = 0; k < spectrum.values.size(); ++k) {
+    if (std::find(spectrum.flat.begin(), spectrum.flat.end(), k) != spectrum.flat.end()) continue;
+    Eigen::VectorXd const sd = spectrum.unit.cwiseProduct(spectrum.vectors.col(k)) / std::sqrt(spectrum.values(k));
+    if (sd.cwiseQuotient(objective.scale).norm() < as_long) continue;
+    if (is_ridge_both_ways(objective, theta, sds * sd, ledger)) spectrum.flat.push_back(k);
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd theta_of(Mode const& mode) {
@@ -245,6 +259,7 @@ Mode laplace_mode(Objective const& objective, Eigen::VectorXd theta, Eigen::Matr
   }
   Spectrum spectrum = spectrum_of(curvature, scale);
   settle_doubts(objective, theta, steps.along_parameters, spectrum, ledger);
+  follow_long_directions(objective, theta, spectrum, ledger);
   Eigen::MatrixXd const covariance = covariance_from(spectrum);
   Eigen::Index const n = theta.size();
   Mode mode;

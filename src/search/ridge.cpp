@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "linear_algebra/decompositions.hpp"
 #include "search/descent.hpp"
@@ -38,31 +39,45 @@ std::vector<Eigen::VectorXd> steps_across(Objective const& likelihood, Eigen::Ve
   return steps;
 }
 
-/// Whether the ridge at `from`, beside a place of this log likelihood, is as high.
-bool reaches(Objective const& likelihood, Eigen::VectorXd from, Eigen::VectorXd const& along, double top, Ledger& ledger) {
+/// Where the ridge at `from`, beside a place of this log likelihood, is as high; nothing if it is not.
+std::optional<Eigen::VectorXd> top_beside(Objective const& likelihood, Eigen::VectorXd from, Eigen::VectorXd const& along,
+                                          double top, Ledger& ledger) {
   double height = likelihood.log_density(to_lanes({from}), ledger).front();
   for (int round = 0; round < most_steps && height < top - tolerated; ++round) {
     std::vector<Eigen::VectorXd> places = steps_across(likelihood, from, along, ledger);
-    if (places.empty()) return false;
+    if (places.empty()) return std::nullopt;
     for (Eigen::VectorXd& each : places) each = likelihood.clamp(from + each, from);
     std::vector<double> const heights = likelihood.log_density(to_lanes(places), ledger);
     auto const best = std::max_element(heights.begin(), heights.end());
-    if (!(*best > height)) return false;
+    if (!(*best > height)) return std::nullopt;
     height = *best;
     from = places[static_cast<std::size_t>(best - heights.begin())];
   }
-  return height >= top - tolerated;
+  if (height < top - tolerated) return std::nullopt;
+  return from;
+}
+
+/// In so many stages, each from the top that the one before has found.
+bool follows(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, int stages, Ledger& ledger) {
+  Objective likelihood = objective;
+  likelihood.objective_kind = ObjectiveKind::likelihood;
+  double const top = likelihood.log_density(to_lanes({theta}), ledger).front();
+  Eigen::VectorXd const along = move.cwiseQuotient(objective.scale).normalized();
+  std::optional<Eigen::VectorXd> place = theta;
+  for (int stage = 0; place && stage < stages; ++stage)
+    place = top_beside(likelihood, objective.clamp(*place + move / stages, *place), along, top, ledger);
+  return place.has_value();
 }
 
 }  // namespace
 
 bool is_ridge(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger) {
-  Objective likelihood = objective;
-  likelihood.objective_kind = ObjectiveKind::likelihood;
-  double const top = likelihood.log_density(to_lanes({theta}), ledger).front();
-  Eigen::VectorXd const along = move.cwiseQuotient(objective.scale).normalized();
-  return reaches(likelihood, objective.clamp(theta + move, theta), along, top, ledger) ||
-         reaches(likelihood, objective.clamp(theta - move, theta), along, top, ledger);
+  return follows(objective, theta, move, 1, ledger) || follows(objective, theta, -move, 1, ledger);
+}
+
+bool is_ridge_both_ways(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger) {
+  constexpr int stages = 8;
+  return follows(objective, theta, move, stages, ledger) && follows(objective, theta, -move, stages, ledger);
 }
 
 }  // namespace sysid

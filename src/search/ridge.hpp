@@ -9,5 +9,7 @@ namespace sysid {
 /// Whether the log likelihood stays within 4.5 nats, three sds, of that at theta [P] along `move` [P] or against it. Ridges bend:
 /// at the end of the move Gauss-Newton steps across it, which do not go back along it, look for the top.
 bool is_ridge(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger);
+/// Whether it does so along `move` and against it.
+bool is_ridge_both_ways(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger);
 
 }  // namespace sysid

@@ -54,6 +54,19 @@ TEST_CASE("sound, flat, one-sided and standing posteriors are left alone") {
   CHECK_FALSE(check_bounds(three_sds_off, 0, 10).at_lower);
 }
 
+TEST_CASE("one bound alone counts if it is no zero and the posterior is narrower than its prior") {
+  auto const above = draws_of([](Stream& s) { return 3.4 - 0.03 * std::log(s.uniform()); });
+  CHECK(check_bounds(above, 3.4, infinity, infinity).at_lower);
+  CHECK(check_bounds(above, 3.4, infinity, 10).at_lower);
+  CHECK_FALSE(check_bounds(above, 3.4, infinity, 0.1).at_lower);  // of the prior's own width
+  CHECK_FALSE(check_bounds(above, 3.4, infinity).at_lower);       // which is not known
+  CHECK_FALSE(check_bounds(above, 3.3, infinity, infinity).at_lower);
+  auto const below = draws_of([](Stream& s) { return -0.03 * std::fabs(s.normal()); });
+  CHECK(check_bounds(below, -infinity, 0, infinity).at_upper == false);
+  auto const below_two = draws_of([](Stream& s) { return 2 - 0.03 * std::fabs(s.normal()); });
+  CHECK(check_bounds(below_two, -infinity, 2, infinity).at_upper);
+}
+
 TEST_CASE("the finding names the parameter, the bound and its unit") {
   auto const x = draws_of([](Stream& s) { return 1e5 - 100 * std::fabs(s.normal()); });
   Draws draws{{"k", "c"}, {"N/m", ""}, {{}}, 2};

@@ -12,6 +12,8 @@
 #include "core/numeric/random.hpp"
 #include "inference/targets.hpp"
 #include "search/journal.hpp"
+#include "search/mode/at_bound.hpp"
+#include "search/mode/moves.hpp"
 #include "search/refit.hpp"
 #include "search/search.hpp"
 

@@ -89,10 +89,11 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"search", {"core", "linear_algebra", "result", "gaussian_process", "likelihood"}},
     {"search/hierarchy", {"linear_algebra", "likelihood", "search"}},
     {"search/improper", {"core", "linear_algebra", "result", "likelihood", "search"}},
+    {"search/mode", {"core", "result", "search"}},
     {"diagnostics",
      {"core", "linear_algebra", "result", "data", "distribution", "model", "solver", "likelihood", "likelihood/smoothing",
       "search"}},
-    {"diagnostics/tolerance", {"core", "result", "solver", "likelihood", "search", "diagnostics"}},
+    {"diagnostics/tolerance", {"core", "result", "solver", "likelihood", "search", "search/mode", "diagnostics"}},
     {"diagnostics/calibration", {"core", "result", "diagnostics"}},
     {"inference/backend", {"core", "result", "likelihood", "likelihood/selection", "search", "diagnostics"}},
     {"inference/chain", {"core", "linear_algebra", "result", "likelihood", "search", "diagnostics", "inference/backend"}},
@@ -103,8 +104,8 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
     {"inference/jump",
      {"core", "linear_algebra", "result", "likelihood", "search", "inference/backend", "inference/chain", "inference/evidence"}},
     {"inference",
-     {"core", "linear_algebra", "result", "likelihood", "search", "inference/backend", "inference/chain", "inference/nuts",
-      "inference/abc", "inference/evidence", "inference/jump"}},
+     {"core", "linear_algebra", "result", "likelihood", "search", "search/mode", "inference/backend", "inference/chain",
+      "inference/nuts", "inference/abc", "inference/evidence", "inference/jump"}},
     {"load",
      {"core", "syntax", "regression/column", "regression/choice", "check/message", "check/elaborate", "check/checked", "check",
       "inference"}},
@@ -374,6 +375,23 @@ TEST_CASE("tests leave decompositions of matrices to linear_algebra as well") {
       if (line.starts_with("#include <Eigen/")) CHECK(wrong("search", line) == "");
   }
   CHECK(lines > 10'000);
+}
+
+// The library runs in programs whose locale has decimal commas.
+TEST_CASE("no source reads numbers by the locale of the process") {
+  std::filesystem::path const root = std::filesystem::path(SYSID_SOURCE_DIR) / "src";
+  int lines = 0;
+  for (auto const& entry : std::filesystem::recursive_directory_iterator(root)) {
+    if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
+    CAPTURE(entry.path().string());
+    std::istringstream text(sysid::read_file(entry.path()));
+    for (std::string line; std::getline(text, line); ++lines)
+      for (char const* const each : {"strtod(", "stod(", "strtof(", "stof(", "atof("}) {
+        CAPTURE(line);
+        CHECK(line.find(each) == std::string::npos);
+      }
+  }
+  CHECK(lines > 50'000);
 }
 
 TEST_CASE("an include that points upwards is found") {

@@ -84,3 +84,23 @@ TEST_CASE("a ridge as long as the prior is flat however narrow it is, straight o
     CHECK_FALSE(search(narrow(product, INFINITY), ObjectiveKind::likelihood, bench.context).modes.front().flat.empty());
   }
 }
+
+TEST_CASE("a ridge of a likelihood is flat in the coordinates of an interval, too, and a wide optimum is not") {
+  // y = p q x at ten points, measured to 0.1: p q is known to 2 %, p anything from 0.02 to 100.
+  TestTarget const product({"p", "q"}, {{Prior::log_uniform, 0.01, 100}, {Prior::log_uniform, 0.01, 100}}, 10, 0,
+                           [](std::vector<double> const& w, std::vector<double>& rows) {
+                             for (std::size_t i = 0; i < rows.size(); ++i)
+                               rows[i] = (w[0] * w[1] - 2) * static_cast<double>(i) / 0.1;
+                           });
+  Bench bench;
+  Mode const ridge = search(product, ObjectiveKind::likelihood, bench.context).modes.front();
+  REQUIRE(ridge.flat.size() == 2);
+  CHECK(ridge.flat[0] * ridge.flat[1] < 0);
+  // ln p is known to about as much as its prior knows it, ln q ten times better.
+  TestTarget const wide({"p", "q"}, {{Prior::log_uniform, 0.01, 100}, {Prior::log_uniform, 0.01, 100}}, 2, 0,
+                        [](std::vector<double> const& w, std::vector<double>& rows) {
+                          rows[0] = std::log(w[0]) / 1.5;
+                          rows[1] = std::log(w[1]) / 0.15;
+                        });
+  CHECK(search(wide, ObjectiveKind::likelihood, bench.context).modes.front().flat.empty());
+}

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "inference/targets.hpp"
+#include "search/mode/moves.hpp"
 #include "search/search.hpp"
 
 using namespace sysid;
@@ -39,54 +40,6 @@ TEST_CASE("a mode follows its target, and its move is measured in its own sds") 
   CHECK(largest_move(target.parameters(), modes[0], moved[0], 0).size() == 0);
   CHECK(moved[0].share == modes[0].share);
   CHECK(refit(centred(2), ObjectiveKind::posterior, {}, 1, bench.ledger).empty());
-}
-
-TEST_CASE("a change of width is a move of the limits") {
-  Mode narrow, wide;
-  narrow.declared = wide.declared = {1, 5};
-  narrow.sd = {0.5, 0.1};
-  wide.sd = {0.5, 0.3};
-  std::vector<ParameterInfo> const free(2, {"", "", -infinity, infinity});
-  sysid::Move const move = largest_move(free, narrow, wide, 0);
-  CHECK(move.parameter == 1);
-  CHECK(move.value == 0);
-  CHECK(move.size() == doctest::Approx(2).epsilon(1e-12));
-  // Not along a direction that nothing resists, nor at a bound.
-  Mode flat = narrow;
-  flat.flat = {0, 0.1};
-  CHECK(largest_move(free, flat, wide, 0).size() == 0);
-  std::vector<ParameterInfo> const bounded = {{"", "", -infinity, infinity}, {"", "", 0, 5}};
-  CHECK(largest_move(bounded, narrow, wide, 0).size() == 0);
-}
-
-TEST_CASE("where the finer of two modes is flat the sds of the other measure its move") {
-  Mode finer, coarser;
-  finer.declared = {20, 1};
-  finer.sd = {950, 0.1};
-  finer.flat = {90, 0};
-  coarser.declared = {10, 1};
-  coarser.sd = {0.5, 0.1};
-  std::vector<ParameterInfo> const free(2, {"", "", -infinity, infinity});
-  CHECK(largest_move(free, finer, coarser, 300).size() == doctest::Approx(20).epsilon(1e-12));
-  CHECK(largest_move(free, finer, coarser, 12).size() == doctest::Approx(std::sqrt(24)).epsilon(1e-12));  // as the gain allows
-  coarser.flat = finer.flat;
-  CHECK(largest_move(free, finer, coarser, 0.4).size() == doctest::Approx(10.0 / 950).epsilon(1e-12));
-  CHECK(largest_move(free, finer, coarser, 8).size() == doctest::Approx(4).epsilon(1e-12));  // which the flat direction hides
-}
-
-TEST_CASE("a bound is reached within a thousandth of the support, or of a positive lower bound") {
-  CHECK(at_bound({"", "", 0, 1}, 0.9995, 0.1));
-  CHECK_FALSE(at_bound({"", "", 0, 1}, 0.998, 0.1));
-  CHECK(at_bound({"", "", 1e-3, 1}, 1.0005e-3, 0.1));
-  CHECK_FALSE(at_bound({"", "", 1e-3, 1}, 1.1e-3, 0.1));
-  CHECK_FALSE(at_bound({"", "", -infinity, infinity}, 1e300, 0.1));
-}
-
-TEST_CASE("one bound alone is reached within a tenth of an sd") {
-  CHECK(at_bound({"", "", 3.4, infinity}, 3.4 + 1e-12, 2e-11));
-  CHECK(at_bound({"", "", 3.4, infinity}, 3.4, 0));
-  CHECK_FALSE(at_bound({"", "", 3.4, infinity}, 3.4 + 1e-9, 2e-9));
-  CHECK(at_bound({"", "", -infinity, 0}, -1e-12, 2e-11));
 }
 
 TEST_CASE("a mode that can no longer be solved keeps its place and has moved infinitely far") {

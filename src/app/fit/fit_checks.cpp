@@ -136,6 +136,17 @@ std::string without_hierarchy(FinishedFit const& fit) {
 }
 
 Findings hierarchy(FinishedFit& fit) {
+  if (fit.objective_kind == ObjectiveKind::likelihood) {
+    Findings const found = check_populations(fit.likelihood.model());
+    // What the likelihood does not contain is of course flat in it.
+    auto const of_population = [&](std::string const& name) {
+      return !found.empty() && std::find(found.front().names.begin(), found.front().names.end(), name) != found.front().names.end();
+    };
+    std::erase_if(fit.report.findings, [&](Finding const& each) {
+      return each.code == FindingCode::flat_direction && std::all_of(each.names.begin(), each.names.end(), of_population);
+    });
+    return found;
+  }
   std::vector<std::string> non_centred;
   if (ParameterSpace const* const space = fit.likelihood.with_hierarchies())
     non_centred = parameters_of(*space, fit.preparation.standardised);
@@ -144,7 +155,7 @@ Findings hierarchy(FinishedFit& fit) {
 
 Findings failed_solves(FinishedFit& fit) { return failure_findings(fit.sampling); }
 
-Findings bounds(FinishedFit& fit) { return check_bounds(fit.target.parameters(), fit.result.draws); }
+Findings bounds(FinishedFit& fit) { return check_bounds(fit.target.parameters(), fit.result.draws, fit.report.priors); }
 
 // --- the fitted rows
 std::string without_constraints(FinishedFit const& fit) {

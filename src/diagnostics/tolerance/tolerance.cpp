@@ -9,6 +9,7 @@
 
 #include "core/text/words.hpp"
 #include "search/laplace.hpp"
+#include "search/mode/moves.hpp"
 #include "search/refit.hpp"
 #include "search/search_step.hpp"
 #include "search/work_left.hpp"

@@ -11,6 +11,7 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "diagnostics/convergence.hpp"
+#include "search/mode/moves.hpp"
 #include "search/refit.hpp"
 
 namespace sysid {

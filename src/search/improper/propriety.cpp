@@ -110,8 +110,12 @@ class Walk {
       double const sd = std::min(std::sqrt(std::max(covariance(p, p), 0.0)), objective_.scale(p));
       bool const on_line = kind == Improper::line;
       double const first = on_line ? (sd > 0 ? sd : objective_.scale(p)) : std::min(sd, step_of_logarithm);
-      for (double const sign : {1.0, -1.0})
-        rays_.push_back({p, sign, on_line, first, last_step(on_line, first, mode_(p)), {mode_}});
+      // Of a logarithm the way to the bound first: where both ways are as flat, that is the one to name.
+      for (double const sign : {on_line ? 1.0 : -1.0, on_line ? -1.0 : 1.0}) {
+        double const end = objective_.centre(p) + objective_.scale(p) - mode_(p);
+        int const last = on_line ? last_step_on_line(first, mode_(p)) : last_step_of_logarithm(first, sign > 0 ? end : 0);
+        rays_.push_back({p, sign, on_line, first, last, {mode_}});
+      }
     }
   }
 
@@ -129,11 +133,17 @@ class Walk {
   }
 
  private:
-  /// On a line at least as far as a thousand times the value.
-  static int last_step(bool on_line, double first, double value) {
-    if (!on_line || !(std::fabs(value) > 0)) return least_half_decades;
+  /// At least as far as a thousand times the value.
+  static int last_step_on_line(double first, double value) {
+    if (!(std::fabs(value) > 0)) return least_half_decades;
     double const decades = elementary::log(std::fabs(value) / first) / std::numbers::ln10 + 3;
     return std::clamp(static_cast<int>(std::ceil(steps_per_decade * decades)), least_half_decades, most_half_decades);
+  }
+
+  /// From a mode that lies far below what the other scales of the model suggest, as that of a spread can, 8 decades beyond these.
+  static int last_step_of_logarithm(double first, double end) {
+    double const steps = std::max(0.0, end - first) / step_of_logarithm;
+    return std::min(least_half_decades + static_cast<int>(std::ceil(std::min(steps, 1.0 * most_half_decades))), most_half_decades);
   }
 
   void go(std::vector<std::size_t> const& open, int step) {
@@ -323,7 +333,7 @@ Propriety check_propriety(Target const& target, Mode const& mode, std::uint64_t 
   Ray const* worst = nullptr;  // others may only follow from it
   for (Ray const& ray : rays) {
     Tail const tail = tail_of(ray);
-    if (tail == Tail::improper && (worst == nullptr || barrier(ray) < barrier(*worst))) worst = &ray;
+    if (tail == Tail::improper && (worst == nullptr || barrier(ray) < barrier(*worst) - improper)) worst = &ray;
     if (tail == Tail::undecided) result.findings.push_back(undecided_tail(target, ray));
   }
   if (worst != nullptr) result.failure = improper_tail(target, *worst);

@@ -1,4 +1,4 @@
-// Optima at the bound of a prior that has one bound only, against those of a regression with the parameter fixed there.
+// Optima at bounds of priors, against those of a regression with the parameter fixed there.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -102,5 +102,36 @@ TEST_CASE("a posterior that ends at the one bound of a flat prior is proper") {
                                      fmt::format("a + b*x {}", curve), "map");
     CHECK(told_by(summary, "at_bound") != nullptr);
     CHECK(told_by(summary, "improper_posterior") == nullptr);
+  }
+}
+
+TEST_CASE("an optimum many sds from the end of a wide prior is inside, as it is under a prior without that end") {
+  for (char const* const method : {"ml", "map"}) {
+    CAPTURE(std::string(method));
+    json const wide = fit_of_line("  parameter a ~ uniform(0, 1e5)\n  parameter b ~ uniform(0, 5000)\n", "a + b*x", method);
+    json const free = fit_of_line("  parameter a ~ flat()\n  parameter b ~ flat()\n", "a + b*x", method);
+    CHECK(told_by(wide, "at_bound") == nullptr);
+    for (char const* const each : {"a", "b"}) {
+      json const &in_wide = wide.at("parameters").at(each), &in_free = free.at("parameters").at(each);
+      CHECK(in_wide.at("mean").get<double>() == doctest::Approx(in_free.at("mean").get<double>()).epsilon(1e-5));
+      CHECK(in_wide.at("sd").get<double>() == doctest::Approx(in_free.at("sd").get<double>()).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE("a prior whose density is infinite at its bound has no optimum, and that is said") {
+  for (char const* const prior : {"gamma(0.5, scale = 1)", "gamma(0.9, scale = 1)", "beta(0.5, 2)"}) {
+    CAPTURE(std::string(prior));
+    std::string const parameters =
+        fmt::format("  parameter a ~ normal(0, sd = 10)\n  parameter b ~ normal(0, sd = 10)\n  parameter c ~ {}\n", prior);
+    json const summary = fit_of_line(parameters, "a + b*x + c*x^2", "map");
+    json const* const told = told_by(summary, "at_bound");
+    REQUIRE(told != nullptr);
+    CHECK(told->at("message").get<std::string>().find("has no maximum") != std::string::npos);
+    CHECK(told_by(summary, "flat_direction") == nullptr);
+    // The likelihood has one: at the bound, or inside.
+    json const likelihood = fit_of_line(parameters, "a + b*x + c*x^2", "ml");
+    if (json const* const bound = told_by(likelihood, "at_bound"))
+      CHECK(bound->at("message").get<std::string>().find("has no maximum") == std::string::npos);
   }
 }
