@@ -45,7 +45,9 @@ NodeId log_density_of_member(Graph& graph, Distribution const& use, MemberCoordi
   Conditional const given = conditional(graph, prior, member);
   Coordinate const moved = constrain(graph, allowed, (given.mean + given.sd * coordinate).id);
   Term const of_z(graph, log_density(graph, standard(graph, use), standardised.value));
-  return (of_z + Term(graph, standardised.log_jacobian) - log(scale) - Term(graph, moved.log_jacobian)).id;
+  // Nodes in this order on every compiler.
+  Term const log_scale = log(scale), density = of_z + Term(graph, standardised.log_jacobian);
+  return (density - log_scale - Term(graph, moved.log_jacobian)).id;
 }
 
 NodeId unconstrain_member(Graph& graph, Support const& support, LocationScale const& prior, MemberCoordinate const& member,

@@ -91,8 +91,7 @@ std::pair<std::string, std::string> ends_of(Range range) {
   double const near = 0.005 * (range.high - range.low);
   for (int digits = 4;; ++digits) {
     std::string low = significant(range.low, digits), high = significant(range.high, digits);
-    bool const placed = std::fabs(std::strtod(low.c_str(), nullptr) - range.low) <= near &&
-                        std::fabs(std::strtod(high.c_str(), nullptr) - range.high) <= near;
+    bool const placed = std::fabs(leading_number(low) - range.low) <= near && std::fabs(leading_number(high) - range.high) <= near;
     if (placed || digits == 12) return {std::move(low), std::move(high)};
   }
 }

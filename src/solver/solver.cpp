@@ -2,13 +2,13 @@
 #include "solver/solver.hpp"
 
 #include <fmt/format.h>
-#include <cstdlib>
 
 #include <algorithm>
 #include <string>
 
 #include "core/setting/table.hpp"
 #include "core/text/diagnostic.hpp"
+#include "core/text/number.hpp"
 
 namespace sysid {
 
@@ -37,7 +37,7 @@ constexpr SettingRow adaptive_settings[] = {
 };
 
 // To the digits that a person would write: 1e-5/100 is not the number nearest to 1e-7.
-double hundredth(double value) { return std::strtod(fmt::format("{:.12e}", value / 100).c_str(), nullptr); }
+double hundredth(double value) { return leading_number(fmt::format("{:.12e}", value / 100)); }
 
 }  // namespace
 

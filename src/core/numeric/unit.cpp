@@ -3,6 +3,7 @@
 #include "core/numeric/unit.hpp"
 
 #include <fmt/format.h>
+#include <locale.h>
 #include <udunits2.h>
 
 #include <algorithm>
@@ -75,10 +76,26 @@ std::mutex& database_mutex() {
   return mutex;
 }
 
+/// Numbers with a decimal point in this thread, whatever the locale of the program that uses this library: UDUNITS reads `0.3048`
+/// by the locale.
+class PlainNumbers {
+ public:
+  PlainNumbers() : own_(::newlocale(LC_ALL_MASK, "C", nullptr)), before_(own_ ? ::uselocale(own_) : nullptr) {}
+  ~PlainNumbers() {
+    if (before_) ::uselocale(before_);
+    if (own_) ::freelocale(own_);
+  }
+  PlainNumbers(PlainNumbers const&) = delete;
+
+ private:
+  locale_t own_, before_;
+};
+
 /// The database, read once; the caller holds the mutex.
 ut_system& database() {
   static std::unique_ptr<ut_system, void (*)(ut_system*)> const system = [] {
     ut_set_error_message_handler(ut_ignore);  // it would print to stderr otherwise
+    PlainNumbers const numbers;
     std::unique_ptr<ut_system, void (*)(ut_system*)> read(ut_read_xml(nullptr), ut_free_system);
     if (!read) throw IoError("cannot read the unit database of UDUNITS-2 (udunits2.xml); set UDUNITS2_XML_PATH to its path");
     return read;

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 
 #include "core/text/utf8.hpp"
 
@@ -36,11 +36,16 @@ std::string significant(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   if (value == 0) return "0";
   // Rounding may lift the value into the next decade: 9.996 has four digits as 10.00.
-  // (`stod` would throw where a value is denormal.)
-  double const rounded = std::strtod(fmt::format("{:.{}e}", value, digits - 1).c_str(), nullptr);
+  double const rounded = leading_number(fmt::format("{:.{}e}", value, digits - 1));
   int const power = decade(rounded);
   int const exponent = needs_exponent(power) ? power : 0;
   return with_exponent(rounded, digits - 1 - power + exponent, exponent);
+}
+
+double leading_number(std::string_view text) {
+  double number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
 }
 
 std::string superscript(int number) {

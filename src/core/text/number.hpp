@@ -22,6 +22,9 @@ std::string significant(double value, int digits);
 /// "4.986e9" for a page: "4.986·10⁹".
 std::string pretty_number(std::string_view text);
 
+/// The number at the beginning of a text, with a decimal point whatever the locale of the process says; 0 where there is none.
+double leading_number(std::string_view text);
+
 /// What follows a number: " m/s"; nothing for "-", which would read as a minus or a missing value.
 std::string unit_after_number(std::string_view unit);
 

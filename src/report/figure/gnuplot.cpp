@@ -9,11 +9,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <filesystem>
 
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
+#include "core/text/number.hpp"
 
 extern char** environ;
 
@@ -77,8 +77,8 @@ std::string join_points(std::string_view svg) {
   std::string out, points, scale, colour;
   auto const flush = [&] {
     if (points.empty()) return;
-    out += fmt::format("\t<path stroke='{}' stroke-width='{:.2f}' stroke-linecap='round' d='{}'/>\n", colour, 2 * std::stod(scale),
-                       points);
+    out += fmt::format("\t<path stroke='{}' stroke-width='{:.2f}' stroke-linecap='round' d='{}'/>\n", colour,
+                       2 * leading_number(scale), points);
     points.clear();
   };
   while (!svg.empty()) {
@@ -110,7 +110,7 @@ std::string to_tenths(std::string_view svg) {
     while (coordinates && end < svg.size() && is_part(svg[end])) ++end;
     std::string_view const number = svg.substr(at, end - at);
     if (std::size_t const dot = number.find('.'); dot != number.npos && dot > 0 && dot + 3 == number.size()) {
-      out += fmt::format("{:.1f}", std::stod(std::string(number)));
+      out += fmt::format("{:.1f}", leading_number(number));
       if (out.ends_with(".0")) out.resize(out.size() - 2);
     } else {
       end = std::max(end, at + 1);
@@ -237,7 +237,7 @@ std::string embedded(std::string const& svg, plot::Figure const& figure) {
   for (std::size_t c = 0; c < std::size(plot::chains); ++c) follow(plot::chains[c], fmt::format("chain-{}", c + 1));
   std::size_t const box = out.find("viewBox=\"0 0 ");
   // Its text would otherwise be larger than the page's, or too small to be read: 9 pixels of its 12.
-  double const width = box == std::string::npos ? 0 : std::strtod(out.c_str() + box + 13, nullptr);
+  double const width = box == std::string::npos ? 0 : leading_number(std::string_view(out).substr(box + 13));
   std::string const widest =
       width > 0 ? fmt::format(" style=\"max-width:{:.0f}px;min-width:{:.0f}px\"", 1.4 * width, 0.75 * width) : "";
   replace_all(out, "<svg ", fmt::format("<svg role=\"img\" aria-label=\"{}\"{}", plot::identifier(figure.name), widest));
