@@ -182,8 +182,8 @@ struct StampPattern::Reader {
         return number(day_of_year, 3, token.exact) && day_of_year >= 1;
       case Part::hour:
         return number(hour, 2, token.exact);
-      case Part::minute:
-        return number(minute, 2, true);
+      case Part::minute:  // `0:05` of a stop watch, as `8:05` of a clock
+        return number(minute, 2, token.exact || at > 0);
       case Part::second:
         return number(second, 2, true);
       case Part::fraction:

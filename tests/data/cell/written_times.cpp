@@ -231,3 +231,14 @@ TEST_CASE("a column is called after a date where a word of its name says so") {
     CHECK(counts_of(values, name) == "");
   }
 }
+
+TEST_CASE("`0:05` may be hours and minutes or minutes and seconds, as `00:05` may") {
+  using Patterns = std::vector<std::string>;
+  CHECK(patterns_of({"0:00", "0:05", "0:10", "1:45"}) == Patterns{"hh:mm", "mm:ss"});
+  CHECK(patterns_of({"00:00", "00:05", "00:10"}) == Patterns{"hh:mm", "mm:ss"});
+  CHECK(patterns_of({"0:00", "0:05", "26:35"}) == Patterns{"mm:ss.f"});  // no day has so many hours
+  CHECK(patterns_of({"8:00:00", "8:00:05"}) == Patterns{"hh:mm:ss"});
+  CHECK(seconds_in({"0:05", "1:45"}, stamped("mm:ss")) == Seconds{0, 100});
+  CHECK(seconds_in({"9:59.5", "10:00.0"}, stamped("mm:ss.f")) == Seconds{0, 0.5});
+  CHECK(said_of({"8:5:00", "8:06:00"}, stamped("hh:mm:ss")).code == "E4024");
+}
