@@ -70,8 +70,12 @@ struct FitLine {
   std::string experiment, channel;  // "bench.train", "displacement"; empty: over all channels of all experiments
   std::string unit;                 // of its rmse
   std::vector<Score> scores;
+  std::string optimum_of = {};  // the model whose maximum-likelihood fit they are of; empty: of what the task found
 
-  std::string what() const { return channel.empty() ? "all channels" : channel + " on " + experiment; }
+  std::string what() const {
+    std::string const where = channel.empty() ? "all channels" : channel + " on " + experiment;
+    return optimum_of.empty() ? where : where + ", maximum-likelihood fit of `" + optimum_of + "`";
+  }
 };
 
 /// A table of what this kind of task adds: candidate models, inclusion probabilities, populations.

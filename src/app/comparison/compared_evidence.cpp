@@ -88,22 +88,24 @@ Range range_of(double log_bayes_factor, Widths const& of, Widths const& best) {
   std::set<std::string> names;
   for (Widths const* each : {&of, &best})
     for (auto const& [name, change] : each->change) names.insert(name);
-  for (std::string const& name : names)
-    for (double const factor : {0.5, 2.0}) {
-      auto const mine = of.at(name, factor), other = best.at(name, factor);
-      if (!mine || !other) {
-        if (name.empty())
-          range.all = false;
-        else if (range.unknown.empty() || range.unknown.back() != name)
-          range.unknown.push_back(name);
-        continue;
-      }
-      range.known = true;
-      double const change = *mine - *other;
+  for (std::string const& name : names) {
+    std::vector<double> changes;
+    for (double const factor : {0.5, 2.0})
+      if (auto const mine = of.at(name, factor), other = best.at(name, factor); mine && other) changes.push_back(*mine - *other);
+    if (changes.size() < 2) {  // half of what a prior does is not what it does
+      if (name.empty())
+        range.all = false;
+      else
+        range.unknown.push_back(name);
+      continue;
+    }
+    range.known = true;
+    for (double const change : changes) {
       range.low = std::min(range.low, log_bayes_factor + change);
       range.high = std::max(range.high, log_bayes_factor + change);
       if (!name.empty() && std::fabs(change) > range.most) range.most = std::fabs(change), range.by = name;
     }
+  }
   return range;
 }
 
@@ -173,14 +175,19 @@ std::vector<std::string> prior_width_notes(std::vector<std::string> const& model
     Widths const mine(evidences[places[i]]), other(evidences[places.front()]);
     if (mine.change.empty() || other.change.empty()) continue;
     Range const range = range_of(factor, mine, other);
-    if (range.high < -ruled_out || !range.known) continue;
-    std::string note = fmt::format("{} against {}: the log Bayes factor lies between {:.1f} and {:.1f} if {} half or twice as wide",
-                                   of.name, best.name, to_tenth(range.low), to_tenth(range.high),
-                                   range.all ? "one prior or all priors are" : "one prior is");
-    if (!range.by.empty()) note += fmt::format("; the prior of `{}` changes it most", range.by);
-    if (!range.unknown.empty())
-      note += fmt::format("; the draws do not show what effect the {} of {} {}", plural("prior", range.unknown.size()),
-                          quoted(range.unknown), range.unknown.size() == 1 ? "has" : "have");
+    if (range.high < -ruled_out) continue;
+    std::string const unknown = fmt::format("{} of {}", plural("prior", range.unknown.size()), quoted(range.unknown));
+    std::string note = fmt::format("{} against {}: ", of.name, best.name);
+    if (range.known)
+      note += fmt::format(
+          "the log Bayes factor lies between {:.1f} and {:.1f} if {} half or twice as wide{}{}", to_tenth(range.low),
+          to_tenth(range.high), range.all ? "one prior or all priors are" : "one prior is",
+          range.by.empty() ? "" : fmt::format("; the prior of `{}` changes it most", range.by),
+          range.unknown.empty() ? "" : fmt::format("; this does not include the {}, whose effect the draws do not show", unknown));
+    else if (!range.unknown.empty())
+      note += fmt::format("the draws do not show how the log Bayes factor depends on the {}", unknown);
+    else
+      continue;
     notes.push_back(std::move(note));
   }
   return notes;

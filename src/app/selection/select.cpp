@@ -230,6 +230,7 @@ class Select {
     auto const lead = static_cast<std::size_t>(selection.leader());
     FitCheck check = check_candidate(session_, leading, posteriors[lead]);
     report.fit = std::move(check.lines);
+    for (FitLine& line : report.fit) line.optimum_of = leading.what->name;
     add(check.findings, report);
   }
 

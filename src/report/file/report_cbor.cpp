@@ -74,7 +74,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrueValue, name, unit, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, inputs_sha256, notes,
                                    true_parameters)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, name, value)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FitLine, experiment, channel, unit, scores)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FitLine, experiment, channel, unit, scores, optimum_of)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportTable, title, caption, header, rows)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, name, unit, mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail, mcse_mean,
                                    coefficient, without_sd)
@@ -304,7 +304,7 @@ namespace {
 
 /// Raised when members keep their names and change their meaning. Other members tell themselves: the bytes are whole and do not
 /// fit.
-constexpr int form = 4;
+constexpr int form = 5;
 
 /// Records of before have the findings below the headline.
 std::string headline_alone(std::string const& stored) { return stored.substr(0, stored.find('\n')); }

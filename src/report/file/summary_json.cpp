@@ -188,14 +188,24 @@ Json ledger(Ledger const& ledger, std::vector<std::string> const& names) {
 }
 
 /// Per channel of each experiment; of a single one at the top as well.
-Json fit(Report const& report) {
-  std::vector<FitLine> const lines = fit_lines(report);
+Json fit(std::vector<FitLine> const& lines) {
   Json out = Json::object(), channels = Json::object();
   for (FitLine const& line : lines) {
     if (lines.size() == 1 || line.channel.empty()) out = score_object(line.scores);
     if (!line.channel.empty()) channels[line.experiment][line.channel] = score_object(line.scores);
   }
   if (!channels.empty()) out["channels"] = channels;
+  return out;
+}
+
+/// Those of a maximum-likelihood fit beside particles apart.
+Json fit(Report const& report) {
+  std::vector<FitLine> found = fit_lines(report), optimum;
+  auto const rest = std::stable_partition(found.begin(), found.end(), [](FitLine const& each) { return each.optimum_of.empty(); });
+  optimum.assign(rest, found.end());
+  found.erase(rest, found.end());
+  Json out = fit(found);
+  if (!optimum.empty()) out["maximum_likelihood"] = fit(optimum);
   return out;
 }
 

@@ -40,12 +40,14 @@ std::size_t samples_of(Report const& report, FitLine const& line) {
 }
 
 std::optional<Worst> worst(Report const& report, std::vector<FitLine> const& lines, std::string_view name,
-                           std::function<double(double)> const& badness) {
+                           std::function<double(Worst const&)> const& badness) {
   std::optional<Worst> out;
   for (FitLine const& line : lines)
-    for (Score const& score : line.scores)
-      if (score.name == name && std::isfinite(score.value) && (!out || badness(score.value) > badness(out->value)))
-        out = {score.value, lines.size() > 1 ? fmt::format(" ({})", line.what()) : "", samples_of(report, line)};
+    for (Score const& score : line.scores) {
+      if (score.name != name || !std::isfinite(score.value)) continue;
+      Worst here{score.value, lines.size() > 1 ? fmt::format(" ({})", line.what()) : "", samples_of(report, line)};
+      if (!out || badness(here) > badness(*out)) out = std::move(here);
+    }
   return out;
 }
 
@@ -57,25 +59,29 @@ std::string error_words(Worst const& nmse) {
   return out + "model and measurement can hardly be distinguished by eye.";
 }
 
-/// Whether a share as far off on the same side would come about by chance once in a hundred times. Of samples that nobody has
-/// counted: no.
-bool by_chance(Worst const& share, double expected) {
-  if (share.samples == 0) return false;
+/// The probability of a share as far off on the same side. Of samples that nobody has counted: 0.
+double chance_of(Worst const& share, double expected) {
+  if (share.samples == 0) return 0;
   auto const inside = static_cast<std::size_t>(std::llround(share.value * static_cast<double>(share.samples)));
   boost::math::binomial_distribution<double> const counts(static_cast<double>(share.samples), expected);
-  double const chance =
-      share.value > expected ? cdf(complement(counts, static_cast<double>(inside) - 1)) : cdf(counts, static_cast<double>(inside));
-  return chance >= 0.01;
+  return share.value > expected ? cdf(complement(counts, static_cast<double>(inside) - 1))
+                                : cdf(counts, static_cast<double>(inside));
+}
+
+/// Three of four samples inside say less than 900 of 1000.
+double badness_of_coverage(Worst const& share, double expected) {
+  return -std::log(std::max(chance_of(share, expected), 1e-300)) + std::fabs(share.value - expected);
 }
 
 std::string coverage_words(Worst const& coverage, double expected) {
   // Five in a hundred may be missing where 95 % are expected, one in a hundred where 99.7 % are: chance goes by the root.
   double const off = coverage.value - expected, short_of = std::sqrt(0.05 * (1 - expected));
+  bool const by_chance = chance_of(coverage, expected) >= 0.01;
   return fmt::format("{} % of the scored samples lie inside{}, {} % are expected: {}.", number(100 * coverage.value),
                      coverage.where, number(100 * expected),
-                     off < -short_of && !by_chance(coverage, expected) ? "the bands are too narrow for these data"
-                     : off > 0.035 && !by_chance(coverage, expected)   ? "the bands are too wide for these data"
-                                                                       : "the width of the bands is consistent with the data");
+                     off < -short_of && !by_chance ? "the bands are too narrow for these data"
+                     : off > 0.035 && !by_chance   ? "the bands are too wide for these data"
+                                                   : "the width of the bands is consistent with the data");
 }
 
 /// The check knows how much of it is chance. fitted: the noise is a parameter, which takes the size that the residuals leave.
@@ -171,21 +177,21 @@ std::string verdict_meaning(Report const& report) {
 }
 
 std::string score_words(Report const& report, std::vector<FitLine> const& lines, std::string const& score) {
-  auto const say = [&](std::function<double(double)> const& badness, auto const& words) {
+  auto const say = [&](std::function<double(Worst const&)> const& badness, auto const& words) {
     auto const found = worst(report, lines, score, badness);
     return found ? words(*found) : std::string();
   };
-  auto const high = [](double value) { return value; };
-  auto const low = [](double value) { return -value; };
+  auto const high = [](Worst const& each) { return each.value; };
+  auto const low = [](Worst const& each) { return -each.value; };
   if (score == "nmse" || score == "nmse_left_out") return say(high, error_words);
   for (auto const& [name, expected] : {std::pair("coverage_95", 0.95), std::pair("coverage_3sd", 0.9973)})
     if (score == name)
-      return say([at = expected](double value) { return std::fabs(value - at); },
+      return say([at = expected](Worst const& each) { return badness_of_coverage(each, at); },
                  [at = expected](Worst const& each) { return coverage_words(each, at); });
   if (score == "log_score")
     return "mean log predictive density of a sample: higher is better, to be compared on these samples alone";
   if (score == "chi_squared_per_sample")
-    return say([](double value) { return std::fabs(std::log(std::max(value, 1e-300))); },
+    return say([](Worst const& each) { return std::fabs(std::log(std::max(each.value, 1e-300))); },
                [&](Worst const& each) {
                  return size_words(each,
                                    std::any_of(report.findings.begin(), report.findings.end(),

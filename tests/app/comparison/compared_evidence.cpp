@@ -91,7 +91,14 @@ TEST_CASE("a Bayes factor is given over half and twice the widths of the priors 
   auto const shared = prior_width_notes({"a", "b"}, fits, {widths("k", 0.6, -0.7), widths("k", 0.6, -0.7)});
   CHECK(shared[0].find("between -2.0 and -2.0") != std::string::npos);
   auto const unknown = prior_width_notes({"a", "b"}, fits, {widths("k", 0.6, nullptr), widths("k", 0.6, -0.7)});
-  CHECK(unknown[0].find("the draws do not show what effect the prior of `k` has") != std::string::npos);
+  CHECK(unknown[0] == "linear against cubic: the draws do not show how the log Bayes factor depends on the prior of `k`");
+  // Half of what a prior does is in no range.
+  json half = widths("k", 9, nullptr);
+  half["prior_widths"]["parameters"]["k3"]["change"] = {0.1, -0.1};
+  half["prior_widths"]["all"]["change"] = {json(nullptr), json(nullptr)};
+  auto const partly = prior_width_notes({"a", "b"}, fits, {half, widths("k", 0.3, -0.4)});
+  CHECK(partly[0].find("between -2.1 and -1.9 if one prior is half or twice as wide") != std::string::npos);
+  CHECK(partly[0].find("this does not include the prior of `k`, whose effect the draws do not show") != std::string::npos);
   fits[1].log_evidence = -30;
   CHECK(prior_width_notes({"a", "b"}, fits, {widths("k3", 0.6, -0.7), widths("k", 0.3, -0.4)}).empty());
   CHECK(prior_width_notes({"a", "a"}, fits, {widths("k3", 0.6, -0.7), widths("k", 0.3, -0.4)}).empty());
