@@ -78,6 +78,25 @@ TEST_CASE("gnuplot draws every figure, the same bytes for the same script") {
   }
 }
 
+TEST_CASE("figures drawn by one process are the bytes of those drawn alone, and one that is refused takes no other with it") {
+  REQUIRE(gnuplot_installed());
+  std::vector<plot::Figure> all = figures(example::duffing(40));
+  for (plot::Figure const& figure : figures(example::duffing(10))) all.push_back(figure);
+  REQUIRE(all.size() > 5);
+  auto const check_same = [&] {
+    auto const together = draw_all(all);
+    REQUIRE(together.size() == all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) CHECK_MESSAGE(together[i] == draw(all[i]), all[i].name);
+    return together;
+  };
+  for (auto const& svg : check_same()) CHECK(svg.has_value());
+  all[2].script = "this is no command\n";
+  auto const without = check_same();
+  CHECK_FALSE(without[2].has_value());
+  CHECK(without[1].has_value());
+  CHECK(without[3].has_value());
+}
+
 TEST_CASE("gnuplot draws degenerate results: constant draws, missing samples, a second of two draws, odd names") {
   REQUIRE(gnuplot_installed());
   Report report = example::duffing(2);
