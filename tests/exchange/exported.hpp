@@ -48,7 +48,14 @@ class ExportedRun {
 /// Debian's own, which has the packages that tests/run installs; another one of the PATH need not.
 inline std::string const python = "/usr/bin/python3";
 
-inline bool has_xarray() { return said_by(python + " -c 'import xarray, netCDF4'").exit == 0; }
-inline bool has_posterior() { return said_by("Rscript --vanilla -e 'library(posterior)'").exit == 0; }
+// Asked once, as that takes a second of a processor.
+inline bool has_xarray() {
+  static bool const found = said_by(python + " -c 'import xarray, netCDF4'").exit == 0;
+  return found;
+}
+inline bool has_posterior() {
+  static bool const found = said_by("Rscript --vanilla -e 'library(posterior)'").exit == 0;
+  return found;
+}
 
 }  // namespace sysid::testing

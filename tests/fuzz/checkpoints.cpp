@@ -122,7 +122,7 @@ class Resumed {
   ExitCode run(std::uint64_t polls, bool resume) {
     RunOptions options = this->options(resume);
     options.interrupt_after = polls;
-    options.checkpoint_interval = 0;
+    if (polls > 0) options.checkpoint_interval = 0;  // of a run to its end nobody reads a checkpoint
     SilentProgress silent;
     std::ostringstream out, notices;
     struct Cleared {

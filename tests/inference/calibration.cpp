@@ -56,12 +56,14 @@ class ProblemTarget : public Target {
     }
   }
   void log_prior(ConstLanes theta, std::span<double> out, bool) const override {
-    for (int w = 0; w < theta.width(); ++w) out[static_cast<std::size_t>(w)] = problem_.log_prior(column_of(theta, w));
+    std::vector<double> x(infos_.size());
+    for (int w = 0; w < theta.width(); ++w) out[static_cast<std::size_t>(w)] = problem_.log_prior(column_of(theta, w, x));
   }
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override {
     ledger.add_solves(static_cast<std::uint64_t>(theta.width()));
+    std::vector<double> x(infos_.size());
     for (int w = 0; w < theta.width(); ++w) {
-      double const value = problem_.log_likelihood(column_of(theta, w), data_);
+      double const value = problem_.log_likelihood(column_of(theta, w, x), data_);
       out[static_cast<std::size_t>(w)] = std::isfinite(value) ? value : -infinity;
     }
   }
@@ -79,8 +81,7 @@ class ProblemTarget : public Target {
     for (int p = 0; p < from.rows(); ++p)
       for (int w = 0; w < from.width(); ++w) to(p, w) = from(p, w);
   }
-  static std::vector<double> column_of(ConstLanes theta, int lane) {
-    std::vector<double> x(static_cast<std::size_t>(theta.rows()));
+  static std::vector<double> const& column_of(ConstLanes theta, int lane, std::vector<double>& x) {
     for (int p = 0; p < theta.rows(); ++p) x[static_cast<std::size_t>(p)] = theta(p, lane);
     return x;
   }

@@ -1,5 +1,6 @@
 // Targets with known answers for the tests of back ends: priors over simple coordinates, likelihoods written out.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -87,24 +88,30 @@ class TestTarget : public Target {
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override {
     LaneArray rows(rows_, theta.width());
     residuals(theta, rows, ledger);
-    for (int w = 0; w < theta.width(); ++w) {
-      double sum = 0;
-      for (int r = 0; r < rows_; ++r) sum += rows(r, w) * rows(r, w);
-      out[static_cast<std::size_t>(w)] = constant_ - 0.5 * sum;
-    }
+    std::vector<double> sums(out.size(), 0.0);  // row by row, as the lanes of a row lie beside each other
+    for (int r = 0; r < rows_; ++r)
+      for (int w = 0; w < theta.width(); ++w) sums[static_cast<std::size_t>(w)] += rows(r, w) * rows(r, w);
+    for (std::size_t w = 0; w < sums.size(); ++w) out[w] = constant_ - 0.5 * sums[w];
   }
   int residual_count() const override { return rows_; }
   void residuals(ConstLanes theta, Lanes out, Ledger& ledger) const override {
-    std::vector<double> declared(priors_.size()), rows(static_cast<std::size_t>(rows_));
+    std::vector<double> declared(priors_.size());
+    constexpr int together = 8;  // lanes, which are written row by row
+    std::vector<std::vector<double>> rows(together, std::vector<double>(static_cast<std::size_t>(rows_)));
     ledger.add_solves(static_cast<std::uint64_t>(theta.width()));
     solves += static_cast<std::uint64_t>(theta.width());
-    for (int w = 0; w < theta.width(); ++w) {
-      for (std::size_t p = 0; p < declared.size(); ++p) declared[p] = priors_[p].constrain(theta(static_cast<int>(p), w));
-      residuals_(declared, rows);
-      bool finite = true;
-      for (double const r : rows) finite = finite && std::isfinite(r);
-      if (!finite) ledger.add_failure(FailureClass::non_finite, "the test's residual", 0.25, declared);
-      for (int r = 0; r < rows_; ++r) out(r, w) = finite ? rows[static_cast<std::size_t>(r)] : infinity;
+    for (int first = 0; first < theta.width(); first += together) {
+      int const count = std::min(together, theta.width() - first);
+      for (int w = 0; w < count; ++w) {
+        std::vector<double>& own = rows[static_cast<std::size_t>(w)];
+        for (std::size_t p = 0; p < declared.size(); ++p) declared[p] = priors_[p].constrain(theta(static_cast<int>(p), first + w));
+        residuals_(declared, own);
+        if (std::all_of(own.begin(), own.end(), [](double r) { return std::isfinite(r); })) continue;
+        ledger.add_failure(FailureClass::non_finite, "the test's residual", 0.25, declared);
+        std::fill(own.begin(), own.end(), infinity);
+      }
+      for (int r = 0; r < rows_; ++r)
+        for (int w = 0; w < count; ++w) out(r, first + w) = rows[static_cast<std::size_t>(w)][static_cast<std::size_t>(r)];
     }
   }
   void constrain(ConstLanes theta, Lanes declared) const override {

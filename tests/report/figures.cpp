@@ -67,15 +67,28 @@ TEST_CASE("a state that a channel shows as it is has no second figure") {
   CHECK(names(figures(report)) == names(figures(example::duffing(40))));
 }
 
-TEST_CASE("gnuplot draws every figure, the same bytes for the same script") {
+TEST_CASE("gnuplot draws every figure, the same bytes for the same script, whether alone or with others") {
   REQUIRE(gnuplot_installed());
-  for (plot::Figure const& figure : figures(example::duffing(40))) {
-    auto const first = draw(figure);
-    REQUIRE_MESSAGE(first.has_value(), figure.name);
-    CHECK(draw(figure) == first);
-    CHECK(first->find("<path") != std::string::npos);
-    CHECK(first->find("\"gnuplot_canvas\"") == std::string::npos);
+  std::vector<plot::Figure> const all = figures(example::duffing(40));
+  auto const together = draw_all(all);
+  REQUIRE(together.size() == all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    auto const alone = draw(all[i]);
+    REQUIRE_MESSAGE(alone.has_value(), all[i].name);
+    CHECK(together[i] == alone);
+    CHECK(alone->find("<path") != std::string::npos);
+    CHECK(alone->find("\"gnuplot_canvas\"") == std::string::npos);
   }
+}
+
+TEST_CASE("one script that is refused takes no other figure with it") {
+  REQUIRE(gnuplot_installed());
+  plot::Figure const fine{"fine", "", "", plot::preamble("fine", 300, 200) + "plot [0:1] x\n"};
+  auto const drawn = draw_all({fine, {"broken", "", "", "this is no command\n"}, fine});
+  REQUIRE(drawn.size() == 3);
+  CHECK(drawn[0].has_value());
+  CHECK_FALSE(drawn[1].has_value());
+  CHECK(drawn[2] == drawn[0]);
 }
 
 TEST_CASE("gnuplot draws degenerate results: constant draws, missing samples, a second of two draws, odd names") {

@@ -9,6 +9,7 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "example.hpp"
+#include "report/figure/figures.hpp"
 #include "report/figure/gnuplot.hpp"
 #include "report/file/report_cbor.hpp"
 #include "report/file/stored_report.hpp"
@@ -57,21 +58,22 @@ TEST_CASE("pictures stand beside each other in the formats asked for, and go wit
   CHECK(files["report.html"].find("<svg") == std::string::npos);
 }
 
-TEST_CASE("a result without pictures starts no gnuplot") {
+TEST_CASE("a result without pictures starts no gnuplot, one with pictures a single one") {
   TemporaryFolder const folder;
   std::string const before = std::getenv("PATH");
-  // One that tells that it was started.
+  // One that tells that it was started, by a letter each time.
   fs::path const started = folder.path() / "started", program = folder.path() / "gnuplot";
-  write_file(program, "#!/bin/sh\n: >'" + started.string() + "'\n");
+  write_file(program, "#!/bin/sh\nprintf x >>'" + started.string() + "'\nPATH='" + before + "' exec gnuplot \"$@\"\n");
   fs::permissions(program, fs::perms::owner_all);
   setenv("PATH", (folder.path().string() + ":" + before).c_str(), 1);
   write_result(example::duffing(10), folder.path() / "posterior", {});
   bool const without = fs::exists(started);
   write_result(example::duffing(10), folder.path() / "posterior", {FigureFormat::svg});
-  bool const with = fs::exists(started);
   setenv("PATH", before.c_str(), 1);
   CHECK_FALSE(without);
-  CHECK(with);
+  REQUIRE(figures(example::duffing(10)).size() > 1);
+  CHECK(read_file(started) == "x");
+  CHECK(fs::exists(folder.path() / "posterior/figures/posterior.svg"));
 }
 
 TEST_CASE("pictures that gnuplot refuses are named, and their scripts stay") {

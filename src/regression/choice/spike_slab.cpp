@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <unordered_map>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/random.hpp"
@@ -83,39 +83,40 @@ class Gibbs {
       if (interrupted && interrupted()) return;
       Stream stream(key.with_step(static_cast<std::uint64_t>(sweep)));
       for (std::size_t i = 0; i < count; ++i) {
-        Bits other = state;
-        other[i] = !other[i];
-        double const change = log_weight(other) - weight;
-        if (stream.uniform() < 1 / (1 + elementary::exp(-change))) {
+        state[i].flip();
+        double const change = log_weight(state) - weight;
+        if (stream.uniform() < 1 / (1 + elementary::exp(-change)))
           weight += change;
-          state = std::move(other);
-        }
+        else
+          state[i].flip();
       }
       // Terms that stand for each other change places in one move; one by one each would have to be bad first.
       for (std::size_t i = 0; i < count; ++i) {
         std::uint64_t const a = stream.below(count), b = stream.below(count);
         double const level = stream.uniform();
         if (state[a] == state[b]) continue;
-        Bits other = state;
-        other[a] = state[b];
-        other[b] = state[a];
-        double const change = log_weight(other) - weight;
-        if (change >= 0 || elementary::log(level) < change) {
+        state[a].flip(), state[b].flip();
+        double const change = log_weight(state) - weight;
+        if (change >= 0 || elementary::log(level) < change)
           weight += change;
-          state = std::move(other);
-        }
+        else
+          state[a].flip(), state[b].flip();
       }
     }
   }
 
+  /// In the order of their bits, so that sums over them have one order.
   std::vector<Weighed> weighed() const {
     std::vector<Weighed> all;
+    all.reserve(known_.size());
     for (auto const& [support, entry] : known_) all.push_back(entry);
+    std::sort(all.begin(), all.end(), [](Weighed const& a, Weighed const& b) { return a.support < b.support; });
     return all;
   }
   Bits best() const {
-    auto const by_weight = [](auto const& a, auto const& b) { return a.second.log_weight < b.second.log_weight; };
-    return std::max_element(known_.begin(), known_.end(), by_weight)->first;
+    std::vector<Weighed> const all = weighed();
+    auto const by_weight = [](Weighed const& a, Weighed const& b) { return a.log_weight < b.log_weight; };
+    return std::max_element(all.begin(), all.end(), by_weight)->support;
   }
   double log_weight(Bits const& support) {
     auto place = known_.find(support);
@@ -125,7 +126,7 @@ class Gibbs {
 
  private:
   Scale const& scale_;
-  std::map<Bits, Weighed> known_;  // ordered, so that sums over it have one order
+  std::unordered_map<Bits, Weighed> known_;  // hashed: a sweep asks for two sets a term, and sets of bits compare bit by bit
 };
 
 std::vector<Weighed> sample(LinearProblem const& problem, Triangle const& triangle, Scale const& scale, Settings const& settings,

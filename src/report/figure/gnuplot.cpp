@@ -121,6 +121,21 @@ std::string to_tenths(std::string_view svg) {
   return out;
 }
 
+/// Numbers and titles that are empty; whether gnuplot writes such a title hangs on what it has drawn before.
+void erase_empty_texts(std::string& svg) {
+  constexpr std::string_view empty = ">\n\t\t<text></text>\n\t</g>\n";
+  for (std::size_t at = 0; (at = svg.find(empty, at)) != std::string::npos;) {
+    std::size_t const begin = svg.rfind("\t<g transform=", at);
+    if (begin == std::string::npos || svg.find('\n', begin) < at) {
+      ++at;
+      continue;
+    }
+    bool const own_line = begin == 0 || svg[begin - 1] == '\n';
+    svg.erase(begin, at + empty.size() - (own_line ? 0 : 1) - begin);
+    at = begin;
+  }
+}
+
 /// Removes what gnuplot writes for features that are not used, and makes its identifiers unique within a page.
 void finish_svg(std::string& svg, std::string const& name) {
   svg = to_tenths(join_points(svg));
@@ -128,6 +143,7 @@ void finish_svg(std::string& svg, std::string const& name) {
   if (begin != std::string::npos && end != std::string::npos && svg.find("<use", end) == std::string::npos)
     svg.erase(begin, end + 8 - begin);
   replace_all(svg, "\"gnuplot_canvas\"", "\"" + name + "_canvas\"");
+  erase_empty_texts(svg);
   // Groups that hold nothing are most of the file's lines.
   for (std::size_t at = 0; (at = svg.find("<g fill=\"none\"", at)) != std::string::npos;) {
     std::size_t const end = svg.find('>', at);
@@ -196,26 +212,74 @@ bool can_draw(FigureFormat format) {
   return run_gnuplot({"gnuplot", "-d", "-e", fmt::format("set terminal {}", row(format).terminal)}, {}) == 0;
 }
 
+namespace {
+
+/// What the scripts of figures ask for.
+std::string variables(FigureFormat format, int columns) {
+  return fmt::format("format = '{}'; columns = {}", name(format), std::max(columns, 20));
+}
+
+/// As gnuplot has drawn it; nothing where that is no whole SVG.
+std::optional<std::string> finished_svg(std::string picture, plot::Figure const& figure) {
+  if (picture.find("</svg>") == std::string::npos) return std::nullopt;
+  finish_svg(picture, plot::identifier(figure.name));
+  return picture;
+}
+
+/// All by one process; nothing where it fails, as one script that is refused ends it. started: whether there is a gnuplot.
+std::optional<std::vector<std::optional<std::string>>> drawn_together(std::vector<plot::Figure> const& figures, bool& started) {
+  TemporaryFolder const folder;
+  if (folder.path.empty()) return std::nullopt;
+  std::string all;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    write_file(folder.path / fmt::format("{}.gnuplot", i), figures[i].script);
+    all += fmt::format("reset\n{}\nset output {}\nload {}\nunset multiplot\nset output\n", variables(FigureFormat::svg, 80),
+                       plot::quote((folder.path / fmt::format("{}.svg", i)).string()),
+                       plot::quote((folder.path / fmt::format("{}.gnuplot", i)).string()));
+  }
+  write_file(folder.path / "all.gnuplot", all);
+  int const status = run_gnuplot({"gnuplot", "-d", (folder.path / "all.gnuplot").string()}, folder.path);
+  started = status >= 0;
+  if (status != 0) return std::nullopt;
+  std::vector<std::optional<std::string>> drawn;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    fs::path const picture = folder.path / fmt::format("{}.svg", i);
+    drawn.push_back(fs::exists(picture) ? finished_svg(read_file(picture), figures[i]) : std::nullopt);
+  }
+  return drawn;
+}
+
+}  // namespace
+
 std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format, int columns) {
   TemporaryFolder const folder;
   if (folder.path.empty()) return std::nullopt;
   try {
     write_file(folder.path / "figure.gnuplot", figure.script);
-    std::string const variables = fmt::format("format = '{}'; columns = {}", name(format), std::max(columns, 20));
-    if (run_gnuplot({"gnuplot", "-d", "-e", variables, (folder.path / "figure.gnuplot").string()}, folder.path) != 0)
+    if (run_gnuplot({"gnuplot", "-d", "-e", variables(format, columns), (folder.path / "figure.gnuplot").string()}, folder.path) !=
+        0)
       return std::nullopt;
     std::string picture = read_file(folder.path / "picture");
     if (format == FigureFormat::text) return without_blank_lines(picture);
     // A terminal that gnuplot does not have makes no error of its own.
     if (format == FigureFormat::png && !picture.starts_with("\x89PNG")) return std::nullopt;
     if (format == FigureFormat::pdf && !picture.starts_with("%PDF")) return std::nullopt;
-    if (format != FigureFormat::svg) return picture;
-    if (picture.find("</svg>") == std::string::npos) return std::nullopt;
-    finish_svg(picture, plot::identifier(figure.name));
-    return picture;
+    return format == FigureFormat::svg ? finished_svg(std::move(picture), figure) : picture;
   } catch (IoError const&) {
     return std::nullopt;  // a figure is worth no failed run; the report says what is missing
   }
+}
+
+std::vector<std::optional<std::string>> draw_all(std::vector<plot::Figure> const& figures) {
+  std::vector<std::optional<std::string>> drawn(figures.size());
+  bool started = true;
+  if (figures.size() > 1) try {
+      if (auto together = drawn_together(figures, started)) drawn = std::move(*together);
+    } catch (IoError const&) {
+    }
+  for (std::size_t i = 0; i < figures.size() && started; ++i)
+    if (!drawn[i]) drawn[i] = draw(figures[i]);
+  return drawn;
 }
 
 std::string embedded(std::string const& svg, plot::Figure const& figure) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "report/figure/figure_format.hpp"
 #include "report/figure/plot.hpp"
@@ -13,6 +14,8 @@ bool gnuplot_installed();
 /// The figure as a file's content; nothing when gnuplot is missing or refuses. SVG and text are the same bytes for the same script.
 /// columns: characters that text is wide, of any number from 20 on.
 std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format = FigureFormat::svg, int columns = 80);
+/// The same bytes of all as SVG, by one process: gnuplot takes longer to start than to draw.
+std::vector<std::optional<std::string>> draw_all(std::vector<plot::Figure> const& figures);
 
 /// A standalone SVG as a part of a page: no prologue, no background, colours by the page's variables (`--fig-ink`, ...), so that it
 /// follows light and dark, no wider than lets its text be as large as the page's, and no narrower than lets it be read.

@@ -151,22 +151,22 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
 }
 
 std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures) {
+  std::vector<plot::Figure> const all = figures(report);
+  std::vector<std::optional<std::string>> svg = pictures ? draw_all(all) : std::vector<std::optional<std::string>>(all.size());
   std::vector<DrawnFigure> drawn;
-  bool const can_draw = pictures && gnuplot_installed();
-  for (plot::Figure const& figure : figures(report)) drawn.push_back({figure, can_draw ? draw(figure) : std::nullopt});
+  for (std::size_t i = 0; i < all.size(); ++i) drawn.push_back({all[i], std::move(svg[i])});
   return drawn;
 }
 
 std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, fs::path const& folder,
                                        std::vector<FigureFormat> const& pictures) {
-  bool const can_draw = !pictures.empty() && gnuplot_installed();
   std::vector<std::string> undrawn;
   if (!figures.empty()) make_folder(folder / "figures");
   for (DrawnFigure const& each : figures) {
     write_file(folder / "figures" / (each.figure.name + ".gnuplot"), each.figure.script);
     for (FigureFormat const format : pictures) {
       std::string const name = fmt::format("{}.{}", each.figure.name, extension(format));
-      auto const picture = format == FigureFormat::svg && each.svg ? each.svg : can_draw ? draw(each.figure, format) : std::nullopt;
+      auto const picture = format == FigureFormat::svg && each.svg ? each.svg : draw(each.figure, format);
       if (picture)
         write_file(folder / "figures" / name, *picture);
       else

@@ -125,6 +125,7 @@ TEST_CASE("a fit that is interrupted in its search goes on from there, to the sa
       REQUIRE(std::filesystem::exists(options.output / "posterior/checkpoint.cbor"));
       options.interrupt_after = 0;
       options.resume = true;
+      options.checkpoint_interval = RunOptions().checkpoint_interval;  // it has its checkpoint, and needs no more of them
       RunResult const resumed = run_text(name, text, options, {"fit"});
       CHECK(resumed.notices.find("continuing from the checkpoint") != std::string::npos);
       CHECK_FALSE(std::filesystem::exists(options.output / "posterior/checkpoint.cbor"));
