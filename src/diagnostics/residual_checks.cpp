@@ -13,59 +13,14 @@
 #include "core/text/words.hpp"
 #include "diagnostics/outliers.hpp"
 #include "diagnostics/prior_checks.hpp"
+#include "diagnostics/residual_offset.hpp"
 #include "diagnostics/residual_tests.hpp"
-#include "distribution/deviance.hpp"
+#include "diagnostics/sized_residuals.hpp"
 #include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {
 namespace {
-
-// Residuals of unit size, and how much heavier than normal their tails are: what chi-squared is taken of.
-struct SizedResiduals {
-  std::vector<double> values;
-  double excess_kurtosis = 0;  // mean over the samples
-};
-
-// Pearson's, of counts: the deviance residuals of small counts are not of unit size.
-// arguments: of the channel's noise, at every sample; deviance: one residual per sample, NaN where not scored.
-SizedResiduals pearson(DistributionRow const& noise, std::vector<double> const& measured,
-                       std::vector<std::vector<double>> const& arguments, std::vector<double> const& deviance) {
-  SizedResiduals result;
-  double count = 0;
-  for (std::size_t i = 0; i < deviance.size(); ++i) {
-    result.values.push_back(std::nan(""));
-    if (std::isnan(deviance[i]) || !(noise.variance(arguments[i]) > 0)) continue;
-    result.values.back() = (measured[i] - arguments[i][0]) / std::sqrt(noise.variance(arguments[i]));
-    result.excess_kurtosis += noise.excess_kurtosis(arguments[i]);
-    count += 1;
-  }
-  if (count > 0) result.excess_kurtosis /= count;
-  return result;
-}
-
-// Deviance residuals over their size under the noise, which for heavy tails is above 1. It depends on the shape of the noise alone,
-// not on place and width, and a shape that changes along the record is met at a few of its samples.
-SizedResiduals scaled(DistributionRow const& noise, std::vector<std::vector<double>> const& arguments,
-                      std::vector<double> deviance) {
-  constexpr std::size_t examined = 4;
-  DevianceMoments moments{0, 0};
-  double count = 0;
-  std::size_t const step = std::max<std::size_t>(1, deviance.size() / examined);
-  for (std::size_t i = 0; i < deviance.size(); ++i) {
-    if (std::isnan(deviance[i]) || (count > 0 && i % step != 0) || !noise.refuse(arguments[i]).empty()) continue;
-    DevianceMoments const here = deviance_moments(noise, arguments[i]);
-    moments.mean += here.mean;
-    moments.variance += here.variance;
-    count += 1;
-  }
-  if (count == 0) return {std::move(deviance), 0};
-  moments = {moments.mean / count, moments.variance / count};
-  constexpr double as_normal = 1e-4;
-  if (std::fabs(moments.mean - 1) < as_normal) return {std::move(deviance), 0};
-  for (double& residual : deviance) residual /= std::sqrt(moments.mean);
-  return {std::move(deviance), moments.excess_kurtosis()};
-}
 
 /// nmse [%] from which a fit that leaves more than noise explains little, and less than half.
 constexpr double little = 20, less_than_half = 50;
@@ -155,15 +110,18 @@ double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& excl
 
 // What tests of a channel find; not yet what that means, which depends on how many are tested.
 struct Tested {
-  std::vector<std::size_t> far;             // samples far off, left out of the tests
+  std::vector<std::size_t> far;  // samples far off, left out of the tests
+  OffsetTest offset;
   std::optional<CorrelationTest> white;     // rows of any order have no past
   std::vector<CorrelationTest> with_input;  // of each input
 };
 
 Tested test_channel(ScoredChannel const& of) {
-  Tested tested{far_off(of), {}, {}};
-  if (of.model().dynamics == Dynamics::none) return tested;
+  Tested tested{far_off(of), {}, {}, {}};
   std::vector<double> const residuals = without(of.residuals, tested.far);
+  bool const ordered = of.model().dynamics != Dynamics::none;
+  if (offset_can_be_added(of.model(), of.described())) tested.offset = offset_test(residuals, ordered);
+  if (!ordered) return tested;
   tested.white = whiteness(residuals);
   for (std::size_t i = 0; i < of.model().inputs.size(); ++i) {
     std::vector<double> input;
@@ -188,9 +146,12 @@ Limits limits_of(std::vector<Tested> const& all) {
   return {std::max(1, static_cast<int>(all.size())), limit_together(white), limit_together(with_input)};
 }
 
+constexpr char const* offset_first = "the misfit is mostly a constant: add the offset first (`residual_offset`)";
+
 // coloured: what the fit leaves is more than noise.
-void check_share(ScoredChannel const& of, bool coloured, Findings& findings) {
-  constexpr char const* look = "check units, signs and columns, then the initial values and the priors, then the model";
+void check_share(ScoredChannel const& of, Tested const& tested, bool coloured, Findings& findings) {
+  char const* const look =
+      tested.offset.fires ? offset_first : "check units, signs and columns, then the initial values and the priors, then the model";
   double const left = unexplained(of, spikes(of));
   if (left > as_bad_as_the_mean(of.observed.size()))
     findings.push_back(worse_than_the_mean(left > useless_nmse || coloured ? Severity::error : Severity::warning, of.names(),
@@ -222,7 +183,16 @@ void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
                             "tails: `student_t(y, 4, scale = sigma)`"});
 }
 
-void check_size(ScoredChannel const& of, bool with_outliers, int together, FitLine& line, Findings& findings) {
+void check_offset(ScoredChannel const& of, Tested const& tested, NoiseStatementWith const& statement, Findings& findings) {
+  if (!tested.offset.fires) return;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < of.places.size(); ++i)
+    if (!std::binary_search(tested.far.begin(), tested.far.end(), of.places[i])) errors.push_back(of.observed[i] - of.predicted[i]);
+  findings.push_back(
+      residual_offset(of.model(), of.described(), of.data().name, of.experiments.size() > 1, tested.offset, errors, statement));
+}
+
+void check_size(ScoredChannel const& of, Tested const& tested, int together, FitLine& line, Findings& findings) {
   ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, together);
   line.scores.push_back({"chi_squared_per_sample", size.per_sample});
   if (!size.fires()) return;
@@ -231,7 +201,8 @@ void check_size(ScoredChannel const& of, bool with_outliers, int together, FitLi
     help = "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: check the residuals";
   else if (size.per_sample < 1)
     help = "the stated noise is too large: estimate it";
-  if (with_outliers) help = "a few outlying samples make the noise appear larger: check these first";
+  if (tested.offset.fires) help = offset_first;
+  if (!tested.far.empty()) help = "a few outlying samples make the noise appear larger: check these first";
   findings.push_back(
       {FindingCode::noise_size, Severity::error, of.names(),
        fmt::format("the residuals of {} do not have the stated size: chi-squared per sample is {:.3g}, expected {:.2f} to {:.2f}",
@@ -239,7 +210,8 @@ void check_size(ScoredChannel const& of, bool with_outliers, int together, FitLi
        help});
 }
 
-std::string memory_help(ScoredChannel const& of) {
+std::string memory_help(ScoredChannel const& of, Tested const& tested) {
+  if (tested.offset.fires) return fmt::format("{}; then look at what is left", offset_first);
   std::string help =
       "look for a force or dynamics that the model lacks, or for coloured noise: the errors of the estimates can be "
       "several times their sds";
@@ -255,11 +227,12 @@ std::string memory_help(ScoredChannel const& of) {
 void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& limits, FitLine& line, Findings& findings) {
   CorrelationTest const& white = *tested.white;
   line.scores.push_back({"whiteness_p", white.p_value});
-  if (white.fires(limits.white))
+  bool const offset_alone = tested.offset.fires && tested.offset.white_without;
+  if (white.fires(limits.white) && !offset_alone)
     findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
                         fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
                                     white.outside, white.correlation.size()),
-                        memory_help(of)});
+                        memory_help(of, tested)});
   std::vector<Quantity> const& inputs = of.model().inputs;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     CorrelationTest const& crossed = tested.with_input[i];
@@ -276,16 +249,18 @@ void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& l
   }
 }
 
-FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits const& limits, Findings& findings) {
+FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits const& limits, NoiseStatementWith const& statement,
+                      Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
   line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
   Findings shape;
-  check_size(of, !tested.far.empty(), limits.channels, line, shape);
+  check_offset(of, tested, statement, shape);
+  check_size(of, tested, limits.channels, line, shape);
   check_outliers(of, tested.far, shape);
   if (tested.white) check_memory(of, tested, limits, line, shape);
   // Deviances of small counts are neither centred nor alike.
   bool const coloured = tested.white && tested.white->fires(limits.white) && !of.described().noise.row->discrete;
-  check_share(of, coloured, findings);
+  check_share(of, tested, coloured, findings);
   findings.insert(findings.end(), shape.begin(), shape.end());
   return line;
 }
@@ -316,19 +291,19 @@ void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
     if (of.observed.empty()) continue;
     DistributionRow const& noise = *model.channels[channel].noise.row;
     std::vector<std::vector<double>> const arguments = trajectory.noise_arguments(parameters, c);
-    of.sized = noise.discrete ? pearson(noise, experiment.measured[channel], arguments, of.residuals)
-                              : scaled(noise, arguments, of.residuals);
+    of.sized = noise.discrete ? pearson_residuals(noise, experiment.measured[channel], arguments, of.residuals)
+                              : scaled_residuals(noise, arguments, of.residuals);
     scored.push_back(std::move(of));
   }
 }
 
-FitCheck check_scored(std::vector<ScoredChannel> const& scored) {
+FitCheck check_scored(std::vector<ScoredChannel> const& scored, NoiseStatementWith const& statement = {}) {
   FitCheck check;
   std::vector<Tested> tested;
   for (ScoredChannel const& each : scored) tested.push_back(test_channel(each));
   Limits const limits = limits_of(tested);
   for (std::size_t k = 0; k < scored.size(); ++k)
-    check.lines.push_back(check_channel(scored[k], tested[k], limits, check.findings));
+    check.lines.push_back(check_channel(scored[k], tested[k], limits, statement, check.findings));
   return check;
 }
 
@@ -366,7 +341,7 @@ std::string on_experiment(ModelTarget const& target, int experiment) {
   return " on " + target.experiments()[static_cast<std::size_t>(experiment)].name;
 }
 
-FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared) {
+FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared, NoiseStatementWith const& statement) {
   int const dimension = target.dimension();
   LaneArray values(dimension, 1), theta(dimension, 1), residuals(target.residual_count(), 1);
   for (int p = 0; p < dimension; ++p) values(p, 0) = declared[static_cast<std::size_t>(p)];
@@ -375,7 +350,7 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
   target.residuals(theta, residuals, ledger);
   std::vector<ScoredChannel> scored;
   for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) score_experiment(target, e, values, residuals, scored);
-  return check_scored(scored);
+  return check_scored(scored, statement);
 }
 
 FitCheck check_residuals(Model const& model, std::vector<Experiment> const& experiments,

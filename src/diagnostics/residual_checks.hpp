@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/residual_offset.hpp"
 #include "likelihood/model_target.hpp"
 #include "result/finding.hpp"
 #include "result/report.hpp"
@@ -27,8 +28,9 @@ struct StandardisedRows {
 /// Per experiment.
 FitCheck check_residuals(Model const& model, std::vector<Experiment> const& experiments, std::vector<StandardisedRows> const& rows);
 
-/// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input.
-FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared);
+/// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input. statement:
+/// for the cure of an offset.
+FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared, NoiseStatementWith const& statement = {});
 
 /// Where a fit explains little: adds to the help which parameters have kept the width of their prior, which may hold others where
 /// they cannot fit.

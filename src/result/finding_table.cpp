@@ -47,6 +47,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::at_bound, "at_bound", warning},
     {FindingCode::optimum_not_reached, "optimum_not_reached", error},
     {FindingCode::widths_not_normal, "widths_not_normal", error_or_warning},
+    {FindingCode::residual_offset, "residual_offset", warning},
     {FindingCode::residuals_not_white, "residuals_not_white", warning},
     {FindingCode::input_in_residuals, "input_in_residuals", warning},
     {FindingCode::input_timing, "input_timing", warning},

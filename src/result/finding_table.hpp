@@ -46,6 +46,7 @@ enum class FindingCode {
   at_bound,
   optimum_not_reached,
   widths_not_normal,
+  residual_offset,
   residuals_not_white,
   input_in_residuals,
   input_timing,

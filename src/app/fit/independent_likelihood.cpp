@@ -9,6 +9,7 @@
 #include "app/session/derived_draws.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
+#include "app/session/noise_statement.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/system/lazily.hpp"
 #include "diagnostics/bands.hpp"
@@ -118,8 +119,11 @@ class IndependentLikelihood : public FitLikelihood {
   }
 
   FitCheck check_residuals(FitResult const& result, Draws const&) const override {
-    return particles_ ? particles_->check_residuals(parameters_of_each(middle_of(result)))
-                      : sysid::check_residuals(*target_, best_of(result));
+    return particles_
+               ? particles_->check_residuals(parameters_of_each(middle_of(result)))
+               : sysid::check_residuals(*target_, best_of(result), [&](Channel const& channel, std::string const& parameter) {
+                   return noise_statement_with(session_.source, channel, parameter);
+                 });
   }
 
   std::vector<FunctionReport> functions(FitResult const& result, Draws const&) const override {

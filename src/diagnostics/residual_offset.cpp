@@ -1,0 +1,160 @@
+// The test of a mean, and the words that give it a place in the model.
+#include "diagnostics/residual_offset.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
+#include "diagnostics/residual_tests.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr double no_chance = 6;  // standard errors
+
+std::vector<double> scored_values(std::span<double const> series) {
+  std::vector<double> values;
+  std::copy_if(series.begin(), series.end(), std::back_inserter(values), [](double each) { return !std::isnan(each); });
+  return values;
+}
+
+/// Of a series without gaps; in means of neighbours, so that the number of products stays small.
+double squared_standard_error(std::vector<double> const& values) {
+  constexpr std::size_t most = 2000;
+  std::size_t const width = (values.size() + most - 1) / most, count = values.size() / width;
+  std::vector<double> means;
+  for (std::size_t i = 0; i < count; ++i) means.push_back(mean(std::span(values).subspan(i * width, width)));
+  double const center = mean(means);
+  auto const covariance = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t i = 0; i + lag < count; ++i) sum += (means[i] - center) * (means[i + lag] - center);
+    return sum / static_cast<double>(count);
+  };
+  double sum = -covariance(0);
+  for (std::size_t lag = 0; lag + 1 < count; lag += 2) {
+    double const pair = covariance(lag) + covariance(lag + 1);
+    if (!(pair > 0)) break;
+    sum += 2 * pair;
+  }
+  return std::max(sum, covariance(0) / static_cast<double>(count)) / static_cast<double>(count);
+}
+
+/// Sum of squares of the autocovariances, each times the number of samples.
+double covariances(CorrelationTest const& test, std::span<double const> series) {
+  double power = 0, sum = 0;
+  for (double const each : series)
+    if (!std::isnan(each)) power += each * each;
+  for (double const each : test.correlation) sum += each * each;
+  return power * power * sum;
+}
+
+/// 1, 2 or 5 times a power of ten, not below `value`.
+double round_number_above(double value) {
+  double const power = std::pow(10.0, std::floor(std::log10(value)));
+  for (double const digit : {1.0, 2.0, 5.0})
+    if (digit * power >= value) return digit * power;
+  return 10 * power;
+}
+
+/// A parameter that already is added to what a node predicts: an offset that something holds.
+Parameter const* added_parameter(Model const& model, NodeId node) {
+  Node const& at = model.graph[node];
+  if (at.operation == Operation::leaf && at.leaf_kind == LeafKind::parameter)
+    return &model.parameters[static_cast<std::size_t>(at.index)];
+  if (at.operation == Operation::add) {
+    Parameter const* const left = added_parameter(model, at.a);
+    return left != nullptr ? left : added_parameter(model, at.b);
+  }
+  return at.operation == Operation::subtract ? added_parameter(model, at.a) : nullptr;
+}
+
+std::string free_parameter(Model const& model, std::string const& channel) {
+  std::string wanted = channel + "_offset";
+  std::replace(wanted.begin(), wanted.end(), '.', '_');
+  auto const taken = [&](std::string const& name) {
+    auto const has = [&](auto const& quantities) {
+      return std::ranges::any_of(quantities, [&](auto const& each) { return each.name == name; });
+    };
+    return has(model.parameters) || has(model.states) || has(model.inputs) || has(model.channels) || has(model.derived);
+  };
+  std::string name = wanted;
+  for (int number = 2; taken(name); ++number) name = fmt::format("{}_{}", wanted, number);
+  return name;
+}
+
+/// An offset of a temperature is an interval.
+std::string unit_of_offset(Channel const& channel) {
+  if (!channel.unit || channel.unit_text().empty()) return {};
+  return fmt::format(" [{}]", channel.unit->offset != 0 ? "K" : channel.unit_text());
+}
+
+std::string cure(Model const& model, Channel const& channel, bool several, double size, NoiseStatementWith const& statement) {
+  if (Parameter const* const held = added_parameter(model, channel.noise.arguments.front()))
+    return held->prior ? fmt::format(
+                             "`{0}` is added to this channel, and its prior or what else depends on it holds it: widen the "
+                             "prior of `{0}`",
+                             held->name)
+                       : fmt::format("`{0}` is added to this channel and is fixed: give `{0}` a prior", held->name);
+  double const kelvin = channel.unit && channel.unit->offset != 0 ? channel.unit->scale : 1;
+  std::string const name = free_parameter(model, channel.name);
+  std::string const declaration = fmt::format("parameter {}{}{} ~ normal(0, sd = {})", name, several ? " per experiment" : "",
+                                              unit_of_offset(channel), significant(round_number_above(3 * kelvin * size), 3));
+  std::optional<std::string> const written = statement ? statement(channel, name) : std::nullopt;
+  return fmt::format(
+      "if the sensor has an offset, estimate it: add `{}` to the model and {}; otherwise look for an input with an offset, or for "
+      "a "
+      "constant force that the model lacks",
+      declaration,
+      written ? fmt::format("write `{}`", *written)
+              : fmt::format("add `{}` to the first argument of the noise of {}", name, channel.name));
+}
+
+}  // namespace
+
+OffsetTest offset_test(std::span<double const> residuals, bool ordered) {
+  OffsetTest test;
+  std::vector<double> const values = scored_values(residuals);
+  constexpr std::size_t fewest = 20;
+  if (values.size() < fewest) return test;
+  double const center = mean(values), variance = population_variance(values);
+  double const squared_error = ordered ? squared_standard_error(values) : variance / static_cast<double>(values.size());
+  test.share = center * center / (center * center + variance);
+  test.standard_errors = std::fabs(center) / std::sqrt(squared_error);
+  if (!(test.standard_errors > no_chance)) return test;
+  if (!ordered) {
+    test.fires = test.share > 0.5;
+    return test;
+  }
+  std::vector<double> centred(residuals.begin(), residuals.end());
+  for (double& each : centred) each -= center;
+  CorrelationTest const before = whiteness(residuals), after = whiteness(centred);
+  test.white_without = !after.fires();
+  constexpr double little = 0.05;
+  test.fires = before.fires() && (test.white_without || covariances(after, centred) < little * covariances(before, residuals));
+  return test;
+}
+
+bool offset_can_be_added(Model const& model, Channel const& channel) {
+  Distribution const& noise = channel.noise;
+  return !model.filtered() && !noise.row->discrete && noise.row->lower == nullptr && !noise.lower && !noise.upper;
+}
+
+Finding residual_offset(Model const& model, Channel const& channel, std::string const& experiment, bool several,
+                        OffsetTest const& test, std::span<double const> errors, NoiseStatementWith const& statement) {
+  double const size = mean(errors);
+  return {FindingCode::residual_offset,
+          Severity::warning,
+          {channel.name, experiment},
+          fmt::format("the residuals of {} have a mean of {}{}, {} times its standard error, which is {} of their mean square",
+                      several ? channel.name + " on " + experiment : channel.name, significant(size, 3),
+                      channel.unit_text().empty() ? "" : " " + channel.unit_text(), significant(test.standard_errors, 2),
+                      fmt::format("{:.3g} %", 100 * test.share)),
+          cure(model, channel, several, std::fabs(size), statement)};
+}
+
+}  // namespace sysid

@@ -1,0 +1,47 @@
+// Residuals that are the same everywhere: an offset, of a sensor or of what moves the system.
+#pragma once
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+#include "result/finding.hpp"
+
+namespace sysid {
+
+/// What the mean of a series is, and how much of the misfit it is.
+struct OffsetTest {
+  double standard_errors = 0;  // of the mean, from 0, by the number of independent samples that the series is worth
+  double share = 0;            // of the mean's square in the mean square
+  bool white_without = true;   // of a series in time
+  bool fires = false;
+};
+
+/// residuals: of unit size, NaN where not scored. ordered: samples follow each other in time.
+///
+/// The mean is no chance, |mean| > 6 standard errors, and it is most of the misfit. In time: the residuals are correlated, and
+/// without their mean they are white, or their autocovariances over 25 lags have a sum of squares of less than a twentieth. Rows of
+/// any order: the mean is more than half of the mean square.
+///
+///   standard error^2 = (c_0 + 2 sum c_k)/n,   c_k autocovariances without the mean, up to the first pair of lags whose sum is not
+///   positive                                                                                            Geyer 1992, section 3.3
+///
+/// so that a drift, whose samples are worth a few independent ones, is none. Of long series c_k is taken from means of
+/// neighbouring samples.
+OffsetTest offset_test(std::span<double const> residuals, bool ordered);
+
+/// The noise statement of a channel as it has to read, or nothing where it is not in the user's text.
+using NoiseStatementWith = std::function<std::optional<std::string>(Channel const& channel, std::string const& parameter)>;
+
+/// errors: measured minus predicted samples where the channel is scored, in its declared unit; several: it is one of several
+/// experiments. Only for a noise that is added, see `offset_can_be_added`.
+Finding residual_offset(Model const& model, Channel const& channel, std::string const& experiment, bool several,
+                        OffsetTest const& test, std::span<double const> errors, NoiseStatementWith const& statement);
+
+/// Whether a constant can be added to what the noise of this channel lies about. Not where states are random: they follow an
+/// offset.
+bool offset_can_be_added(Model const& model, Channel const& channel);
+
+}  // namespace sysid

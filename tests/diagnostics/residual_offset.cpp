@@ -1,0 +1,147 @@
+// An offset of a sensor: what it is told from, and a cure that is followed as it is written.
+#include "diagnostics/residual_offset.hpp"
+
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/running.hpp"
+#include "core/numeric/random.hpp"
+
+using namespace sysid;
+using nlohmann::json;
+
+namespace {
+
+constexpr int samples = 1500;
+
+template <class Value>
+std::vector<double> series(Value const& value) {
+  Stream stream({7, Purpose::test, 0, 0});
+  std::vector<double> made;
+  for (int i = 0; i < samples; ++i) made.push_back(value(static_cast<double>(i), stream));
+  return made;
+}
+
+// An oscillator that is let go, with what its sensor adds; `noise` as the model has it, `more` statements.
+json findings_of_fit(std::string const& noise, std::string const& more, double offset, double drift = 0) {
+  TemporaryFolder folder;
+  Stream stream({3, Purpose::test, 0, 0});
+  std::string table = "t,y\n";
+  for (int row = 0; row < 1000; ++row) {
+    double const t = 0.02 * row;
+    table += fmt::format("{},{}\n", t, 5 * std::exp(-0.1 * t) * std::cos(3 * t) + offset + drift * t + 0.05 * stream.normal());
+  }
+  write_file(folder.path() / "record.csv", table);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "m.sysid",
+           "model m {\n  state y [mm]\n  parameter y0 [mm] ~ normal(0, sd = 20)\n  parameter v0 [mm/s] ~ normal(0, sd = 50)\n"
+           "  initial y = y0, y' = v0\n  parameter d [1/s] ~ log_uniform(0.01, 1)\n  parameter w [1/s] ~ log_uniform(1, 10)\n"
+           "  parameter sigma [mm] ~ log_uniform(0.001, 100)\n  y'' + 2*d*y' + w^2*y = 0\n" +
+               more + "\n  " + noise +
+               "\n}\ndata record { file \"record.csv\"; time t [s]; measure z = y [mm] }\n"
+               "posterior = fit m to record with map, seed = 1\n",
+           options);
+  return json::parse(read_file(options.output / "posterior/summary.json")).at("findings");
+}
+
+json const* of_code(json const& findings, std::string const& code) {
+  for (json const& finding : findings)
+    if (finding.at("code") == code) return &finding;
+  return nullptr;
+}
+
+/// The text between the n-th pair of backquotes.
+std::string quoted_part(std::string const& text, int n) {
+  std::size_t at = 0;
+  for (int i = 0; i < 2 * n - 1; ++i) at = text.find('`', at) + 1;
+  return text.substr(at, text.find('`', at) - at);
+}
+
+}  // namespace
+
+TEST_CASE("a mean is an offset where it is most of a misfit, whatever its size") {
+  OffsetTest const large = offset_test(series([](double, Stream& s) { return 20 + s.normal(); }), true);
+  CHECK(large.fires);
+  CHECK(large.white_without);
+  CHECK(large.share == doctest::Approx(400.0 / 401).epsilon(1e-3));
+  CHECK(large.standard_errors == doctest::Approx(20 * std::sqrt(samples)).epsilon(0.1));
+  CHECK(offset_test(series([](double, Stream& s) { return 0.4 + s.normal(); }), true).fires);
+  CHECK(offset_test(series([](double i, Stream& s) { return i > 700 && i < 750 ? std::nan("") : 0.4 + s.normal(); }), true).fires);
+}
+
+TEST_CASE("noise, drifts, transients and oscillations are no offset") {
+  CHECK_FALSE(offset_test(series([](double, Stream& s) { return s.normal(); }), true).fires);
+  CHECK_FALSE(offset_test(series([](double i, Stream& s) { return 10 * i / samples + s.normal(); }), true).fires);
+  CHECK_FALSE(offset_test(series([](double i, Stream& s) { return (i < 700 ? 0 : 5) + s.normal(); }), true).fires);
+  CHECK_FALSE(offset_test(series([](double i, Stream& s) { return 20 * std::exp(-i / 200) + s.normal(); }), true).fires);
+  CHECK_FALSE(offset_test(series([](double i, Stream& s) { return 4 * std::sin(i / 20) + s.normal(); }), true).fires);
+  double wander = 0;
+  CHECK_FALSE(offset_test(series([&](double, Stream& s) { return wander += s.normal(); }), true).fires);
+  // A response of which a part is missing: its mean is as large as what is left beside it.
+  CHECK_FALSE(offset_test(series([](double i, Stream& s) { return 1 + 2 * std::sin(i / 7) + 0.1 * s.normal(); }), true).fires);
+}
+
+TEST_CASE("white series have an offset in fewer than one of a thousand") {
+  int found = 0;
+  for (std::uint64_t key = 0; key < 1000; ++key) {
+    Stream stream({key, Purpose::test, 0, 0});
+    std::vector<double> values;
+    for (int i = 0; i < 200; ++i) values.push_back(stream.normal());
+    found += offset_test(values, true).fires ? 1 : 0;
+    found += offset_test(values, false).fires ? 1 : 0;
+  }
+  CHECK(found == 0);
+}
+
+TEST_CASE("an offset of a sensor is named with lines that remove it") {
+  json const findings = findings_of_fit("observe z ~ normal(y, sd = sigma)", "", 1.3);
+  json const* const found = of_code(findings, "residual_offset");
+  REQUIRE(found != nullptr);
+  CHECK(found->at("severity") == "warning");
+  CHECK(found->at("message").get<std::string>().starts_with("the residuals of z have a mean of 1.3"));
+  std::string const help = found->at("help");
+  std::string const declaration = quoted_part(help, 1), statement = quoted_part(help, 2);
+  CHECK(declaration == "parameter z_offset [mm] ~ normal(0, sd = 5)");
+  CHECK(statement == "observe z ~ normal(y + z_offset, sd = sigma)");
+  for (json const& each : findings) CHECK(each.at("help").get<std::string>().find("disturbance") == std::string::npos);
+  // Followed as it is written.
+  json const cured = findings_of_fit(statement, "  " + declaration, 1.3);
+  CHECK_MESSAGE(cured.empty(), cured.dump());
+}
+
+TEST_CASE("a stated noise, a weighted mean and a sum keep their form in the cure") {
+  for (auto const& [noise, statement] :
+       {std::pair("observe z ~ normal(y, sd = 0.05 [mm])", "observe z ~ normal(y + z_offset, sd = 0.05 [mm])"),
+        std::pair("observe z ~ student_t(y, 4, scale = sigma)", "observe z ~ student_t(y + z_offset, 4, scale = sigma)"),
+        std::pair("observe z ~ normal(if y > 100 [mm] then 2*y else y, sd = sigma)",
+                  "observe z ~ normal((if y > 100 [mm] then 2*y else y) + z_offset, sd = sigma)")}) {
+    CAPTURE(noise);
+    json const findings = findings_of_fit(noise, "", -1.3);
+    json const* const found = of_code(findings, "residual_offset");
+    REQUIRE(found != nullptr);
+    CHECK(quoted_part(found->at("help"), 2) == statement);
+  }
+}
+
+TEST_CASE("a good fit, a drift of the sensor and an offset that the model has are not named") {
+  std::string const plain = "observe z ~ normal(y, sd = sigma)";
+  CHECK(of_code(findings_of_fit(plain, "", 0), "residual_offset") == nullptr);
+  json const drifts = findings_of_fit(plain, "", 0, 0.1);
+  CHECK(of_code(drifts, "residual_offset") == nullptr);
+  CHECK(of_code(drifts, "residuals_not_white") != nullptr);
+  std::string const with_offset = "observe z ~ normal(y + b, sd = sigma)";
+  CHECK(of_code(findings_of_fit(with_offset, "  parameter b [mm] ~ normal(0, sd = 5)", 1.3), "residual_offset") == nullptr);
+  // An offset that is held is not declared twice.
+  for (auto const& [declared, cure] : {std::pair("  parameter b [mm] = 0", "give `b` a prior"),
+                                       std::pair("  parameter b [mm] ~ normal(0, sd = 0.001)", "widen the prior of `b`")}) {
+    json const held = findings_of_fit(with_offset, declared, 1.3);
+    json const* const found = of_code(held, "residual_offset");
+    REQUIRE(found != nullptr);
+    CHECK(found->at("help").get<std::string>().ends_with(cure));
+  }
+}
