@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "core/text/words.hpp"
-#include "data/cell/rounded_times.hpp"
+#include "data/cell/column_name.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_doubt.hpp"
 #include "data/cell/unit_text.hpp"
@@ -72,6 +72,18 @@ Request with_unit_of_file(RecordFile const& file, Request request) {
   return request;
 }
 
+/// Where neither the file nor its name in brackets states a unit.
+std::optional<UnitInName> other_unit_in_name(RecordFile const& file, ColumnRequest const& request,
+                                             std::optional<Unit> const& usual) {
+  if (file.unit(request.column) || split_name(request.column)) return std::nullopt;
+  auto const named = unit_behind_underscore(request.column);
+  std::optional<Unit> const unit = named ? unit_of_text(named->unit) : std::nullopt;
+  std::optional<Unit> const& read_in = request.unit ? request.unit : request.declared ? request.declared : usual;
+  if (!unit || !read_in || read_in->text == "-" || unit->dimension != read_in->dimension || same_unit(*unit, *read_in))
+    return std::nullopt;
+  return UnitInName{request.column, unit->text, read_in->text, request.unit.has_value()};
+}
+
 /// The columns of a record as they are asked for, all of one length.
 class Columns {
  public:
@@ -85,6 +97,7 @@ class Columns {
       if (column.unit && column.unit->dimension != unit_atom("s").value().dimension)
         throw UserError(data_errors::unit_of_another_kind(file_.name(), column.column, column.unit->text, "s", column.mention));
       time_unit_ = column.unit;
+      note_unit(column, unit_atom("s"));
       // Rows that arrive one by one cannot be read with `stamp`.
       if (whole && !request_.independent_rows) refuse_no_seconds(written, column);
     }
@@ -96,11 +109,14 @@ class Columns {
     for (std::size_t i = 1; i < time.size() && !request_.independent_rows; ++i)
       if (!(time[i] > time[i - 1]))
         throw UserError(data_errors::time_not_increasing(file_.place(i, column.column), time[i - 1], time[i], column.mention));
-    if (whole && !request_.independent_rows && time.size() > 2 && unequal_step(time) > 0)
+    if (whole && !request_.independent_rows && time.size() > 2 && unequal_step(time) > 0) {
       if (std::optional<std::vector<double>> equal = equal_times_before_rounding(written)) {
         time = std::move(*equal);
         in_seconds(time);
+      } else if (!file_.has_stamps()) {
+        rounded_ = rounded_steps(written, column.unit ? column.unit->scale : 1);
       }
+    }
     return time;
   }
   /// Where no column has the time.
@@ -112,12 +128,14 @@ class Columns {
   }
   std::vector<double> input(InputRequest const& asked) {
     InputRequest const column = with_unit_of_file(file_, asked);
+    note_unit(column);
     std::vector<double> values = complete(file_.numbers(column.column, column.mention), column, "an input");
     to_si(values, column);
     return values;
   }
   std::vector<double> measured(ColumnRequest const& asked) {
     ColumnRequest const column = with_unit_of_file(file_, asked);
+    note_unit(column);
     std::vector<double> values = of_one_length(file_.numbers(column.column, column.mention), column);
     for (std::size_t i = 0; i < values.size() && column.counts; ++i)
       if (!std::isnan(values[i]) && (values[i] < 0 || values[i] != std::floor(values[i]) || std::isinf(values[i])))
@@ -126,8 +144,13 @@ class Columns {
     return values;
   }
   std::optional<Unit> const& time_unit() const { return time_unit_; }
+  std::vector<UnitInName> const& other_units() const { return other_units_; }
+  std::optional<RoundedSteps> const& rounded() const { return rounded_; }
 
  private:
+  void note_unit(ColumnRequest const& column, std::optional<Unit> const& usual = std::nullopt) {
+    if (auto other = other_unit_in_name(file_, column, usual)) other_units_.push_back(std::move(*other));
+  }
   /// Numbers that count something else than the unit they are taken for.
   void refuse_no_seconds(std::vector<double> const& written, ColumnRequest const& column) const {
     refuse_counts_since_a_date(written, column);
@@ -176,6 +199,8 @@ class Columns {
   std::optional<std::size_t> rows_;
   std::string first_;  // the column that has them
   std::optional<Unit> time_unit_;
+  std::vector<UnitInName> other_units_;
+  std::optional<RoundedSteps> rounded_;
 };
 
 /// The diagnostic of a UserError, pointing to `mention` when it points nowhere yet.
@@ -262,6 +287,8 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
   if (!complete_record) return std::nullopt;
   record.time = std::move(*time);
   record.time_unit = file.has_stamps() && request.time ? request.time->unit : columns.time_unit();
+  record.other_units = columns.other_units();
+  record.rounded = columns.rounded();
   return record;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/numeric/unit.hpp"
 #include "core/text/diagnostic.hpp"
+#include "data/cell/rounded_times.hpp"
 #include "data/experiment.hpp"
 #include "data/table/reading_rules.hpp"
 
@@ -38,6 +39,13 @@ struct RecordRequest {
   std::string shown_path{};                            // what messages name in place of the path; empty: the path
 };
 
+/// A column whose name ends in another unit of the same kind than that in which its numbers were read.
+struct UnitInName {
+  std::string column;
+  std::string in_name, read_in;
+  bool stated = false;  // the data block has it so
+};
+
 struct Record {
   std::string path;
   std::string digest;                         // SHA-256 of the file
@@ -46,6 +54,8 @@ struct Record {
   std::vector<InputSignal> inputs;            // over the whole record
   std::vector<std::vector<double>> measured;  // [N] each, NaN where missing; empty: not in this data
   std::vector<std::string> comments;          // before the header of the file
+  std::vector<UnitInName> other_units;
+  std::optional<RoundedSteps> rounded;  // of times that are read as they stand
 
   int rows() const { return static_cast<int>(time.size()); }
 };

@@ -103,7 +103,7 @@ std::string cure(Model const& model, Channel const& channel, bool several, doubl
   double const kelvin = channel.unit && channel.unit->offset != 0 ? channel.unit->scale : 1;
   std::string const name = free_parameter(model, channel.name);
   std::string const declaration = fmt::format("parameter {}{}{} ~ normal(0, sd = {})", name, several ? " per experiment" : "",
-                                              unit_of_offset(channel), significant(round_number_above(3 * kelvin * size), 3));
+                                              unit_of_offset(channel), fmt::format("{:g}", round_number_above(3 * kelvin * size)));
   std::optional<std::string> const written = statement ? statement(channel, name) : std::nullopt;
   return fmt::format(
       "if the sensor has an offset, estimate it: add `{}` to the model and {}; otherwise look for an input with an offset, or for "

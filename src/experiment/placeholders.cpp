@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,12 +11,23 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "data/cell/doubtful_number.hpp"
+#include "data/table/reading_rules.hpp"
 
 namespace sysid {
 namespace {
 
+/// "write `read missing = "-9999"`": what the block has is kept.
+std::string missing_with(ReadingRules const& rules, double value) {
+  std::string number = fmt::format("{:.12g}", value);
+  std::replace(number.begin(), number.end(), '.', rules.decimal);
+  if (rules.missing.empty()) return fmt::format("write `read missing = {}`", quoted_text(number));
+  std::string list;
+  for (std::string const& each : rules.missing) list += quoted_text(each) + ", ";
+  return fmt::format("write `missing = ({}{})` after `read`", list, quoted_text(number));
+}
+
 Finding finding(ExperimentData const& data, ColumnUse const& column, std::string const& unit, DoubtfulNumber const& suspect,
-                bool input) {
+                bool input, ReadingRules const& rules) {
   constexpr std::size_t most_named = 5;
   std::vector<std::string> rows;
   for (std::size_t const row : suspect.places) rows.push_back(std::to_string(data.experiment.first_row + static_cast<int>(row)));
@@ -25,9 +37,10 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
           fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: a missing value?", column.column,
                       data.use.name, suspect.value, unit_after_number(unit), plural("row", rows.size()),
                       first_listed(rows, most_named)),
-          input ? "an input acts at every row: interpolate the missing samples, or begin after them; if a pulse saturated the "
-                  "recorder, the true values are larger"
-                : "leave the cell empty or write `NA`: the row is then not scored"};
+          input ? "an input acts at every row: interpolate the missing samples in the file, or begin after them, with a range of "
+                  "rows in `split`; if a pulse saturated the recorder, the true values are larger"
+                : fmt::format("{} in the data block: the row is then not scored; if it is a sample, add `none` to the list",
+                              missing_with(rules, suspect.value))};
 }
 
 }  // namespace
@@ -44,7 +57,8 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
       unit = column.unit->text;
       for (double& value : values) value = convert(value, *quantity.unit, *column.unit);
     }
-    for (DoubtfulNumber const& suspect : doubtful_numbers(values)) findings.push_back(finding(data, column, unit, suspect, input));
+    for (DoubtfulNumber const& suspect : doubtful_numbers(values))
+      findings.push_back(finding(data, column, unit, suspect, input, block.rules));
   };
   for (DataInputUse const& column : block.inputs)
     for (std::size_t i = 0; i < model.inputs.size(); ++i) {

@@ -35,6 +35,8 @@ constexpr FindingRow rows[] = {
     {FindingCode::looks_missing, "looks_missing", warning},
     {FindingCode::column_constant, "column_constant", warning_or_note},
     {FindingCode::time_gap, "time_gap", warning},
+    {FindingCode::times_rounded, "times_rounded", warning},
+    {FindingCode::unit_in_name, "unit_in_name", warning_or_note},
     {FindingCode::samples_far_off, "samples_far_off", warning},
     {FindingCode::explains_little, "explains_little", error_or_warning},
     {FindingCode::worse_than_the_mean, "worse_than_the_mean", error_or_warning},

@@ -34,6 +34,8 @@ enum class FindingCode {
   looks_missing,
   column_constant,
   time_gap,
+  times_rounded,
+  unit_in_name,
   samples_far_off,
   explains_little,
   worse_than_the_mean,

@@ -148,3 +148,41 @@ TEST_CASE("durations as MATLAB writes them are the time") {
   CHECK(look.block.find("stamp = duration") != std::string::npos);
   CHECK(look.time.last == 0.03);
 }
+
+TEST_CASE("a time is found by its name with a unit behind it, else by its equal steps, and an assumed unit is said to be so") {
+  auto const table = [](std::string const& names, auto const& time) {
+    std::string text = names + "\n";
+    for (int i = 0; i < 300; ++i) text += fmt::format("{},{:.5g}\n", time(i), std::sin(0.3 * i));
+    return text;
+  };
+  auto const whole = [](int i) { return 12500 + 4 * i; };
+  TemporaryFile const named(table("t_ms,Kraft_kN", whole)), plain(table("time,y", whole)), none(table("a,y", whole)),
+      counted(table("a,y", [](int i) { return i + 1; })), ramp(table("Weg_mm,y", whole));
+  RecordLook const look = look_at_record(named.path());
+  CHECK(look.time.last == doctest::Approx(13.696));
+  CHECK_FALSE(look.time.assumed);
+  CHECK(look.block.find("time    t_ms [ms]\n") != std::string::npos);
+  CHECK(look.block.find("= Kraft_kN [kN]\n") != std::string::npos);
+  RecordLook const assumed = look_at_record(plain.path());
+  CHECK(assumed.time.assumed);
+  CHECK(record_text(assumed).find("`time`, unit assumed: s: 12500 s to ") != std::string::npos);
+  RecordLook const by_steps = look_at_record(none.path());
+  CHECK(by_steps.time.column == "a");
+  CHECK(record_text(by_steps).find("the only column of equal steps") != std::string::npos);
+  CHECK(look_at_record(counted.path()).time.column.empty());
+  CHECK(look_at_record(ramp.path()).time.column.empty());
+}
+
+TEST_CASE("rounded times are shown and pasted as the rate that check names") {
+  std::string text = "t_ms,y\n";
+  for (int i = 0; i < 1000; ++i) text += fmt::format("{},{:.5g}\n", 12500 + std::round(i * 1000 / 256.0), std::sin(0.3 * i));
+  TemporaryFile const file(text);
+  RecordLook const look = look_at_record(file.path());
+  CHECK(record_text(look).find("256 Hz (0.00390625 s), equal steps, rounded to 0.001 s") != std::string::npos);
+  CHECK(look.block.find("rate    256 [Hz]  # `t_ms` has these times") != std::string::npos);
+  std::string messages;
+  auto const record = read_by(look.block, messages);
+  CAPTURE(messages);
+  REQUIRE(record);
+  CHECK(record->time.back() == doctest::Approx(999 / 256.0));
+}

@@ -134,6 +134,17 @@ class Words(unittest.TestCase):
         }.items():
             self.assertEqual(in_python(said), expected)
 
+    def test_phrases_of_cells(self):
+        from sysid._words import in_cell
+
+        for said, expected in {
+            "add force=True to replace them, or output=DIR to write elsewhere": "add --force to replace them, or --output DIR to write elsewhere",
+            "continue with resume=True, or start again with force=True": "start again with --force",
+            "run it again: model.predict(force=True)": "run it again: model.predict(force=True)",
+            "`k` is not declared": "`k` is not declared",
+        }.items():
+            self.assertEqual(in_cell(said), expected)
+
     def test_no_advice_for_a_shell_is_left(self):
         from sysid._words import in_python
 

@@ -168,6 +168,13 @@ class Cells(unittest.TestCase):
         self.assertEqual(said[3], ["sysid: error: there is no folder whose results could be replaced", "help: name it: --output DIR"])
         self.assertEqual([each[0].split(",")[0] for each in said[4:]], ["sysid: error: `sysid` is a module", "sysid: error: `list` is a name of Python", "sysid: error: `os` is a module"])
 
+    def test_results_that_are_there_are_replaced_by_the_option_that_the_message_names(self):
+        into_folder = CELL.replace("%%sysid decay", "%%sysid decay --output results")
+        first, second, third = self.run_cells(into_folder, into_folder, into_folder.replace("results\n", "results --force\n", 1), allow_errors=True)
+        said = second[-1][1]
+        self.assertTrue(any(line == "help: add --force to replace them, or --output DIR to write elsewhere" for line in said), said)
+        self.assertEqual(third[0]["text/plain"], first[0]["text/plain"])
+
     def test_a_task_takes_no_name_that_a_notebook_would_miss(self):
         text = CELL.replace("posterior", "list").replace("forecast ", "decay ")
         cell, names = self.run_cells(text, "print(list is type([]), type(decay).__name__, *decay.results)")

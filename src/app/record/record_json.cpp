@@ -39,6 +39,8 @@ std::string record_json(RecordLook const& look) {
   if (!look.question.empty()) out["question"] = {{"text", look.question}, {"choices", look.readings}};
   TimeLook const& time = look.time;
   out["time"] = {{"column", time.column},
+                 {"unit", time.unit},
+                 {"unit_assumed", time.assumed},
                  {"stamps", time.stamps},
                  {"first", time.first},
                  {"last", time.last},
@@ -47,8 +49,11 @@ std::string record_json(RecordLook const& look) {
                  {"gaps", time.gaps},
                  {"longest_gap", time.longest_gap},
                  {"longest_gap_row", time.longest_gap_row}};
+  if (time.rounded) out["time"]["rounded"] = {{"unit", time.rounded->unit}, {"rate", time.rounded->rate}};
   out["columns"] = nlohmann::ordered_json::array();
   for (ColumnLook const& column : look.columns) out["columns"].push_back(json_of(column));
+  out["left_out"] = nlohmann::ordered_json::array();
+  for (LeftOut const& each : look.left_out) out["left_out"].push_back({{"name", each.name}, {"why", each.reason}});
   out["block"] = look.block;
   return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

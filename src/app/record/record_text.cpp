@@ -22,10 +22,13 @@ std::string time_line(RecordLook const& look) {
   TimeLook const& time = look.time;
   if (time.column.empty()) return "time      not found in any column\n";
   std::string out =
-      fmt::format("time      `{}`{}: {} s to {} s, ", time.column, time.stamps || time.since_first ? ", dates and times" : "",
+      fmt::format("time      `{}`{}{}{}: {} s to {} s, ", time.column, time.stamps || time.since_first ? ", dates and times" : "",
+                  time.by_steps ? ", the only column of equal steps" : "", time.assumed ? ", unit assumed: s" : "",
                   six_digits(time.first), six_digits(time.last));
   if (time.step > 0) out += fmt::format("{} Hz ({} s), ", six_digits(1 / time.step), six_digits(time.step));
-  if (time.unequal == 0)
+  if (time.rounded)
+    out += fmt::format("equal steps, rounded to {} s", significant(time.rounded->unit, 4));
+  else if (time.unequal == 0)
     out += "equal steps";
   else
     out += fmt::format("{} not equal to the others", counted(time.unequal, "step"));
@@ -68,7 +71,7 @@ std::string record_text(RecordLook const& look) {
   std::vector<std::vector<std::string>> rows = {{"column", "unit", "numbers", "smallest", "largest", "mean", "sd"}};
   for (ColumnLook const& column : look.columns) {
     if (!column.unread.empty()) {
-      rows.push_back({column.name, column.unit, "0", "", "", "", ""});
+      rows.push_back({column.name, column.unit, std::to_string(column.rows), "", "", "", ""});
       continue;
     }
     rows.push_back({column.name, column.unit, std::to_string(column.rows - column.missing), significant(column.smallest, 4),
@@ -80,6 +83,7 @@ std::string record_text(RecordLook const& look) {
     if (column.name == look.time.column) continue;
     for (std::string const& remark : remarks(column)) said += fmt::format("`{}` {}\n", column.name, remark);
   }
+  for (LeftOut const& each : look.left_out) said += fmt::format("`{}` {}\n", each.name, each.reason);
   if (!said.empty()) out += "\n" + said;
   if (look.lines_below > 0)
     out +=

@@ -10,6 +10,7 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "experiment/dead_columns.hpp"
+#include "experiment/doubtful_columns.hpp"
 #include "experiment/placeholders.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/lags.hpp"
@@ -93,7 +94,8 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
 
 Findings data_findings(CheckedFile const& file, ExperimentData const& data, Model const& model) {
   Findings all = find_placeholders(file, data, model);
-  for (Findings const& more : {find_constant_columns(file, data, model), find_time_gaps(file, data, model)})
+  for (Findings const& more : {find_constant_columns(file, data, model), find_time_gaps(file, data, model), find_other_units(data),
+                               find_rounded_times(file, data, model)})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -118,7 +120,8 @@ std::string samples_digest(Experiment const& experiment, Model const& model) {
 }
 
 bool tells_of_data(FindingCode code) {
-  return code == FindingCode::looks_missing || code == FindingCode::column_constant || code == FindingCode::time_gap;
+  return code == FindingCode::looks_missing || code == FindingCode::column_constant || code == FindingCode::time_gap ||
+         code == FindingCode::times_rounded || code == FindingCode::unit_in_name;
 }
 
 void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings) {

@@ -88,7 +88,59 @@ double of_least_spread(std::span<double const> time, double step, double unit) {
   return (low + high) / 2;
 }
 
+/// The outermost step on one side of `step` that has no larger spread than `allowed`.
+double outermost(std::span<double const> time, double step, double far, double allowed) {
+  constexpr int halvings = 60;
+  for (int round = 0; round < halvings; ++round) {
+    double const middle = (step + far) / 2;
+    (spread(time, middle) <= allowed ? step : far) = middle;
+  }
+  return step;
+}
+
+/// Whether there are two neighbouring whole numbers of units and no other step.
+bool of_two_steps(std::span<double const> time, double unit) {
+  constexpr std::size_t fewest = 5;
+  double const low = std::floor((time.back() - time.front()) / static_cast<double>(time.size() - 1) / unit);
+  std::size_t lower = 0, upper = 0;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    double const steps = (time[i] - time[i - 1]) / unit, whole = std::round(steps);
+    if (std::fabs(steps - whole) > 0.01) return false;
+    if (whole != low && whole != low + 1) return false;
+    ++(whole == low ? lower : upper);
+  }
+  return lower >= fewest && upper >= fewest;
+}
+
+/// The number of fewest digits.
+double shortest_between(double least, double most) {
+  double const middle = (least + most) / 2;
+  constexpr int all_digits = 17;
+  for (int digits = 1; digits < all_digits; ++digits) {
+    char text[40];
+    auto const end = std::to_chars(text, text + sizeof text, middle, std::chars_format::scientific, digits - 1).ptr;
+    double number = middle;
+    std::from_chars(text, end, number);
+    if (number >= least && number <= most) return number;
+  }
+  return middle;
+}
+
 }  // namespace
+
+std::optional<RoundedSteps> rounded_steps(std::span<double const> time, double scale) {
+  constexpr std::size_t fewest_steps = 40;
+  constexpr double fewest_units = 1.5;
+  if (time.size() <= fewest_steps) return std::nullopt;
+  double const unit = last_unit(time), rough = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+  if (!(rough >= fewest_units * unit) || !of_two_steps(time, unit)) return std::nullopt;
+  double const step = of_least_spread(time, rough, unit), least_spread = spread(time, step);
+  if (!(least_spread <= tolerance * unit)) return std::nullopt;
+  double const allowed = std::max(unit, least_spread) * (1 + 1e-9), about = 3 * unit / static_cast<double>(time.size() - 1);
+  double const least = outermost(time, step, step - about, allowed), most = outermost(time, step, step + about, allowed);
+  return RoundedSteps{unit * scale, std::floor(rough / unit) * unit * scale,
+                      shortest_between(1 / (most * scale), 1 / (least * scale))};
+}
 
 std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time, double unit) {
   double const middle = static_cast<double>(time.size() - 1) / 2;

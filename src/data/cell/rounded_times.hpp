@@ -16,4 +16,17 @@ namespace sysid {
 /// time: as the numbers stand in the file, at least two, rising. unit: of their last digit; 0: it is found from them.
 std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time, double unit = 0);
 
+/// Times that equal steps give when they are rounded to few units.
+struct RoundedSteps {
+  double unit = 0;   // s, of the last digit
+  double lower = 0;  // s, of the two steps that are there, one unit apart
+  double rate = 0;   // Hz, of the equal steps: the number of fewest digits that gives these times
+};
+
+/// For steps of one and a half units or more. Within one unit of equal steps stay fewer than n^3 of the 2^n ways to put n steps of
+/// two neighbouring whole numbers of units in order; here are 40 steps at least, and five of both. So it is no chance, but these
+/// times may also be right as they are: a recorder that waits for equal times and samples at the next tick of its clock gives the
+/// same. That no number tells. scale: s that 1 of these times is.
+std::optional<RoundedSteps> rounded_steps(std::span<double const> time, double scale);
+
 }  // namespace sysid

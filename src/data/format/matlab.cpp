@@ -30,6 +30,16 @@ MatFile opened(std::string const& path) {
   return file;
 }
 
+/// With the names of what it holds, as they are written in MATLAB.
+std::string array_of_structs(matvar_t const& variable) {
+  std::string size;
+  for (int d = 0; d < variable.rank; ++d) size += (d == 0 ? "" : " x ") + std::to_string(variable.dims[d]);
+  std::string const name = variable.name == nullptr ? "s" : variable.name;
+  auto const* const names = Mat_VarGetStructFieldnames(&variable);
+  std::string const field = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&variable)) > 0 && names != nullptr ? names[0] : "field";
+  return fmt::format("is a {0} array of structs: save what is in it as vectors, such as `{1}_1 = {2}(1).{1}`", size, field, name);
+}
+
 std::string matlab_refusal(matvar_t const& variable) {
   switch (variable.class_type) {
     case MAT_C_DOUBLE:
@@ -50,7 +60,7 @@ std::string matlab_refusal(matvar_t const& variable) {
     case MAT_C_CELL:
       return "is a cell array: save it with `cell2mat`";
     case MAT_C_STRUCT:
-      return "is an array of structs: save the fields as vectors";
+      return array_of_structs(variable);
     default:
       return "is an object, such as a table or a time series: save its columns as vectors";
   }

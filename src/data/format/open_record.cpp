@@ -28,14 +28,21 @@ constexpr KnownFile known_files[] = {
 };
 
 template <VariableFormat const& format>
-std::unique_ptr<RecordFile> open_as(std::string path, std::string const& bytes, std::string digest) {
-  return open_variables(format, std::move(path), bytes, std::move(digest));
+std::unique_ptr<RecordFile> open_as(std::string path, std::string const& bytes, std::string digest, ReadingRules const& rules) {
+  return open_variables(format, std::move(path), bytes, std::move(digest), rules);
 }
 
 constexpr FormatRow format_rows[] = {
     {"MATLAB file", &is_matlab, &open_as<matlab_format>},
     {"NetCDF or HDF5 file", &is_netcdf, &open_as<netcdf_format>},
 };
+
+/// What says how text is written.
+ReadingRules without_missing(ReadingRules rules) {
+  rules.missing.clear();
+  rules.asked_for_missing = rules.no_other_mark = false;
+  return rules;
+}
 
 }  // namespace
 
@@ -62,8 +69,8 @@ std::unique_ptr<RecordFile> open_record(std::string const& path, ReadingRules co
       table->set_digest(std::move(digest));
       return table;
     }
-    if (rules != ReadingRules{}) throw UserError(data_errors::reading_of_no_text(name, format->name, mention));
-    return format->open(name, bytes, std::move(digest));
+    if (without_missing(rules) != ReadingRules{}) throw UserError(data_errors::reading_of_no_text(name, format->name, mention));
+    return format->open(name, bytes, std::move(digest), rules);
   } catch (UserError const& error) {
     Diagnostic placed = error.diagnostic();
     if (mention && !placed.primary) placed.primary = Label{*mention, {}};

@@ -17,8 +17,8 @@ namespace sysid {
 struct FormatRow {
   std::string_view name;  // as messages call it: "MATLAB file"
   bool (*recognises)(std::string_view bytes);
-  /// bytes: the file, uncompressed. UserError where they cannot be read.
-  std::unique_ptr<RecordFile> (*open)(std::string path, std::string const& bytes, std::string digest);
+  /// bytes: the file, uncompressed. rules: what is missing. UserError where they cannot be read.
+  std::unique_ptr<RecordFile> (*open)(std::string path, std::string const& bytes, std::string digest, ReadingRules const& rules);
 };
 
 std::span<FormatRow const> formats();

@@ -78,10 +78,26 @@ std::vector<Variable> unpacked(std::string const& bytes) {
   return variables;
 }
 
+/// Words are in no array of numbers.
+std::vector<double> numbers_among(std::vector<std::string> const& words) {
+  std::vector<double> numbers;
+  for (std::string const& word : words) {
+    double number = 0;
+    auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error == std::errc{} && end == word.data() + word.size()) numbers.push_back(number);
+  }
+  return numbers;
+}
+
 class VariableRecord final : public RecordFile {
  public:
-  VariableRecord(VariableFormat const& format, std::string name, std::string const& bytes, std::string digest)
-      : format_(format), name_(std::move(name)), digest_(std::move(digest)), file_(std::make_unique<RecordCopy>(bytes)) {
+  VariableRecord(VariableFormat const& format, std::string name, std::string const& bytes, std::string digest,
+                 ReadingRules const& rules)
+      : missing_(numbers_among(rules.missing)),
+        format_(format),
+        name_(std::move(name)),
+        digest_(std::move(digest)),
+        file_(std::make_unique<RecordCopy>(bytes)) {
     OwnWork const listed = in_own_process(overhead + 2 * file_->size(), [&] { return packed(format_.list(file_->path())); });
     if (listed.end == WorkEnd::failed && format_.refusal != nullptr)
       if (std::string const why = format_.refusal(bytes); !why.empty())
@@ -106,6 +122,14 @@ class VariableRecord final : public RecordFile {
   std::vector<std::string> const& columns() const override { return columns_; }
   std::vector<std::string> const& comments() const override { return comments_; }
 
+  std::vector<std::pair<std::string, std::string>> left_out() const override {
+    constexpr std::size_t longest = 20;
+    std::vector<std::pair<std::string, std::string>> all;
+    for (Variable const& each : variables_)
+      if (!each.refused.empty() && all.size() < longest) all.emplace_back(each.path, each.refused);
+    return all;
+  }
+
   std::optional<std::string> unit(std::string const& column) const override {
     auto const choice = choice_of(column);
     Variable const* const variable = choice ? find(choice->path) : nullptr;
@@ -117,16 +141,32 @@ class VariableRecord final : public RecordFile {
     // A name with brackets in it goes before a choice of rows.
     auto const choice = find(column) != nullptr ? std::optional(Choice{column}) : choice_of(column);
     Variable const* const variable = choice ? find(choice->path) : nullptr;
-    if (variable == nullptr) throw UserError(data_errors::missing_variable(name_, column, columns_, mention));
+    if (variable == nullptr) {
+      if (Variable const* const whole = refused_around(column)) throw refused(whole->path, whole->refused, mention);
+      throw UserError(data_errors::missing_variable(name_, column, columns_, mention));
+    }
     if (!variable->refused.empty()) throw refused(column, variable->refused, mention);
     std::vector<double> values = chosen(*variable, *choice, column, mention);
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (std::isinf(values[i]))
+      if (is_missing(values[i]))
+        values[i] = std::nan("");
+      else if (std::isinf(values[i]))
         throw UserError(data_errors::not_finite(place(i, column), values[i] > 0 ? "inf" : "-inf", mention));
     return values;
   }
 
  private:
+  bool is_missing(double value) const {
+    return std::any_of(missing_.begin(), missing_.end(), [&](double each) {
+      return value == each || value == static_cast<double>(static_cast<float>(each));  // columns may have single precision
+    });
+  }
+  /// `Signal` of `Signal(1).values`.
+  Variable const* refused_around(std::string const& column) const {
+    for (std::size_t at = column.find_first_of(".(/["); at != std::string::npos; at = column.find_first_of(".(/[", at + 1))
+      if (Variable const* const whole = find(column.substr(0, at)); whole != nullptr && !whole->refused.empty()) return whole;
+    return nullptr;
+  }
   void require_done(OwnWork const& work, std::optional<Span> mention) const {
     if (work.end == WorkEnd::waited) throw UserError(data_errors::reading_waited(name_, std::string(format_.name), mention));
     if (work.end == WorkEnd::failed) throw UserError(data_errors::damaged(name_, std::string(format_.name), mention));
@@ -180,6 +220,7 @@ class VariableRecord final : public RecordFile {
     return read_;
   }
 
+  std::vector<double> missing_;
   VariableFormat const& format_;
   std::string name_, digest_;
   std::unique_ptr<RecordCopy> file_;
@@ -192,8 +233,8 @@ class VariableRecord final : public RecordFile {
 }  // namespace
 
 std::unique_ptr<RecordFile> open_variables(VariableFormat const& format, std::string path, std::string const& bytes,
-                                           std::string digest) {
-  return std::make_unique<VariableRecord>(format, std::move(path), bytes, std::move(digest));
+                                           std::string digest, ReadingRules const& rules) {
+  return std::make_unique<VariableRecord>(format, std::move(path), bytes, std::move(digest), rules);
 }
 
 }  // namespace sysid

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "data/table/reading_rules.hpp"
 #include "data/table/record_file.hpp"
 
 namespace sysid {
@@ -29,8 +30,8 @@ struct VariableFormat {
 };
 
 /// UserError E4023 where the file is damaged. Columns are named by their paths; of a matrix `X[:, 2]` is a column and `X[2, :]` a
-/// row, counted from 1.
+/// row, counted from 1. rules: of them `missing` alone, whose numbers stand for missing samples as NaN does.
 std::unique_ptr<RecordFile> open_variables(VariableFormat const& format, std::string path, std::string const& bytes,
-                                           std::string digest);
+                                           std::string digest, ReadingRules const& rules = {});
 
 }  // namespace sysid

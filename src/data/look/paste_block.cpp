@@ -41,7 +41,10 @@ std::string paste_block(RecordLook const& look) {
   std::string out = fmt::format("data {} {{\n  file    {}\n", name_for(stem, taken), quoted_text(look.file));
   taken.clear();
   if (!look.reading.empty()) out += "  read    " + look.reading.substr(5) + "\n";
-  if (!look.time.column.empty())
+  if (look.time.rounded)
+    out += fmt::format("  rate    {} [Hz]  # `{}` has these times, rounded to {} s\n", shortest(look.time.rounded->rate),
+                       look.time.column, shortest(look.time.rounded->unit));
+  else if (!look.time.column.empty())
     out += fmt::format("  time    {}\n", column_text(look.time.column, look.time.unit));
   else
     out += "  rate    1 [Hz]  # no column has the time: write the sampling rate here\n";

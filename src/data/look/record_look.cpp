@@ -10,6 +10,8 @@
 
 #include "core/numeric/unit.hpp"
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
+#include "data/cell/column_name.hpp"
 #include "data/cell/rounded_times.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_doubt.hpp"
@@ -37,18 +39,6 @@ std::string in_small_letters_only(std::string const& name) {
   for (char const c : name)
     if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) small += static_cast<char>(c | 0x20);
   return small;
-}
-
-/// Whether people call the time so.
-bool is_time_name(std::string const& name) {
-  auto const split = split_name(name);
-  std::string const small = in_small_letters_only(split ? split->name : name.substr(name.find_last_of("./") + 1));
-  for (std::string_view const each :
-       {"t",     "time",        "zeit",    "timestamp", "datetime", "date",   "uhrzeit", "datum",       "xvalue",
-        "xaxis", "elapsedtime", "seconds", "sec",       "temps",    "tiempo", "tid",     "zeitstempel", "ts",
-        "epoch", "unixtime",    "utc",     "utctime",   "hhmm",     "hhmmss", "gpstime"})
-    if (small == each) return true;
-  return false;
 }
 
 /// So `g` behind it is no gram.
@@ -113,6 +103,8 @@ std::string unit_in(std::string const& column, RecordFile const& file, Chosen co
   std::optional<std::string> text = file.unit(column);
   if (!text)
     if (auto const split = split_name(column)) text = split->unit;
+  if (!text)
+    if (auto const ended = unit_behind_underscore(column)) text = ended->unit;
   auto unit = text ? unit_of_text(*text) : std::nullopt;
   if (is_acceleration_name(column) && text) unit = unit_of_text(*text, unit_atom("g_n").value());
   if (!unit && file.unit(column).value_or("") != "") return "-";  // a unit of the file that is none here: plain numbers
@@ -179,6 +171,7 @@ class Looking {
       }
     }
     file_ = open_record(path_, chosen_.rules);
+    for (auto const& [name, reason] : file_->left_out()) look_.left_out.push_back({name, reason});
   }
   /// Columns of the usual length; those of another are no rows of the same record.
   void read_columns() {
@@ -201,7 +194,9 @@ class Looking {
       if (count >= most && length > 0) most = count, look_.rows = length;
     for (std::size_t c = 0; c < look_.columns.size(); ++c)
       if (look_.columns[c].unread.empty() && look_.values[c].size() != look_.rows) {
-        look_.columns[c].unread = fmt::format("has {} numbers", look_.values[c].size());
+        look_.columns[c].rows = look_.values[c].size();
+        look_.columns[c].unread =
+            fmt::format("has {}, the other columns have {}: left out", counted(look_.values[c].size(), "number"), look_.rows);
         look_.values[c].clear();
       }
   }
@@ -219,25 +214,67 @@ class Looking {
     }
     for (std::size_t c = 0; c < look_.columns.size(); ++c) {
       ColumnLook const& column = look_.columns[c];
-      if (!column.unread.empty() || !is_time_name(column.name) || !keeps_increasing(look_.values[c])) continue;
-      Unit unit = unit_atom("s").value();
-      if (auto const stated = unit_of_text(column.unit); stated && stated->dimension == unit.dimension) unit = *stated;
-      time.column = column.name;
-      SerialTime const* const counts = unit.scale == 1 ? seems_serial(look_.values[c], column.name) : nullptr;
-      bool const is_text = file_->row_count().has_value();
-      if (is_text && unit.scale == 1 && read_stamps(column.name, stamps_of_numbers(c, counts))) return look_at_time(look_);
-      // Where a file has no `read`, a unit says what its numbers count; seconds need none.
-      if (counts != nullptr && !is_text && counts->word != "seconds") {
-        unit = unit_atom(counts->unit).value();
-        time.since_first = true;
-      }
-      time.unit = unit.text;
-      look_at_numbers(look_.values[c], unit.scale);
-      if (time.unequal == 0 || time.gaps > 0) return;
-      if (auto const equal = equal_times_before_rounding(look_.values[c])) look_at_numbers(*equal, unit.scale);
-      return;
+      if (column.unread.empty() && is_time_name(column.name) && keeps_increasing(look_.values[c])) return take_time(c);
+    }
+    if (auto const column = only_column_of_equal_steps()) {
+      time.by_steps = true;
+      return take_time(*column);
     }
     for (std::size_t i = 0; i < look_.rows; ++i) look_.times.push_back(static_cast<double>(i + 1));
+  }
+
+  void take_time(std::size_t c) {
+    TimeLook& time = look_.time;
+    ColumnLook const& column = look_.columns[c];
+    std::vector<double> const& values = look_.values[c];
+    Unit unit = unit_atom("s").value();
+    auto const stated = unit_of_text(column.unit);
+    time.assumed = !(stated && stated->dimension == unit.dimension);
+    if (!time.assumed) unit = *stated;
+    time.column = column.name;
+    SerialTime const* const counts = unit.scale == 1 ? seems_serial(values, column.name) : nullptr;
+    bool const is_text = file_->row_count().has_value();
+    if (is_text && unit.scale == 1 && read_stamps(column.name, stamps_of_numbers(c, counts))) {
+      time.assumed = false;
+      return look_at_time(look_);
+    }
+    // Where a file has no `read`, a unit says what its numbers count; seconds need none.
+    if (counts != nullptr && !is_text && counts->word != "seconds") {
+      unit = unit_atom(counts->unit).value();
+      time.since_first = true;
+    }
+    time.assumed = time.assumed && counts == nullptr;
+    time.unit = unit.text;
+    look_at_numbers(values, unit.scale);
+    if (time.unequal == 0 || time.gaps > 0) return;
+    if (auto const equal = equal_times_before_rounding(values))
+      look_at_numbers(*equal, unit.scale);
+    else if ((time.rounded = rounded_steps(values, unit.scale)))
+      take_rate(time.rounded->rate);
+  }
+  /// In place of times that it gives when it is rounded.
+  void take_rate(double rate) {
+    double const first = look_.times.front();
+    for (std::size_t i = 0; i < look_.times.size(); ++i) look_.times[i] = first + static_cast<double>(i) / rate;
+    look_at_time(look_);
+  }
+  /// A ramp that is measured has no equal steps, and one that is commanded has a unit or a second one beside it. No count of rows.
+  std::optional<std::size_t> only_column_of_equal_steps() const {
+    constexpr std::size_t fewest = 20;
+    std::optional<std::size_t> only;
+    for (std::size_t c = 0; c < look_.columns.size(); ++c) {
+      std::vector<double> const& values = look_.values[c];
+      if (!look_.columns[c].unread.empty() || values.size() < fewest || !keeps_increasing(values)) continue;
+      if (auto const unit = unit_of_text(look_.columns[c].unit); unit && unit->dimension != unit_atom("s").value().dimension)
+        continue;
+      double const step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
+      bool equal = true;
+      for (std::size_t i = 1; i < values.size() && equal; ++i) equal = std::fabs(values[i] - values[i - 1] - step) <= 1e-6 * step;
+      if (!equal && !equal_times_before_rounding(values)) continue;
+      if (step == 1 || only) return std::nullopt;
+      only = c;
+    }
+    return only;
   }
 
   /// What `stamp` may say of numbers that are no seconds; empty: they are.

@@ -128,8 +128,8 @@ Diagnostic not_a_record(std::string const& file, std::string_view what, std::str
 }
 
 Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Mention mention) {
-  return error("E4025", mention, fmt::format("`{}` is a {}, but `read` is allowed for text files only", file, what),
-               "remove `read` from the data block");
+  return error("E4025", mention, fmt::format("`{}` is a {}, of which `read` can only say what is `missing`", file, what),
+               "remove `read` from the data block, or all of it but `missing`");
 }
 
 Diagnostic damaged(std::string const& file, std::string const& what, Mention mention) {
@@ -396,8 +396,10 @@ Diagnostic unit_of_another_kind(std::string const& file, std::string const& colu
 }
 
 Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention) {
-  return error("E4013", mention, fmt::format("{} has no value, but {} needs one in every row", place(cell), what),
-               "only measured columns may have missing samples: fill the gap, or cut the record there");
+  return error(
+      "E4013", mention, fmt::format("{} has no value, but {} needs one in every row", place(cell), what),
+      "only measured columns may have missing samples: fill the gap in the file, or save the rows before and after it in files of "
+      "their own");
 }
 
 Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention) {

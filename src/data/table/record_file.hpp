@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/text/source.hpp"
@@ -36,6 +37,8 @@ class RecordFile {
     (void)column;
     return std::nullopt;
   }
+  /// What else the file has, and why it is no column of numbers: "is text".
+  virtual std::vector<std::pair<std::string, std::string>> left_out() const { return {}; }
   /// What the author of the file says of it all.
   virtual std::vector<std::string> const& comments() const = 0;
   /// The place of a number, for messages; index from 0.

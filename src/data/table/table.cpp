@@ -100,8 +100,8 @@ void Table::rethrow_with_proposal(UserError const& error, std::string const& col
   if (!help.empty()) diagnostic.help = beside_proposal(diagnostic) + help;
   if (help.empty() && complete && diagnostic.code == "E4022")
     diagnostic.help =
-        "it needs a number in every row: fill the gap, or cut the record there; if it is a sample, add this line to the data "
-        "block: `read missing = none`";
+        "it needs a number in every row: fill the gap in the file, or save the rows before and after it in files of their own; "
+        "if it is a sample, add this line to the data block: `read missing = none`";
   else if (!help.empty() && diagnostic.code == "E4022")
     diagnostic.help += "; or, if it is a sample, `read missing = none`";
   throw UserError(std::move(diagnostic));

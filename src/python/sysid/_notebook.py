@@ -18,6 +18,7 @@ from ._error import Error
 from ._model import Model
 from ._numbers import whole
 from ._results import Result
+from ._words import in_cell
 
 _MAGIC = "%%sysid"
 
@@ -86,7 +87,7 @@ class SysidMagics(Magics):
         try:
             self._run(asked, cell)
         except Error as error:
-            raise CellError(str(error), error._details) from None
+            raise CellError(in_cell(str(error)), error._details) from None
         except _Mistake as error:
             raise CellError(f"sysid: error: {error}") from None
         except KeyboardInterrupt:

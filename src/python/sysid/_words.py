@@ -49,3 +49,19 @@ def diagnostic_in_python(diagnostic: dict) -> dict:
     """A message of the engine in its parts."""
     of_arrays = _ARRAYS in diagnostic.get("message", "")
     return {**diagnostic, **{key: in_python(diagnostic[key], of_arrays) for key in ("message", "help") if diagnostic.get(key)}}
+
+
+# Of cells, which have options in place of arguments, and no `resume`.
+_OF_CELLS = [(re.compile(pattern), replacement) for pattern, replacement in (
+    (r"continue with resume=True, or start again with (?=force=True)", "start again with "),
+    (r"(?<![(\w])force=True\b", "--force"),
+    (r"(?<![(\w])output=DIR\b", "--output DIR"),
+    (r"another output\b", "another --output"),
+)]
+
+
+def in_cell(text: str) -> str:
+    """A message in Python's words, as it is written in the first line of a cell."""
+    for pattern, replacement in _OF_CELLS:
+        text = pattern.sub(replacement, text)
+    return text

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 using namespace sysid;
@@ -97,4 +98,59 @@ TEST_CASE("times of single precision were rounded, too, however they are written
   }
   whole[400] = static_cast<double>(static_cast<float>(whole[400] + 2e-6));  // four of its units
   CHECK_FALSE(equal_times_before_rounding(whole));
+}
+
+namespace {
+
+/// i/rate from `begin` on, in whole numbers of `unit`, cut or rounded.
+std::vector<double> in_units(double begin, double rate, int count, double unit, bool cut = false) {
+  std::vector<double> time;
+  for (int i = 0; i < count; ++i) {
+    double const exact = (begin + i / rate) / unit;
+    time.push_back(std::stod(fmt::format("{:.9g}", (cut ? std::floor(exact) : std::round(exact)) * unit)));
+  }
+  return time;
+}
+
+}  // namespace
+
+TEST_CASE("steps of few units show their rate where there are enough of them") {
+  for (auto const& [rate, unit] : {std::pair(256.0, 1e-3), std::pair(30.0, 1e-2), std::pair(44.1, 1e-2), std::pair(120.0, 1e-3),
+                                   std::pair(3.3, 0.1), std::pair(400.0, 1e-3)})
+    for (bool const cut : {false, true})
+      for (double const begin : {0.0, 12.5}) {
+        CAPTURE(rate);
+        std::vector<double> const time = in_units(begin, rate, 3000, unit, cut);
+        auto const found = rounded_steps(time, 1);
+        REQUIRE(found);
+        CHECK(found->rate == rate);
+        CHECK(found->unit == doctest::Approx(unit));
+        CHECK(found->lower == doctest::Approx(std::floor(1 / rate / unit) * unit));
+      }
+  // Milliseconds that are written as such.
+  std::vector<double> milliseconds;
+  for (int i = 0; i < 3000; ++i) milliseconds.push_back(12500 + std::round(i * 1000 / 256.0));
+  auto const found = rounded_steps(milliseconds, 1e-3);
+  REQUIRE(found);
+  CHECK(found->rate == 256);
+  CHECK(found->unit == doctest::Approx(1e-3));
+}
+
+TEST_CASE("clocks that vary, few steps and equal ones are no rounding") {
+  CHECK_FALSE(rounded_steps(in_units(0, 256, 40, 1e-3), 1));
+  CHECK_FALSE(rounded_steps(in_units(0, 250, 3000, 1e-3), 1));
+  CHECK_FALSE(rounded_steps(in_units(0, 700, 3000, 1e-3), 1));  // less than one and a half units
+  std::vector<double> one_off = in_units(0, 256, 3000, 1e-3), at_random{0}, slow{0}, gap = one_off;
+  one_off[1500] += 1e-3;
+  CHECK_FALSE(rounded_steps(one_off, 1));
+  gap.erase(gap.begin() + 700, gap.begin() + 720);
+  CHECK_FALSE(rounded_steps(gap, 1));
+  std::uint32_t state = 1;
+  for (int i = 1; i < 400; ++i) {
+    state = state * 1664525 + 1013904223;
+    at_random.push_back(at_random.back() + (state >> 31U != 0 ? 3 : 4));
+    slow.push_back(std::round(3.9 * i + 5e-4 * i * i));
+  }
+  CHECK_FALSE(rounded_steps(at_random, 1e-3));
+  CHECK_FALSE(rounded_steps(slow, 1e-3));
 }

@@ -190,6 +190,58 @@ TEST_CASE("vectors, fields of structs and columns of matrices are read from MATL
   }
 }
 
+TEST_CASE("numbers that mark missing samples are missing in a MATLAB file too, and nothing else of `read` goes with it") {
+  Scratch const file("marks.mat");
+  mat_t* const mat = Mat_CreateVer(file.path.c_str(), nullptr, MAT_FT_MAT5);
+  double const marked[] = {1, -9999, 3};
+  float const single[] = {99.9F, 2, 99.9F};
+  std::size_t size[2] = {3, 1};
+  put(mat, doubles("y", 3, 1, marked));
+  put(mat, Mat_VarCreate("a", MAT_C_SINGLE, MAT_T_SINGLE, 2, size, const_cast<float*>(single), 0));
+  Mat_Close(mat);
+  ReadingRules rules;
+  rules.missing = {"NaN", "-9999", "99.9"};
+  rules.asked_for_missing = true;
+  auto const record = open_record(file.path, rules);
+  Numbers const y = record->numbers("y"), a = record->numbers("a");
+  CHECK((y[0] == 1 && std::isnan(y[1]) && y[2] == 3));
+  CHECK((std::isnan(a[0]) && a[1] == 2 && std::isnan(a[2])));
+  CHECK(open_record(file.path, {})->numbers("y")[1] == -9999);
+  rules.decimal = ',';
+  CHECK_THROWS_AS(open_record(file.path, rules), UserError);
+}
+
+TEST_CASE("an array of structs is named with what to do, also by a field of it, and so is what else is no column") {
+  for (mat_ft const version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    CAPTURE(static_cast<int>(version));
+    Scratch const file("structs.mat");
+    mat_t* const mat = Mat_CreateVer(file.path.c_str(), nullptr, version);
+    double const values[] = {1, 2, 3};
+    char const* fields[] = {"values", "name"};
+    matvar_t* const all = Mat_VarCreateStruct("Signal", 2, std::vector<std::size_t>{1, 3}.data(), fields, 2);
+    for (std::size_t i = 0; i < 3; ++i) {
+      Mat_VarSetStructFieldByName(all, "values", i, doubles("values", 3, 1, values));
+      Mat_VarSetStructFieldByName(all, "name", i, doubles("name", 1, 1, values));
+    }
+    put(mat, all);
+    put(mat, doubles("t", 3, 1, values));
+    Mat_Close(mat);
+    auto const record = open_record(file.path, {});
+    CHECK(record->columns() == std::vector<std::string>{"t"});
+    for (char const* const asked : {"Signal", "Signal(1).values", "Signal.values"}) {
+      CAPTURE(asked);
+      Diagnostic const found = refusal(*record, asked);
+      CHECK(found.code == "E4027");
+      CHECK(contains(found.message, "`Signal` of"));
+      CHECK(contains(found.message, "is a 1 x 3 array of structs"));
+      CHECK(contains(found.message, "`values_1 = Signal(1).values`"));
+    }
+    CHECK(refusal(*record, "Signals.values").code == "E4008");
+    REQUIRE(record->left_out().size() == 1);
+    CHECK(record->left_out()[0].first == "Signal");
+  }
+}
+
 TEST_CASE("variables of NetCDF files of every kind are read by their paths, scaled, with fill values as missing samples") {
   for (int const mode : {NC_CLOBBER, NC_CLOBBER | NC_64BIT_OFFSET, NC_CLOBBER | NC_NETCDF4}) {
     CAPTURE(mode);

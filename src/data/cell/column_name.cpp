@@ -1,0 +1,68 @@
+// By lists of names and of units; a name that is on none says nothing.
+#include "data/cell/column_name.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace sysid {
+namespace {
+
+struct NamedUnit {
+  std::string_view written, meant;
+};
+constexpr NamedUnit units_of_times[] = {{"ns", "ns"}, {"us", "us"}, {"usec", "us"}, {"ms", "ms"}, {"msec", "ms"},
+                                        {"s", "s"},   {"sec", "s"}, {"min", "min"}, {"h", "h"}};
+constexpr NamedUnit units[] = {{"mm", "mm"},     {"um", "um"},   {"km", "km"},    {"kN", "kN"},   {"mN", "mN"},     {"MN", "MN"},
+                               {"lbf", "lbf"},   {"Nm", "N m"},  {"kNm", "kN m"}, {"kPa", "kPa"}, {"MPa", "MPa"},   {"hPa", "hPa"},
+                               {"mbar", "mbar"}, {"psi", "psi"}, {"Hz", "Hz"},    {"kHz", "kHz"}, {"mV", "mV"},     {"kV", "kV"},
+                               {"uV", "uV"},     {"mA", "mA"},   {"uA", "uA"},    {"kW", "kW"},   {"degC", "degC"}, {"rpm", "rpm"},
+                               {"mrad", "mrad"}, {"kg", "kg"},   {"kmh", "km/h"}};
+
+std::string in_small_letters_only(std::string_view name) {
+  std::string small;
+  for (char const c : name)
+    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) small += static_cast<char>(c | 0x20);
+  return small;
+}
+
+bool is_word_of_time(std::string_view name) {
+  std::string const small = in_small_letters_only(name);
+  for (std::string_view const each :
+       {"t",     "time",        "zeit",    "timestamp", "datetime", "date",   "uhrzeit", "datum",       "xvalue",
+        "xaxis", "elapsedtime", "seconds", "sec",       "temps",    "tiempo", "tid",     "zeitstempel", "ts",
+        "epoch", "unixtime",    "utc",     "utctime",   "hhmm",     "hhmmss", "gpstime"})
+    if (small == each) return true;
+  return false;
+}
+
+/// Without the structs or groups that it is in.
+std::string_view last_part(std::string_view column) { return column.substr(column.find_last_of("./") + 1); }
+
+}  // namespace
+
+std::optional<NameWithUnit> unit_behind_underscore(std::string_view column) {
+  std::string_view name = last_part(column);
+  while (name.ends_with('_')) name.remove_suffix(1);
+  std::size_t const at = name.rfind('_');
+  if (at == std::string_view::npos) return std::nullopt;
+  std::string_view const end = name.substr(at + 1);
+  name = name.substr(0, at);
+  while (name.ends_with('_')) name.remove_suffix(1);
+  if (name.empty()) return std::nullopt;
+  if (is_word_of_time(name))
+    for (NamedUnit const& each : units_of_times)
+      if (end == each.written) return NameWithUnit{std::string(name), std::string(each.meant)};
+  for (NamedUnit const& each : units)
+    if (end == each.written) return NameWithUnit{std::string(name), std::string(each.meant)};
+  return std::nullopt;
+}
+
+bool is_time_name(std::string_view column) {
+  if (auto const split = split_name(column)) return is_word_of_time(split->name);
+  if (is_word_of_time(last_part(column))) return true;
+  auto const ended = unit_behind_underscore(column);
+  auto const of_times = [&](NamedUnit const& each) { return each.meant == ended->unit; };
+  return ended && is_word_of_time(ended->name) && std::any_of(std::begin(units_of_times), std::end(units_of_times), of_times);
+}
+
+}  // namespace sysid

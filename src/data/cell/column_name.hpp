@@ -1,0 +1,19 @@
+// What the name of a column says about its numbers: that they are times, and in which unit they are.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "data/cell/unit_text.hpp"
+
+namespace sysid {
+
+/// Whether people call the time so: `t`, `Zeit (ms)`, `run.time_ms`.
+bool is_time_name(std::string_view column);
+
+/// `Kraft_kN`, `run.t_ms`, `Weg_mm_`: the name and the unit behind its last underscore, as the language writes it. Only units that
+/// nothing else is called after: of several letters, no `cm`, `bar`, `rad`, `in`, `max` (a centre of mass, a mean, a radius, an
+/// input, an extreme), and of one letter, and minutes, only behind a name of the time.
+std::optional<NameWithUnit> unit_behind_underscore(std::string_view column);
+
+}  // namespace sysid

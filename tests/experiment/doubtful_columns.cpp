@@ -1,0 +1,82 @@
+// Names that end in another unit, and times that were rounded: `check` says so, with lines that work.
+#include "experiment/doubtful_columns.hpp"
+
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/checking.hpp"
+#include "app/running.hpp"
+
+using namespace sysid;
+
+namespace {
+
+using Messages = std::vector<std::string>;
+
+// A slow drive and a response at 256 Hz; times in whole milliseconds, or in full.
+CheckResult check_of(std::string const& names, std::string const& columns, bool rounded = false) {
+  TemporaryFolder folder;
+  std::string table = names + "\n";
+  for (int i = 0; i < 500; ++i) {
+    double const ms = i * 1000 / 256.0;
+    table += fmt::format("{},{:.6g},{:.6g}\n", rounded ? std::round(ms) : ms, 20 * std::sin(0.05 * i), 3 * std::cos(0.05 * i));
+  }
+  write_file(folder.path() / "record.csv", table);
+  return checked(folder.path() / "m.sysid",
+                 "model m {\n input u [N]\n state y [m]\n initial y = 0.003\n parameter c [1/s] ~ log_uniform(0.1, 10)\n"
+                 " parameter b [m/(N s)] ~ log_uniform(0.01, 10)\n y' = b*u - c*y\n observe z [m] ~ normal(y, sd = 0.001 [m])\n}\n"
+                 "data record { file \"record.csv\"; " +
+                     columns + " }\nposterior = fit m to record with map, seed = 1\n");
+}
+
+Severity severity_of(CheckResult const& result, FindingCode code) {
+  for (Finding const& each : task(result, "posterior").findings)
+    if (each.code == code) return each.severity;
+  return Severity::error;
+}
+std::string help_of(CheckResult const& result, FindingCode code) {
+  for (Finding const& each : task(result, "posterior").findings)
+    if (each.code == code) return each.help;
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a column that is read in another unit than its name ends in is named, as a note where the data block has it so") {
+  std::string const names = "t_ms,Kraft_kN,Weg_mm";
+  CheckResult const bare = check_of(names, "time t_ms; input u = Kraft_kN hold linear; measure z = Weg_mm [mm]");
+  CHECK(messages(bare, "unit_in_name") == Messages{"column `t_ms` of record is read in s, but its name ends in ms",
+                                                   "column `Kraft_kN` of record is read in N, but its name ends in kN"});
+  CHECK(severity_of(bare, FindingCode::unit_in_name) == Severity::warning);
+  CHECK(help_of(bare, FindingCode::unit_in_name) ==
+        "if the name is right, write `t_ms [ms]` in the data block; if not, `t_ms [s]`");
+  CheckResult const stated = check_of(names, "time t_ms [ms]; input u = Kraft_kN [N] hold linear; measure z = Weg_mm [mm]");
+  CHECK(messages(stated, "unit_in_name") == Messages{"column `Kraft_kN` of record is read in N, but its name ends in kN"});
+  CHECK(severity_of(stated, FindingCode::unit_in_name) == Severity::note);
+  CHECK(messages(check_of(names, "time t_ms [ms]; input u = Kraft_kN [kN] hold linear; measure z = Weg_mm [mm]"), "unit_in_name")
+            .empty());
+}
+
+TEST_CASE("names that end like another unit, and in the right one, are left alone") {
+  CHECK(
+      messages(check_of("t_s,F_N,x_m", "time t_s; input u = F_N [kN] hold linear; measure z = x_m [mm]"), "unit_in_name").empty());
+  CHECK(messages(check_of("t,k_1,x_cm", "time t [ms]; input u = k_1 hold linear; measure z = x_cm"), "unit_in_name").empty());
+  CHECK(messages(check_of("t,y_kN,x_degC", "time t [ms]; input u = y_kN [kN] hold linear; measure z = x_degC [mm]"), "unit_in_name")
+            .empty());
+}
+
+TEST_CASE("rounded times are named with the rate that reads them, which is then no finding") {
+  std::string const rest = "; input u = force hold linear; measure z = level [mm]";
+  CheckResult const rounded = check_of("t,force,level", "time t [ms]" + rest, true);
+  CHECK(messages(rounded, "times_rounded") ==
+        Messages{"the steps of the time of record are 3 or 4 ms, as equal steps at 256 Hz are when they are rounded"});
+  std::string const help = help_of(rounded, FindingCode::times_rounded);
+  std::size_t const from = help.find('`') + 1;
+  std::string const cure = help.substr(from, help.find('`', from) - from);
+  CHECK(cure == "rate 256 [Hz]");
+  CHECK(messages(check_of("t,force,level", cure + rest, true), "times_rounded").empty());
+  CHECK(messages(check_of("t,force,level", "time t [ms]" + rest), "times_rounded").empty());
+}
