@@ -106,9 +106,8 @@ std::string cure(Model const& model, Channel const& channel, bool several, doubl
                                               unit_of_offset(channel), fmt::format("{:g}", round_number_above(3 * kelvin * size)));
   std::optional<std::string> const written = statement ? statement(channel, name) : std::nullopt;
   return fmt::format(
-      "if the sensor has an offset, estimate it: add `{}` to the model and {}; otherwise look for an input with an offset, or for "
-      "a "
-      "constant force that the model lacks",
+      "if the sensor has an offset, estimate it: add `{}` to the model and {}; otherwise look for an input with an offset, or "
+      "for a constant force that the model lacks",
       declaration,
       written ? fmt::format("write `{}`", *written)
               : fmt::format("add `{}` to the first argument of the noise of {}", name, channel.name));
