@@ -33,8 +33,8 @@ Findings find_rounded_times(CheckedFile const& file, ExperimentData const& data,
            Severity::warning,
            {data.use.name},
            fmt::format("the steps of the time of {} are {} or {} {}, as equal steps at {} Hz are when they are rounded",
-                       data.use.name, significant(rounded->lower / scale, 6),
-                       significant((rounded->lower + rounded->unit) / scale, 6), unit, shortest(rounded->rate)),
+                       data.use.name, fmt::format("{:.6g}", rounded->lower / scale),
+                       fmt::format("{:.6g}", (rounded->lower + rounded->unit) / scale), unit, shortest(rounded->rate)),
            fmt::format("if the samples were taken at equal steps, write `rate {} [Hz]` in place of `time` in `{}`: times that are "
                        "off by a part of a step act like noise, and bias the estimates",
                        shortest(rounded->rate), block.name)}};

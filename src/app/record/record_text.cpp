@@ -27,7 +27,7 @@ std::string time_line(RecordLook const& look) {
                   six_digits(time.first), six_digits(time.last));
   if (time.step > 0) out += fmt::format("{} Hz ({} s), ", six_digits(1 / time.step), six_digits(time.step));
   if (time.rounded)
-    out += fmt::format("equal steps, rounded to {} s", significant(time.rounded->unit, 4));
+    out += fmt::format("equal steps, rounded to {:.4g} s", time.rounded->unit);
   else if (time.unequal == 0)
     out += "equal steps";
   else

@@ -10,9 +10,9 @@
 
 #include "app/selection/likelihood_check.hpp"
 #include "app/session/fit_target.hpp"
-#include "app/session/noise_statement.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "experiment/noise_statement.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {

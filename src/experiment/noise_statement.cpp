@@ -1,5 +1,5 @@
 // By the tree of the user's text, which is parsed once more: the checked model has no words.
-#include "app/session/noise_statement.hpp"
+#include "experiment/noise_statement.hpp"
 
 #include <algorithm>
 #include <utility>
