@@ -27,7 +27,7 @@ class CellError(Error):
     """An error of a cell; what is shown of it is the message, whose lines are those of the cell."""
 
     def _render_traceback_(self) -> list[str]:
-        return str(self).splitlines()
+        return in_cell(str(self)).splitlines()
 
 
 class CellInterrupt(KeyboardInterrupt):
@@ -87,7 +87,7 @@ class SysidMagics(Magics):
         try:
             self._run(asked, cell)
         except Error as error:
-            raise CellError(in_cell(str(error)), error._details) from None
+            raise CellError(str(error), error._details) from None
         except _Mistake as error:
             raise CellError(f"sysid: error: {error}") from None
         except KeyboardInterrupt:
