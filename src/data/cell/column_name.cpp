@@ -65,4 +65,9 @@ bool is_time_name(std::string_view column) {
   return ended && is_word_of_time(ended->name) && std::any_of(std::begin(units_of_times), std::end(units_of_times), of_times);
 }
 
+bool is_acceleration_name(std::string_view column) {
+  std::string const small = in_small_letters_only(column);
+  return small.starts_with("acc") || small.find("accel") != std::string::npos || small.find("beschl") != std::string::npos;
+}
+
 }  // namespace sysid

@@ -1,4 +1,4 @@
-// What the name of a column says about its numbers: that they are times, and in which unit they are.
+// What the name of a column says about its numbers: that they are times or accelerations, and in which unit they are.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,6 +10,9 @@ namespace sysid {
 
 /// Whether people call the time so: `t`, `Zeit (ms)`, `run.time_ms`.
 bool is_time_name(std::string_view column);
+
+/// Whether people call an acceleration so, by which `g` behind it is no gram.
+bool is_acceleration_name(std::string_view column);
 
 /// `Kraft_kN`, `run.t_ms`, `Weg_mm_`: the name and the unit behind its last underscore, as the language writes it. Only units that
 /// nothing else is called after: of several letters, no `cm`, `bar`, `rad`, `in`, `max` (a centre of mass, a mean, a radius, an

@@ -34,19 +34,6 @@ struct Chosen {
   std::map<std::string, std::string> units;  // of a line of units, by column
 };
 
-std::string in_small_letters_only(std::string const& name) {
-  std::string small;
-  for (char const c : name)
-    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) small += static_cast<char>(c | 0x20);
-  return small;
-}
-
-/// So `g` behind it is no gram.
-bool is_acceleration_name(std::string const& name) {
-  std::string const small = in_small_letters_only(name);
-  return small.starts_with("acc") || small.find("accel") != std::string::npos || small.find("beschl") != std::string::npos;
-}
-
 bool keeps_increasing(std::vector<double> const& values) {
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isnan(values[i]) || (i > 0 && !(values[i] > values[i - 1]))) return false;
