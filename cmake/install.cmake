@@ -3,19 +3,20 @@
 include(GNUInstallDirs)
 set(SYSID_PRIVATE_FOLDER ${CMAKE_INSTALL_LIBDIR}/sysid)  # what nobody else links or loads
 
-# sysid_finds_native(TARGET FOLDER): the target, installed in FOLDER, finds the compiler of machine code; as built, beside the program.
-function(sysid_finds_native target folder)
+# sysid_finds_modules(TARGET FOLDER WAY...): the target, installed in FOLDER, finds the program's modules; and along the other ways, as
+# built. One run path for both: CMake ends one that it will replace with a colon, and behind it the dynamic linker reads the folder in
+# which the user happens to be.
+function(sysid_finds_modules target folder)
   file(RELATIVE_PATH way /prefix/${folder} /prefix/${SYSID_PRIVATE_FOLDER})
-  set_target_properties(${target} PROPERTIES INSTALL_RPATH $ORIGIN/${way})
+  set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/${way};${ARGN}" BUILD_WITH_INSTALL_RPATH ON)
 endfunction()
-sysid_finds_native(sysid ${CMAKE_INSTALL_BINDIR})
-set_target_properties(sysid PROPERTIES BUILD_RPATH $ORIGIN)
+sysid_finds_modules(sysid ${CMAKE_INSTALL_BINDIR} $ORIGIN)
 
 install(TARGETS sysid RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+install(TARGETS sysid_records_module LIBRARY DESTINATION ${SYSID_PRIVATE_FOLDER} COMPONENT program)
 if(TARGET sysid_native_module)
   install(TARGETS sysid_native_module LIBRARY DESTINATION ${SYSID_PRIVATE_FOLDER} COMPONENT program)
 endif()
-
 if(TARGET sysid_mpi_module)
   install(TARGETS sysid_mpi_module LIBRARY DESTINATION ${SYSID_PRIVATE_FOLDER} COMPONENT mpi)
 endif()

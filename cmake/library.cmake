@@ -6,7 +6,7 @@ add_library(sysid_shared SHARED ${fast_objects} src/library/library.cpp)
 add_library(sysid::sysid ALIAS sysid_shared)
 set_target_properties(sysid_shared PROPERTIES OUTPUT_NAME sysid EXPORT_NAME sysid VERSION ${PROJECT_VERSION} SOVERSION ${SYSID_ABI}
                                               CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF
-                                              LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR} BUILD_RPATH $ORIGIN
+                                              LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
                                               LINK_DEPENDS ${CMAKE_SOURCE_DIR}/src/library/exports.map)
 target_link_libraries(sysid_shared PRIVATE sysid_embed)
 target_link_options(sysid_shared PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections -Wl,-Bsymbolic
@@ -14,7 +14,7 @@ target_link_options(sysid_shared PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-section
 target_include_directories(sysid_shared INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src/library>
                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 sysid_compile_lightly(sysid_shared)
-sysid_finds_native(sysid_shared ${CMAKE_INSTALL_LIBDIR})
+sysid_finds_modules(sysid_shared ${CMAKE_INSTALL_LIBDIR} $ORIGIN)
 
 # For `find_package(sysid)` and for pkg-config. Neither names the prefix.
 include(CMakePackageConfigHelpers)

@@ -1,6 +1,6 @@
-"""wheel.py INSTALLED NATIVE VERSION LICENSE OUT: a wheel of the installed Python module, with nothing but Python's own library.
+"""wheel.py INSTALLED VERSION LICENSE OUT MODULE...: a wheel of the installed Python module, with nothing but Python's own library.
 
-INSTALLED: a folder that holds the package `sysid`. NATIVE: the compiler of machine code, or "". The wheel is written into OUT.
+INSTALLED: a folder that holds the package `sysid`. MODULE: a library that the engine opens. The wheel is written into OUT.
 """
 
 import base64
@@ -16,14 +16,13 @@ def record_line(name: str, content: bytes) -> str:
     return f"{name},sha256={digest},{len(content)}\n"
 
 
-def main(installed: str, native: str, version: str, license: str, out: str) -> None:
+def main(installed: str, version: str, license: str, out: str, *modules: str) -> None:
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
     platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
     tag = f"{python}-{python}-{platform}"
     package = pathlib.Path(installed, "sysid")
     files = {f"sysid/{path.relative_to(package)}": path for path in sorted(package.rglob("*")) if path.is_file() and path.suffix != ".pyc"}
-    if native:
-        files["sysid/sysid_native.so"] = pathlib.Path(native)
+    files |= {f"sysid/{pathlib.Path(module).name}": pathlib.Path(module) for module in modules}
     info = f"sysid-{version}.dist-info"
     made = {
         f"{info}/METADATA": (

@@ -2,13 +2,12 @@
 #include "exchange/netcdf.hpp"
 
 #include <fmt/format.h>
-#include <netcdf.h>
-#include <netcdf_mem.h>
 
 #include <algorithm>
 #include <cstdlib>
 
 #include "core/text/diagnostic.hpp"
+#include "data/format/record_libraries.hpp"
 #include "exchange/refused.hpp"
 
 namespace sysid {
@@ -21,9 +20,9 @@ void require(int status, std::string_view doing) {
   // Names are the user's, or those of a folder that somebody has changed.
   if (status == NC_EBADNAME || status == NC_EMAXNAME || status == NC_ENAMEINUSE)
     throw refused(
-        fmt::format("NetCDF does not allow a variable named `{}`: {}", doing.substr(0, longest_shown), nc_strerror(status)),
+        fmt::format("NetCDF does not allow a variable named `{}`: {}", doing.substr(0, longest_shown), netcdf().strerror(status)),
         "rename it in the model and run the task again");
-  if (status != NC_NOERR) throw InternalError(fmt::format("NetCDF, {}: {}", doing, nc_strerror(status)));
+  if (status != NC_NOERR) throw InternalError(fmt::format("NetCDF, {}: {}", doing, netcdf().strerror(status)));
 }
 
 std::size_t size_of(NetcdfVariable const& variable) {
@@ -38,20 +37,20 @@ std::string netcdf_name(std::string name) {
 
 void put_attributes(int group, int variable, Attributes const& attributes) {
   for (auto const& [name, value] : attributes)
-    require(nc_put_att_text(group, variable, netcdf_name(name).c_str(), value.size(), value.c_str()), name);
+    require(netcdf().put_att_text(group, variable, netcdf_name(name).c_str(), value.size(), value.c_str()), name);
 }
 
 void put_values(int group, int id, NetcdfVariable const& variable) {
   if (size_of(variable) == 0) return;
   if (auto const* reals = std::get_if<std::vector<double>>(&variable.values)) {
-    require(nc_put_var_double(group, id, reals->data()), variable.name);
+    require(netcdf().put_var_double(group, id, reals->data()), variable.name);
   } else if (auto const* integers = std::get_if<std::vector<std::int64_t>>(&variable.values)) {
     std::vector<long long> const wide(integers->begin(), integers->end());
-    require(nc_put_var_longlong(group, id, wide.data()), variable.name);
+    require(netcdf().put_var_longlong(group, id, wide.data()), variable.name);
   } else {
     std::vector<char const*> texts;
     for (std::string const& text : std::get<std::vector<std::string>>(variable.values)) texts.push_back(text.c_str());
-    require(nc_put_var_string(group, id, texts.data()), variable.name);
+    require(netcdf().put_var_string(group, id, texts.data()), variable.name);
   }
 }
 
@@ -63,22 +62,23 @@ int define(int group, NetcdfVariable const& variable, std::vector<std::pair<std:
                    : std::holds_alternative<std::vector<std::int64_t>>(variable.values) ? NC_INT64
                                                                                         : NC_STRING;
   int id = 0;
-  require(nc_def_var(group, netcdf_name(variable.name).c_str(), type, static_cast<int>(dimensions.size()), dimensions.data(), &id),
+  require(netcdf().def_var(group, netcdf_name(variable.name).c_str(), type, static_cast<int>(dimensions.size()), dimensions.data(),
+                           &id),
           variable.name);
   // Chains that stay where they are repeat their numbers; fast, since the rest hardly gets smaller.
-  if (!dimensions.empty() && type != NC_STRING) require(nc_def_var_deflate(group, id, 1, 1, 1), variable.name);
+  if (!dimensions.empty() && type != NC_STRING) require(netcdf().def_var_deflate(group, id, 1, 1, 1), variable.name);
   put_attributes(group, id, variable.attributes);
   return id;
 }
 
 void put_group(int file, NetcdfGroup const& group) {
   int id = 0;
-  require(nc_def_grp(file, group.name().c_str(), &id), group.name());
+  require(netcdf().def_grp(file, group.name().c_str(), &id), group.name());
   put_attributes(id, NC_GLOBAL, group.attributes());
   std::vector<std::pair<std::string, int>> dimensions;
   for (auto const& [name, size] : group.dimensions()) {
     dimensions.emplace_back(name, 0);
-    require(nc_def_dim(id, netcdf_name(name).c_str(), size, &dimensions.back().second), name);
+    require(netcdf().def_dim(id, netcdf_name(name).c_str(), size, &dimensions.back().second), name);
   }
   for (NetcdfVariable const& variable : group.variables()) put_values(id, define(id, variable, dimensions), variable);
 }
@@ -118,16 +118,16 @@ std::string NetcdfGroup::add(NetcdfVariable variable) {
 
 std::string netcdf_bytes(Attributes const& attributes, std::vector<NetcdfGroup> const& groups) {
   int file = 0;
-  require(nc_create_mem("sysid", NC_NETCDF4, 1 << 20, &file), "creating");
+  require(netcdf().create_mem("sysid", NC_NETCDF4, 1 << 20, &file), "creating");
   NC_memio memory{};
   try {
     put_attributes(file, NC_GLOBAL, attributes);
     for (NetcdfGroup const& group : groups) put_group(file, group);
   } catch (...) {
-    nc_abort(file);
+    netcdf().abort(file);
     throw;
   }
-  require(nc_close_memio(file, &memory), "closing");
+  require(netcdf().close_memio(file, &memory), "closing");
   std::string bytes(static_cast<char const*>(memory.memory), memory.size);
   std::free(memory.memory);
   return bytes;

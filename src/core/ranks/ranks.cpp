@@ -2,7 +2,6 @@
 // to say. So ranks that have come apart, or have ended, are noticed before anything is waited for.
 #include "core/ranks/ranks.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <sched.h>
 #include <unistd.h>
@@ -21,6 +20,7 @@
 #include "core/ranks/worth.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
+#include "core/system/module.hpp"
 
 namespace sysid::ranks {
 namespace {
@@ -195,27 +195,9 @@ std::vector<std::string> collect(std::uint64_t same, std::string_view mine) {
   return result;
 }
 
-struct Loaded {
-  Module const* module = nullptr;
-  std::string why;
-};
-
-Loaded load() {
-  // Never closed: MPI registers what runs at exit. Its plug-ins look for the library among what is open to all.
-  void* const library = dlopen("sysid_mpi.so", RTLD_NOW | RTLD_GLOBAL);
-  if (library == nullptr) {
-    char const* const reason = dlerror();
-    return {nullptr, reason != nullptr ? reason : "sysid_mpi.so cannot be loaded"};
-  }
-  auto const entry = reinterpret_cast<ModuleEntry>(dlsym(library, module_entry));
-  Module const* const module = entry != nullptr ? entry() : nullptr;
-  if (module == nullptr || std::string_view(module->version) != SYSID_VERSION)
-    return {nullptr, "sysid_mpi.so belongs to another version of the program"};
-  return {module, ""};
-}
-
-Loaded const& loaded() {
-  static Loaded const once = load();
+/// Plug-ins of MPI look for its library among what is open to all.
+OpenedModule<Module> const& opened() {
+  static auto const once = open_module<Module>("sysid_mpi.so", module_entry, ModuleNames::open_to_all);
   return once;
 }
 
@@ -248,15 +230,15 @@ Worth measure(bool crowded) {
 void join() {
   Launched const launcher = launched();
   if (launcher.size < 2) return;
-  if (loaded().module == nullptr)
-    throw Unjoined{loaded().why, "install Open MPI (Debian: sysid-mpi, openmpi-bin) on each node, or run without mpirun"};
+  if (opened().table == nullptr)
+    throw Unjoined{opened().why, "install Open MPI (Debian: sysid-mpi, openmpi-bin) on each node, or run without mpirun"};
   int rank = 0, size = 1;
   char why[512] = {};
-  if (!loaded().module->start(&rank, &size, why, sizeof why)) throw Unjoined{why, "check that `mpirun -n 2 hostname` works there"};
+  if (!opened().table->start(&rank, &size, why, sizeof why)) throw Unjoined{why, "check that `mpirun -n 2 hostname` works there"};
   if (size != launcher.size)
     throw Unjoined{fmt::format("the launcher has started {} processes, of which MPI sees {}", launcher.size, size),
                    "start it with the mpirun of Open MPI, or with `srun --mpi=pmix`"};
-  all.module = loaded().module;
+  all.module = opened().table;
   all.rank = rank;
   all.size = size;
   all.thread = std::this_thread::get_id();
@@ -270,13 +252,13 @@ void join() {
 }
 
 std::string mpi_library() {
-  if (loaded().module == nullptr) return {};
+  if (opened().table == nullptr) return {};
   char text[128] = {};
-  loaded().module->library(text, sizeof text);
+  opened().table->library(text, sizeof text);
   return text;
 }
 
-std::string why_no_mpi() { return loaded().why; }
+std::string why_no_mpi() { return opened().why; }
 
 int rank() { return all.rank; }
 int size() { return all.size; }

@@ -2,7 +2,6 @@
 #include "data/format/matlab.hpp"
 
 #include <fmt/format.h>
-#include <matio.h>
 
 #include <memory>
 #include <stdexcept>
@@ -10,14 +9,15 @@
 #include "data/format/hdf5_links.hpp"
 #include "data/format/matlab4.hpp"
 #include "data/format/matlab_elements.hpp"
+#include "data/format/record_libraries.hpp"
 #include "data/table/record_bytes.hpp"
 
 namespace sysid {
 namespace {
 
 struct Closes {
-  void operator()(mat_t* file) const { Mat_Close(file); }
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+  void operator()(mat_t* file) const { matio().close(file); }
+  void operator()(matvar_t* variable) const { matio().var_free(variable); }
 };
 using MatFile = std::unique_ptr<mat_t, Closes>;
 using Read = std::unique_ptr<matvar_t, Closes>;
@@ -25,22 +25,23 @@ using Read = std::unique_ptr<matvar_t, Closes>;
 constexpr int deepest = 16;  // structs in structs
 
 MatFile opened(std::string const& path) {
-  MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  MatFile file(matio().open(path.c_str(), MAT_ACC_RDONLY));
   if (!file) throw std::runtime_error("no MATLAB file");
   return file;
 }
 
 /// With the names of what it holds, as they are written in MATLAB.
-std::string array_of_structs(matvar_t const& variable) {
+std::string array_of_structs(matvar_t const& variable, std::string const& path) {
   std::string size;
   for (int d = 0; d < variable.rank; ++d) size += (d == 0 ? "" : " x ") + std::to_string(variable.dims[d]);
-  std::string const name = variable.name == nullptr ? "s" : variable.name;
-  auto const* const names = Mat_VarGetStructFieldnames(&variable);
-  std::string const field = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&variable)) > 0 && names != nullptr ? names[0] : "field";
-  return fmt::format("is a {0} array of structs: save what is in it as vectors, such as `{1}_1 = {2}(1).{1}`", size, field, name);
+  auto const* const names = matio().var_get_struct_fieldnames(&variable);
+  bool const has_fields = matio().var_get_number_of_fields(const_cast<matvar_t*>(&variable)) > 0 && names != nullptr;
+  if (size.starts_with("0") || size.ends_with(" 0") || !has_fields) return fmt::format("is an empty {} array of structs", size);
+  return fmt::format("is a {0} array of structs: save what is in it as vectors, such as `{1}_1 = {2}(1).{1}`", size, names[0],
+                     path);
 }
 
-std::string matlab_refusal(matvar_t const& variable) {
+std::string matlab_refusal(matvar_t const& variable, std::string const& path) {
   switch (variable.class_type) {
     case MAT_C_DOUBLE:
     case MAT_C_SINGLE:
@@ -60,7 +61,7 @@ std::string matlab_refusal(matvar_t const& variable) {
     case MAT_C_CELL:
       return "is a cell array: save it with `cell2mat`";
     case MAT_C_STRUCT:
-      return array_of_structs(variable);
+      return array_of_structs(variable, path);
     default:
       return "is an object, such as a table or a time series: save its columns as vectors";
   }
@@ -68,17 +69,17 @@ std::string matlab_refusal(matvar_t const& variable) {
 
 void describe(matvar_t* variable, std::string const& path, int depth, std::vector<Variable>& all) {
   if (variable == nullptr) return;
-  Variable made{path, {}, matlab_refusal(*variable), {}};
+  Variable made{path, {}, matlab_refusal(*variable, path), {}};
   for (int d = 0; d < variable->rank; ++d) made.size.push_back(variable->dims[d]);
   bool const single = variable->rank == 2 && variable->dims[0] == 1 && variable->dims[1] == 1;
   if (variable->class_type != MAT_C_STRUCT || !single || depth > deepest) {
     all.push_back(std::move(made));
     return;
   }
-  unsigned const fields = Mat_VarGetNumberOfFields(variable);
-  char* const* const names = Mat_VarGetStructFieldnames(variable);
+  unsigned const fields = matio().var_get_number_of_fields(variable);
+  char* const* const names = matio().var_get_struct_fieldnames(variable);
   for (unsigned f = 0; f < fields && names != nullptr; ++f)
-    describe(Mat_VarGetStructFieldByIndex(variable, f, 0), fmt::format("{}.{}", path, names[f]), depth + 1, all);
+    describe(matio().var_get_struct_field_by_index(variable, f, 0), fmt::format("{}.{}", path, names[f]), depth + 1, all);
 }
 
 /// Of versions 4 to 7; the library of version 7.3, HDF5, looks itself.
@@ -96,7 +97,7 @@ std::vector<Variable> list_matlab(std::string const& path) {
   check_elements(path);
   MatFile const file = opened(path);
   std::vector<Variable> all;
-  while (Read const variable{Mat_VarReadNextInfo(file.get())})
+  while (Read const variable{matio().var_read_next_info(file.get())})
     if (variable->name != nullptr) describe(variable.get(), variable->name, 0, all);
   return all;
 }
@@ -142,11 +143,11 @@ std::vector<double> numbers_of(matvar_t const& variable) {
 std::vector<double> read_matlab(std::string const& path, std::string const& name) {
   MatFile const file = opened(path);
   std::size_t dot = name.find('.');
-  Read const top{Mat_VarRead(file.get(), name.substr(0, dot).c_str())};
+  Read const top{matio().var_read(file.get(), name.substr(0, dot).c_str())};
   matvar_t* variable = top.get();
   while (variable != nullptr && dot != std::string::npos) {
     std::size_t const next = name.find('.', dot + 1);
-    variable = Mat_VarGetStructFieldByName(variable, name.substr(dot + 1, next - dot - 1).c_str(), 0);
+    variable = matio().var_get_struct_field_by_name(variable, name.substr(dot + 1, next - dot - 1).c_str(), 0);
     dot = next;
   }
   if (variable == nullptr) throw std::runtime_error("no such variable");

@@ -1,8 +1,6 @@
 // By the netCDF library, in a process of its own.
 #include "data/format/netcdf_record.hpp"
 
-#include <netcdf.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +10,7 @@
 #include <string_view>
 
 #include "data/format/hdf5_links.hpp"
+#include "data/format/record_libraries.hpp"
 
 namespace sysid {
 namespace {
@@ -19,31 +18,31 @@ namespace {
 struct NetcdfFile {
   int id = -1;
   explicit NetcdfFile(std::string const& path) {
-    if (nc_open(path.c_str(), NC_NOWRITE, &id) != NC_NOERR) throw std::runtime_error("no NetCDF file");
+    if (netcdf().open(path.c_str(), NC_NOWRITE, &id) != NC_NOERR) throw std::runtime_error("no NetCDF file");
   }
-  ~NetcdfFile() { nc_close(id); }
+  ~NetcdfFile() { netcdf().close(id); }
   NetcdfFile(NetcdfFile const&) = delete;
 };
 
 std::string name_of_group(int group) {
   char name[NC_MAX_NAME + 1] = "";
-  nc_inq_grpname(group, name);
+  netcdf().inq_grpname(group, name);
   return name;
 }
 
 std::string text_attribute(int group, int variable, char const* name) {
   nc_type type = 0;
   std::size_t length = 0;
-  if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR || length == 0 || length > 1000) return {};
+  if (netcdf().inq_att(group, variable, name, &type, &length) != NC_NOERR || length == 0 || length > 1000) return {};
   if (type == NC_CHAR) {
     std::string text(length, '\0');
-    return nc_get_att_text(group, variable, name, text.data()) == NC_NOERR ? text.substr(0, text.find('\0')) : std::string();
+    return netcdf().get_att_text(group, variable, name, text.data()) == NC_NOERR ? text.substr(0, text.find('\0')) : std::string();
   }
   if (type != NC_STRING || length != 1) return {};
   char* read = nullptr;
-  if (nc_get_att_string(group, variable, name, &read) != NC_NOERR || read == nullptr) return {};
+  if (netcdf().get_att_string(group, variable, name, &read) != NC_NOERR || read == nullptr) return {};
   std::string text(read);
-  nc_free_string(1, &read);
+  netcdf().free_string(1, &read);
   return text;
 }
 
@@ -51,19 +50,19 @@ std::optional<double> number_attribute(int group, int variable, char const* name
   nc_type type = 0;
   std::size_t length = 0;
   double value = 0;
-  if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR || length != 1 || type == NC_CHAR || type == NC_STRING)
+  if (netcdf().inq_att(group, variable, name, &type, &length) != NC_NOERR || length != 1 || type == NC_CHAR || type == NC_STRING)
     return std::nullopt;
-  return nc_get_att_double(group, variable, name, &value) == NC_NOERR ? std::optional(value) : std::nullopt;
+  return netcdf().get_att_double(group, variable, name, &value) == NC_NOERR ? std::optional(value) : std::nullopt;
 }
 
 /// Several numbers, as `valid_range` is; empty where there are none.
 std::vector<double> numbers_attribute(int group, int variable, char const* name) {
   nc_type type = 0;
   std::size_t length = 0;
-  if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR || length > 1000 || type == NC_CHAR || type == NC_STRING)
+  if (netcdf().inq_att(group, variable, name, &type, &length) != NC_NOERR || length > 1000 || type == NC_CHAR || type == NC_STRING)
     return {};
   std::vector<double> values(length);
-  if (length == 0 || nc_get_att_double(group, variable, name, values.data()) != NC_NOERR) return {};
+  if (length == 0 || netcdf().get_att_double(group, variable, name, values.data()) != NC_NOERR) return {};
   return values;
 }
 
@@ -73,7 +72,7 @@ std::string attribute_refusal(int group, int variable) {
     std::size_t const wanted = std::string_view(name) == "valid_range" ? 2 : 1;
     nc_type type = 0;
     std::size_t length = 0;
-    if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR) continue;
+    if (netcdf().inq_att(group, variable, name, &type, &length) != NC_NOERR) continue;
     if (numbers_attribute(group, variable, name).size() != wanted)
       return std::string("has a `") + name + "` that is " + (wanted == 1 ? "no number" : "no pair of numbers");
   }
@@ -91,17 +90,17 @@ double unsigned_wrap(int group, int variable, nc_type type) {
 template <class Visit>
 bool each_variable(int group, std::string const& prefix, int depth, Visit const& visit) {
   int count = 0;
-  nc_inq_varids(group, &count, nullptr);
+  netcdf().inq_varids(group, &count, nullptr);
   std::vector<int> ids(static_cast<std::size_t>(std::max(count, 0)));
-  if (!ids.empty()) nc_inq_varids(group, &count, ids.data());
+  if (!ids.empty()) netcdf().inq_varids(group, &count, ids.data());
   for (int const id : ids) {
     char name[NC_MAX_NAME + 1] = "";
-    if (nc_inq_varname(group, id, name) == NC_NOERR && !visit(prefix + name, group, id)) return false;
+    if (netcdf().inq_varname(group, id, name) == NC_NOERR && !visit(prefix + name, group, id)) return false;
   }
   int groups = 0;
-  if (depth > 16 || nc_inq_grps(group, &groups, nullptr) != NC_NOERR || groups <= 0) return true;
+  if (depth > 16 || netcdf().inq_grps(group, &groups, nullptr) != NC_NOERR || groups <= 0) return true;
   std::vector<int> inner(static_cast<std::size_t>(groups));
-  nc_inq_grps(group, &groups, inner.data());
+  netcdf().inq_grps(group, &groups, inner.data());
   for (int const each : inner)
     if (!each_variable(each, prefix + name_of_group(each) + "/", depth + 1, visit)) return false;
   return true;
@@ -109,13 +108,13 @@ bool each_variable(int group, std::string const& prefix, int depth, Visit const&
 
 std::vector<std::size_t> size_of(int group, int variable) {
   int dimensions = 0;
-  if (nc_inq_varndims(group, variable, &dimensions) != NC_NOERR || dimensions < 0 || dimensions > NC_MAX_VAR_DIMS)
+  if (netcdf().inq_varndims(group, variable, &dimensions) != NC_NOERR || dimensions < 0 || dimensions > NC_MAX_VAR_DIMS)
     throw std::runtime_error("no dimensions");
   std::vector<int> ids(static_cast<std::size_t>(dimensions));
-  if (!ids.empty() && nc_inq_vardimid(group, variable, ids.data()) != NC_NOERR) throw std::runtime_error("no dimensions");
+  if (!ids.empty() && netcdf().inq_vardimid(group, variable, ids.data()) != NC_NOERR) throw std::runtime_error("no dimensions");
   std::vector<std::size_t> size(ids.size());
   for (std::size_t i = 0; i < ids.size(); ++i)
-    if (nc_inq_dimlen(group, ids[i], &size[i]) != NC_NOERR) throw std::runtime_error("no length");
+    if (netcdf().inq_dimlen(group, ids[i], &size[i]) != NC_NOERR) throw std::runtime_error("no length");
   return size;
 }
 
@@ -130,7 +129,7 @@ std::vector<Variable> list_netcdf(std::string const& path) {
   std::vector<Variable> all;
   each_variable(file.id, "", 0, [&](std::string const& name, int group, int variable) {
     nc_type type = 0;
-    if (nc_inq_vartype(group, variable, &type) != NC_NOERR) throw std::runtime_error("no type");
+    if (netcdf().inq_vartype(group, variable, &type) != NC_NOERR) throw std::runtime_error("no type");
     std::string refused = netcdf_refusal(type);
     if (refused.empty()) refused = attribute_refusal(group, variable);
     all.push_back({name, size_of(group, variable), std::move(refused), text_attribute(group, variable, "units")});
@@ -143,8 +142,9 @@ std::vector<Variable> list_netcdf(std::string const& path) {
 bool by_netcdf(int file) {
   int format = 0;
   std::size_t length = 0;
-  return nc_inq_format(file, &format) == NC_NOERR && ((format != NC_FORMAT_NETCDF4 && format != NC_FORMAT_NETCDF4_CLASSIC) ||
-                                                      nc_inq_attlen(file, NC_GLOBAL, "_NCProperties", &length) == NC_NOERR);
+  return netcdf().inq_format(file, &format) == NC_NOERR &&
+         ((format != NC_FORMAT_NETCDF4 && format != NC_FORMAT_NETCDF4_CLASSIC) ||
+          netcdf().inq_attlen(file, NC_GLOBAL, "_NCProperties", &length) == NC_NOERR);
 }
 
 /// A number of an attribute as the variable's type holds it: 1e20 as a float is another double than 1e20.
@@ -190,7 +190,7 @@ struct ValidRange {
       std::vector<double> const values = numbers_attribute(group, variable, name);
       if (values.size() <= index) return;
       nc_type stored = 0;
-      nc_inq_atttype(group, variable, name, &stored);
+      netcdf().inq_atttype(group, variable, name, &stored);
       bool const real = stored == NC_FLOAT || stored == NC_DOUBLE;
       bool const scaled = real && type != NC_FLOAT && type != NC_DOUBLE;
       to = {values[index] < 0 && !scaled ? values[index] + wrap : as_stored(values[index], type), scaled};
@@ -207,11 +207,12 @@ struct ValidRange {
 
 std::vector<double> numbers_of(int file, int group, int variable) {
   nc_type type = 0;
-  if (nc_inq_vartype(group, variable, &type) != NC_NOERR || !netcdf_refusal(type).empty()) throw std::runtime_error("no numbers");
+  if (netcdf().inq_vartype(group, variable, &type) != NC_NOERR || !netcdf_refusal(type).empty())
+    throw std::runtime_error("no numbers");
   std::size_t count = 1;
   for (std::size_t const each : size_of(group, variable)) count *= each;
   std::vector<double> values(count);
-  if (count > 0 && nc_get_var_double(group, variable, values.data()) != NC_NOERR) throw std::runtime_error("no data");
+  if (count > 0 && netcdf().get_var_double(group, variable, values.data()) != NC_NOERR) throw std::runtime_error("no data");
   auto fill = number_attribute(group, variable, "_FillValue");
   if (!fill && by_netcdf(file)) fill = usual_fill(type);
   std::vector<double> missing = numbers_attribute(group, variable, "missing_value");

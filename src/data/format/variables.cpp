@@ -98,6 +98,7 @@ class VariableRecord final : public RecordFile {
         name_(std::move(name)),
         digest_(std::move(digest)),
         file_(std::make_unique<RecordCopy>(bytes)) {
+    open_record_libraries();  // a process of its own may open one file
     OwnWork const listed = in_own_process(overhead + 2 * file_->size(), [&] { return packed(format_.list(file_->path())); });
     if (listed.end == WorkEnd::failed && format_.refusal != nullptr)
       if (std::string const why = format_.refusal(bytes); !why.empty())
