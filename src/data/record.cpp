@@ -34,7 +34,7 @@ void to_si(std::vector<double>& values, ColumnRequest const& request) {
 
 bool same_unit(Unit const& a, Unit const& b) {
   auto const same = [](double x, double y) { return std::fabs(x - y) <= 1e-9 * std::max(std::fabs(x), std::fabs(y)); };
-  return a.dimension == b.dimension && same(a.scale, b.scale) && same(a.offset, b.offset);
+  return a.dimension == b.dimension && same(a.scale, b.scale) && same(a.offset, b.offset) && !cycles_against_radians(a, b);
 }
 
 /// `F [kN]` that the data block has in N. What is no unit of the kind that is wanted may be no unit at all, as in `sensor (A)` and
@@ -81,7 +81,7 @@ std::optional<UnitInName> other_unit_in_name(RecordFile const& file, ColumnReque
   std::optional<Unit> const& read_in = request.unit ? request.unit : request.declared ? request.declared : usual;
   if (!unit || !read_in || read_in->text == "-" || unit->dimension != read_in->dimension || same_unit(*unit, *read_in))
     return std::nullopt;
-  return UnitInName{request.column, unit->text, read_in->text, request.unit.has_value()};
+  return UnitInName{request.column, unit->text, read_in->text, request.unit.has_value(), cycles_against_radians(*unit, *read_in)};
 }
 
 /// The columns of a record as they are asked for, all of one length.

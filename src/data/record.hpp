@@ -44,6 +44,7 @@ struct UnitInName {
   std::string column;
   std::string in_name, read_in;
   bool stated = false;  // the data block has it so
+  bool cycles = false;  // one counts cycles and the other radians
 };
 
 struct Record {

@@ -171,6 +171,11 @@ TEST_CASE("a time is found by its name with a unit behind it, else by its equal 
   CHECK(record_text(by_steps).find("the only column of equal steps") != std::string::npos);
   CHECK(look_at_record(counted.path()).time.column.empty());
   CHECK(look_at_record(ramp.path()).time.column.empty());
+  for (char const* const temperature : {"T", "T (C)", "T_s", "T_min"}) {
+    std::string heated = std::string(temperature) + ",zeit\n";
+    for (int i = 0; i < 50; ++i) heated += fmt::format("{},{}\n", 20 + 0.1 * i * i, 2 * i);
+    CHECK(look_at_record(TemporaryFile(heated).path()).time.column == "zeit");
+  }
 }
 
 TEST_CASE("rounded times are shown and pasted as the rate that check names") {

@@ -38,6 +38,11 @@ bool is_word_of_time(std::string_view name) {
 /// Without the structs or groups that it is in.
 std::string_view last_part(std::string_view column) { return column.substr(column.find_last_of("./") + 1); }
 
+/// `T_s`, `T_h`, `T_min`, `TS_max`: of a surface, hot, the lowest; `t_s` is a time.
+bool is_kind_of_temperature(std::string_view column) {
+  return last_part(column).starts_with("T_") || last_part(column).starts_with("TS_");
+}
+
 }  // namespace
 
 std::optional<NameWithUnit> unit_behind_underscore(std::string_view column) {
@@ -49,7 +54,7 @@ std::optional<NameWithUnit> unit_behind_underscore(std::string_view column) {
   name = name.substr(0, at);
   while (name.ends_with('_')) name.remove_suffix(1);
   if (name.empty()) return std::nullopt;
-  if (is_word_of_time(name))
+  if (!is_kind_of_temperature(column) && is_word_of_time(name))
     for (NamedUnit const& each : units_of_times)
       if (end == each.written) return NameWithUnit{std::string(name), std::string(each.meant)};
   for (NamedUnit const& each : units)
@@ -58,11 +63,17 @@ std::optional<NameWithUnit> unit_behind_underscore(std::string_view column) {
 }
 
 bool is_time_name(std::string_view column) {
+  if (is_kind_of_temperature(column)) return false;
   if (auto const split = split_name(column)) return is_word_of_time(split->name);
   if (is_word_of_time(last_part(column))) return true;
   auto const ended = unit_behind_underscore(column);
   auto const of_times = [&](NamedUnit const& each) { return each.meant == ended->unit; };
   return ended && is_word_of_time(ended->name) && std::any_of(std::begin(units_of_times), std::end(units_of_times), of_times);
+}
+
+bool is_temperature_name(std::string_view column) {
+  auto const split = split_name(column);
+  return last_part(split ? std::string_view(split->name) : column) == "T";
 }
 
 bool is_acceleration_name(std::string_view column) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -35,10 +36,22 @@ bool only_nines(double size) {
   return digits.size() >= 3 && digits.find_first_not_of('9') == std::string::npos;
 }
 
+/// A number that is one of single precision, as it was meant: 99.9 for 99.90000152587890625.
+double as_written(double size) {
+  auto const single = static_cast<float>(size);
+  if (static_cast<double>(single) != size) return size;
+  std::string const digits = fmt::format("{}", single);
+  double written = size;
+  std::from_chars(digits.data(), digits.data() + digits.size(), written);
+  return written;
+}
+
 bool is_mark(double value) {
   if (!std::isfinite(value)) return false;
   double const size = std::fabs(value);
-  return size >= beyond_measure || is_known(size) || only_nines(size);
+  if (size >= beyond_measure) return true;
+  double const written = as_written(size);
+  return is_known(written) || only_nines(written);
 }
 
 struct Others {

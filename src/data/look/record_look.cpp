@@ -199,10 +199,13 @@ class Looking {
         return look_at_time(look_);
       }
     }
+    std::optional<std::size_t> named;
     for (std::size_t c = 0; c < look_.columns.size(); ++c) {
       ColumnLook const& column = look_.columns[c];
-      if (column.unread.empty() && is_time_name(column.name) && keeps_increasing(look_.values[c])) return take_time(c);
+      if (!column.unread.empty() || !is_time_name(column.name) || !keeps_increasing(look_.values[c])) continue;
+      if (!named || is_temperature_name(look_.columns[*named].name)) named = c;
     }
+    if (named) return take_time(*named);
     if (auto const column = only_column_of_equal_steps()) {
       time.by_steps = true;
       return take_time(*column);

@@ -21,9 +21,9 @@ TEST_CASE("a unit behind the last underscore is one, in a struct, and with the u
 }
 
 TEST_CASE("indices, kinds and letters behind an underscore are no units") {
-  for (char const* const column :
-       {"x_m", "a_g",   "k_1", "pos_x", "signal_h", "F_N",   "x_cm", "p_bar", "a_rad",   "F_in",    "y_min", "x_max",
-        "x_s", "u_ref", "mm",  "_mm",   "kN",       "Kraft", "x_ms", "acc_h", "phi_deg", "m_total", "x_mm2"}) {
+  for (char const* const column : {"x_m",  "a_g",   "k_1",   "pos_x", "signal_h", "F_N",   "x_cm",    "p_bar",   "a_rad",
+                                   "F_in", "y_min", "x_max", "x_s",   "u_ref",    "T_s",   "T_h",     "T_min",   "TS_min",
+                                   "mm",   "_mm",   "kN",    "Kraft", "x_ms",     "acc_h", "phi_deg", "m_total", "x_mm2"}) {
     CAPTURE(column);
     CHECK_FALSE(unit_behind_underscore(column));
   }
@@ -33,5 +33,6 @@ TEST_CASE("the time is called so with a unit as well") {
   for (char const* const column :
        {"t", "time", "Zeit (ms)", "Messung_03.t_ms", "time_ms", "Zeit_ms", "t_s", "run/time", "Time [min]"})
     CHECK_MESSAGE(is_time_name(column), column);
-  for (char const* const column : {"x_ms", "t_kN", "temp", "ramp_ms", "y"}) CHECK_MESSAGE(!is_time_name(column), column);
+  for (char const* const column : {"x_ms", "t_kN", "temp", "ramp_ms", "y", "T_s", "T_h", "run.T_min"})
+    CHECK_MESSAGE(!is_time_name(column), column);
 }

@@ -59,6 +59,18 @@ TEST_CASE("a large mark far above all samples is asked about, and a large sample
   CHECK(said_about("t,y\n0,1\n1,12\n2,170\n3,999\n", "y").code.empty());
 }
 
+TEST_CASE("a mark with a fraction is one in single precision, too") {
+  for (double const mark : {99.9, -999.9, 999.25}) {
+    std::vector<double> values(60, 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(0.3 * static_cast<double>(i));
+    values[7] = values[30] = static_cast<double>(static_cast<float>(mark));
+    auto const found = doubtful_numbers(values);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].places == std::vector<std::size_t>{7, 30});
+  }
+  CHECK(doubtful_numbers({0.1, 0.2, 0.3, 99.87654, 0.2}).empty());
+}
+
 TEST_CASE("marks are judged by the samples that are none: two do not hide each other, and nines within the range are samples") {
   auto const of = [](std::vector<double> const& values) {
     std::vector<double> marks;
