@@ -10,7 +10,9 @@
 namespace sysid {
 namespace {
 
-constexpr double of_prior = 1e-3;  // prior widths: differences of the prior, whose second ones are needed
+constexpr double of_prior = 1e-3;                          // prior widths: differences of the prior, whose second ones are needed
+constexpr double of_distance = 0.03;                       // of the way to an end
+constexpr double nearest_low = 1e-9, nearest_high = 1e-5;  // nearer ends are reached; below 1 there are fewer numbers than above 0
 
 /// Offsets of the two differences of one coordinate: on both sides, or twice inwards where an end is nearer than the width.
 struct Pair {
@@ -110,7 +112,12 @@ Quadratic of_residuals(ConstLanes residuals, int first, Differences const& diffe
 
 void add_prior_at(Objective const& objective, Box const& box, Eigen::VectorXd const& z, Quadratic& quadratic) {
   if (objective.objective_kind == ObjectiveKind::likelihood) return;
-  Differences const differences = along_parameters(box, z, of_prior);
+  // A density whose logarithm falls as that of the distance from a bound is no parabola over a step of that length.
+  Eigen::VectorXd widths = of_prior * box.width();
+  for (Eigen::Index p = 0; p < z.size(); ++p)
+    if (double const low = z(p) - box.low()(p), high = box.high()(p) - z(p); low > nearest_low && high > nearest_high)
+      widths(p) = std::min(widths(p), of_distance * std::min(low, high));
+  Differences const differences = with_room(box, z, Eigen::MatrixXd(widths.asDiagonal()));
   std::vector<Eigen::VectorXd> points;
   add_places(box, z, differences, points);
   std::vector<double> const f = objective.log_prior(to_lanes(points));

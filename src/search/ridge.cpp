@@ -57,27 +57,58 @@ std::optional<Eigen::VectorXd> top_beside(Objective const& likelihood, Eigen::Ve
   return from;
 }
 
-/// In so many stages, each from the top that the one before has found.
-bool follows(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, int stages, Ledger& ledger) {
-  Objective likelihood = objective;
-  likelihood.objective_kind = ObjectiveKind::likelihood;
-  double const top = likelihood.log_density(to_lanes({theta}), ledger).front();
-  Eigen::VectorXd const along = move.cwiseQuotient(objective.scale).normalized();
-  std::optional<Eigen::VectorXd> place = theta;
-  for (int stage = 0; place && stage < stages; ++stage)
-    place = top_beside(likelihood, objective.clamp(*place + move / stages, *place), along, top, ledger);
-  return place.has_value();
+/// The likelihood alone, with its height where the ridge begins.
+struct Ridge {
+  Objective likelihood;
+  Eigen::VectorXd const& theta;
+  double top;
+
+  Ridge(Objective const& objective, Eigen::VectorXd const& from, Ledger& ledger) : likelihood(objective), theta(from) {
+    likelihood.objective_kind = ObjectiveKind::likelihood;
+    top = likelihood.log_density(to_lanes({theta}), ledger).front();
+  }
+  Eigen::VectorXd direction(Eigen::VectorXd const& move) const { return move.cwiseQuotient(likelihood.scale).normalized(); }
+  std::optional<Eigen::VectorXd> beside(Eigen::VectorXd const& place, Eigen::VectorXd const& move, Ledger& ledger) const {
+    return top_beside(likelihood, likelihood.clamp(place + move, place), direction(move), top, ledger);
+  }
+};
+
+bool reaches(Ridge const& ridge, Eigen::VectorXd const& move, Ledger& ledger) {
+  return ridge.beside(ridge.theta, move, ledger).has_value();
+}
+
+/// Whether the ridge goes on to the end of the move, or bends away from it by more than priors are wide: a p q that is known ends,
+/// along p, where q does. In steps that get shorter where the ridge bends more.
+bool goes_on(Ridge const& ridge, Eigen::VectorXd const& move, Ledger& ledger) {
+  constexpr double longest = 1.0 / 8, shortest = longest / 16384, bent = 3;  // bent: widths of the prior
+  constexpr int most_tries = 60;
+  Eigen::VectorXd place = ridge.theta;
+  double at = 0, step = longest;
+  for (int tried = 0; tried < most_tries && at < 1; ++tried) {
+    auto const next = ridge.beside(place, step * move, ledger);
+    if (!next) {
+      step /= 2;
+      if (step < shortest) return false;
+      continue;
+    }
+    place = *next;
+    at += step;
+    Eigen::VectorXd const off = (place - ridge.theta - at * move).cwiseQuotient(ridge.likelihood.scale);
+    if (off.cwiseAbs().maxCoeff() > bent) return true;
+  }
+  return at >= 1;
 }
 
 }  // namespace
 
 bool is_ridge(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger) {
-  return follows(objective, theta, move, 1, ledger) || follows(objective, theta, -move, 1, ledger);
+  Ridge const ridge(objective, theta, ledger);
+  return reaches(ridge, move, ledger) || reaches(ridge, -move, ledger);
 }
 
 bool is_ridge_both_ways(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger) {
-  constexpr int stages = 8;
-  return follows(objective, theta, move, stages, ledger) && follows(objective, theta, -move, stages, ledger);
+  Ridge const ridge(objective, theta, ledger);
+  return goes_on(ridge, move, ledger) && goes_on(ridge, -move, ledger);
 }
 
 }  // namespace sysid

@@ -96,6 +96,14 @@ TEST_CASE("a ridge of a likelihood is flat in the coordinates of an interval, to
   Mode const ridge = search(product, ObjectiveKind::likelihood, bench.context).modes.front();
   REQUIRE(ridge.flat.size() == 2);
   CHECK(ridge.flat[0] * ridge.flat[1] < 0);
+  // Where the coordinates are those of the factors, the ridge ends at 0 and goes on in the other one.
+  for (auto const& priors : {std::vector<Prior>{{Prior::normal, 0, 100}, {Prior::normal, 0, 100}},
+                             std::vector<Prior>{{Prior::uniform, 0, 100}, {Prior::uniform, 0, 1e6}}}) {
+    TestTarget const factors({"p", "q"}, priors, 10, 0, [](std::vector<double> const& w, std::vector<double>& rows) {
+      for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = (w[0] * w[1] - 2) * static_cast<double>(i) / 0.3;
+    });
+    CHECK_FALSE(search(factors, ObjectiveKind::likelihood, bench.context).modes.front().flat.empty());
+  }
   // ln p is known to about as much as its prior knows it, ln q ten times better.
   TestTarget const wide({"p", "q"}, {{Prior::log_uniform, 0.01, 100}, {Prior::log_uniform, 0.01, 100}}, 2, 0,
                         [](std::vector<double> const& w, std::vector<double>& rows) {

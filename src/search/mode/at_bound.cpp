@@ -58,16 +58,20 @@ std::vector<ModeAtBound> modes_at_bounds(Objective const& objective, Mode const&
     bool const one = has_one_bound(info), two = std::isfinite(info.lower) && std::isfinite(info.upper);
     double const room = objective.centre(p) + 3 * objective.scale(p) - theta(p);  // to where the prior ends, of one bound
     if (!(one && room > 0) && !(two && near_a_bound(info, declared))) continue;
-    std::vector<double> moves{0, thousand * towards_bound(objective, theta, p)};
+    double const all_the_way = thousand * towards_bound(objective, theta, p);
+    std::vector<double> moves{0, all_the_way, all_the_way / 2};
     for (int k = 1; one && k <= further; ++k) moves.push_back(k * room / further);
     std::vector<Eigen::VectorXd> places(moves.size(), theta);
     for (std::size_t k = 0; k < moves.size(); ++k) places[k](p) += moves[k];
     Ledger untold;  // places that nobody asked for
     std::vector<double> const density = log_density_in_blocks(objective, to_lanes(places), untold);
     bool const resists =
-        two || std::any_of(density.begin() + 2, density.end(), [&](double each) { return each < density[0] - fallen; });
+        two || std::any_of(density.begin() + 3, density.end(), [&](double each) { return each < density[0] - fallen; });
     if (!resists || !(density[1] > density[0] - same)) continue;
-    found.push_back({p, info.upper - declared<declared - info.lower, density[1]> density[0] + rises});
+    // A power of the distance rises by as much in each half of the way; a density that ends at the bound hardly in the second.
+    bool const ends_nowhere = density[1] > density[0] + rises && density[1] - density[2] > (density[2] - density[0]) / 4;
+    bool const upper = info.upper - declared < declared - info.lower;
+    found.push_back({p, upper, ends_nowhere});
   }
   return found;
 }

@@ -135,3 +135,27 @@ TEST_CASE("a prior whose density is infinite at its bound has no optimum, and th
       CHECK(bound->at("message").get<std::string>().find("has no maximum") == std::string::npos);
   }
 }
+
+TEST_CASE("a log-normal prior whose maximum lies a thousandth of a thousandth of its median away from 0 is climbed to") {
+  // The record is straight, and the line too steep: c x^2 is held from above by the data and from below by its prior alone.
+  StraightLine const record;
+  for (double const sd : {2.5, 3.0, 3.5}) {
+    CAPTURE(sd);
+    json const summary = fit_of_line(fmt::format("  parameter a ~ flat()\n  parameter c ~ log_normal(0.01, sd = {})\n", sd),
+                                     "a + 2.2*x + c*x^2", "map");
+    CHECK(told_by(summary, "optimum_not_reached") == nullptr);
+    auto const density = [&](double c) {  // at the best a
+      double sum = 0, squares = 0;
+      for (int i = 0; i < StraightLine::rows; ++i) {
+        double const x = 0.1 * i, rest = 3 + 2 * x + 0.4 * std::sin(37.0 * i) - 2.2 * x - c * x * x;
+        sum += rest, squares += rest * rest;
+      }
+      double const far = std::log(c / 0.01) / sd;
+      return -(squares - sum * sum / StraightLine::rows) / (2 * 0.5 * 0.5) - far * far / 2 - std::log(c);
+    };
+    double best = 1e-9;
+    for (double c = 1e-9; c < 0.1; c *= 1.0001)
+      if (density(c) > density(best)) best = c;
+    CHECK(summary.at("parameters").at("c").at("mean").get<double>() == doctest::Approx(best).epsilon(0.01));
+  }
+}

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "core/numeric/not_finite.hpp"
 #include "inference/targets.hpp"
 #include "search/search.hpp"
@@ -46,4 +48,20 @@ TEST_CASE("a mode is at a bound if its density does not fall on the way there, h
       CHECK_FALSE(bounds[0].upper);
       CHECK_FALSE(bounds[0].unbounded);
     }
+}
+
+TEST_CASE("a density that ends at the bound has a maximum there, however steeply it rises") {
+  // Rows k*(x - 1000.5) under uniform(0, 1000): the density at the bound is finite, and rises there by k^2/2 per unit.
+  for (double const steepness : {1e3, 1e6, 1e9}) {
+    CAPTURE(steepness);
+    TestTarget const target({"x"}, {{Prior::uniform, 0, 1000}}, 1, 0, [=](std::vector<double> const& w, std::vector<double>& rows) {
+      rows[0] = std::sqrt(steepness) * (w[0] - 1000.5);
+    });
+    Bench bench;
+    Mode const mode = search(target, ObjectiveKind::declared_posterior, bench.context).modes.front();
+    std::vector<ModeAtBound> const bounds = modes_at_bounds(make_objective(target, ObjectiveKind::declared_posterior, 1, 1), mode);
+    REQUIRE(bounds.size() == 1);
+    CHECK(bounds[0].upper);
+    CHECK_FALSE(bounds[0].unbounded);
+  }
 }
