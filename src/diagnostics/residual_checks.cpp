@@ -112,15 +112,25 @@ double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& excl
 struct Tested {
   std::vector<std::size_t> far;  // samples far off, left out of the tests
   OffsetTest offset;
-  std::optional<CorrelationTest> white;     // rows of any order have no past
-  std::vector<CorrelationTest> with_input;  // of each input
+  double offset_size = 0, largest_offset = 0;  // of this channel, and of it on any experiment, in its declared unit
+  std::optional<CorrelationTest> white;        // rows of any order have no past
+  std::vector<CorrelationTest> with_input;     // of each input
 };
 
+double mean_error(ScoredChannel const& of, std::vector<std::size_t> const& far) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < of.places.size(); ++i)
+    if (!std::binary_search(far.begin(), far.end(), of.places[i])) errors.push_back(of.observed[i] - of.predicted[i]);
+  return mean(errors);
+}
+
 Tested test_channel(ScoredChannel const& of) {
-  Tested tested{far_off(of), {}, {}, {}};
+  Tested tested;
+  tested.far = far_off(of);
   std::vector<double> const residuals = without(of.residuals, tested.far);
   bool const ordered = of.model().dynamics != Dynamics::none;
   if (offset_can_be_added(of.model(), of.described())) tested.offset = offset_test(residuals, ordered);
+  if (tested.offset.fires) tested.offset_size = mean_error(of, tested.far);
   if (!ordered) return tested;
   tested.white = whiteness(residuals);
   for (std::size_t i = 0; i < of.model().inputs.size(); ++i) {
@@ -183,13 +193,10 @@ void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
                             "tails: `student_t(y, 4, scale = sigma)`"});
 }
 
-void check_offset(ScoredChannel const& of, Tested const& tested, NoiseStatementWith const& statement, Findings& findings) {
+void check_offset(ScoredChannel const& of, Tested const& tested, UserText const& text, Findings& findings) {
   if (!tested.offset.fires) return;
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < of.places.size(); ++i)
-    if (!std::binary_search(tested.far.begin(), tested.far.end(), of.places[i])) errors.push_back(of.observed[i] - of.predicted[i]);
-  findings.push_back(
-      residual_offset(of.model(), of.described(), of.data().name, of.experiments.size() > 1, tested.offset, errors, statement));
+  findings.push_back(residual_offset(of.model(), of.described(), of.data().name, of.experiments.size() > 1, tested.offset,
+                                     tested.offset_size, tested.largest_offset, text));
 }
 
 void check_size(ScoredChannel const& of, Tested const& tested, int together, FitLine& line, Findings& findings) {
@@ -249,12 +256,12 @@ void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& l
   }
 }
 
-FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits const& limits, NoiseStatementWith const& statement,
+FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits const& limits, UserText const& text,
                       Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
   line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
   Findings shape;
-  check_offset(of, tested, statement, shape);
+  check_offset(of, tested, text, shape);
   check_size(of, tested, limits.channels, line, shape);
   check_outliers(of, tested.far, shape);
   if (tested.white) check_memory(of, tested, limits, line, shape);
@@ -297,13 +304,17 @@ void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
   }
 }
 
-FitCheck check_scored(std::vector<ScoredChannel> const& scored, NoiseStatementWith const& statement = {}) {
+FitCheck check_scored(std::vector<ScoredChannel> const& scored, UserText const& text = {}) {
   FitCheck check;
   std::vector<Tested> tested;
   for (ScoredChannel const& each : scored) tested.push_back(test_channel(each));
+  for (std::size_t k = 0; k < scored.size(); ++k)
+    for (std::size_t j = 0; j < scored.size(); ++j)
+      if (scored[j].described().name == scored[k].described().name)
+        tested[k].largest_offset = std::max(tested[k].largest_offset, std::fabs(tested[j].offset_size));
   Limits const limits = limits_of(tested);
   for (std::size_t k = 0; k < scored.size(); ++k)
-    check.lines.push_back(check_channel(scored[k], tested[k], limits, statement, check.findings));
+    check.lines.push_back(check_channel(scored[k], tested[k], limits, text, check.findings));
   return check;
 }
 
@@ -341,7 +352,7 @@ std::string on_experiment(ModelTarget const& target, int experiment) {
   return " on " + target.experiments()[static_cast<std::size_t>(experiment)].name;
 }
 
-FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared, NoiseStatementWith const& statement) {
+FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared, UserText const& text) {
   int const dimension = target.dimension();
   LaneArray values(dimension, 1), theta(dimension, 1), residuals(target.residual_count(), 1);
   for (int p = 0; p < dimension; ++p) values(p, 0) = declared[static_cast<std::size_t>(p)];
@@ -350,7 +361,7 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
   target.residuals(theta, residuals, ledger);
   std::vector<ScoredChannel> scored;
   for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) score_experiment(target, e, values, residuals, scored);
-  return check_scored(scored, statement);
+  return check_scored(scored, text);
 }
 
 FitCheck check_residuals(Model const& model, std::vector<Experiment> const& experiments,

@@ -30,7 +30,7 @@ FitCheck check_residuals(Model const& model, std::vector<Experiment> const& expe
 
 /// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input. statement:
 /// for the cure of an offset.
-FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared, NoiseStatementWith const& statement = {});
+FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared, UserText const& text = {});
 
 /// Where a fit explains little: adds to the help which parameters have kept the width of their prior, which may hold others where
 /// they cannot fit.

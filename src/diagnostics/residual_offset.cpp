@@ -61,26 +61,54 @@ double round_number_above(double value) {
   return 10 * power;
 }
 
-/// A parameter that already is added to what a node predicts: an offset that something holds.
+bool is_number(Model const& model, NodeId node) { return model.graph[node].operation == Operation::constant; }
+
+/// A parameter that already is added to what a node predicts, perhaps times a number: an offset that something holds.
 Parameter const* added_parameter(Model const& model, NodeId node) {
   Node const& at = model.graph[node];
-  if (at.operation == Operation::leaf && at.leaf_kind == LeafKind::parameter)
-    return &model.parameters[static_cast<std::size_t>(at.index)];
-  if (at.operation == Operation::add) {
+  auto const either = [&] {
     Parameter const* const left = added_parameter(model, at.a);
     return left != nullptr ? left : added_parameter(model, at.b);
+  };
+  switch (at.operation) {
+    case Operation::leaf:
+      return at.leaf_kind == LeafKind::parameter ? &model.parameters[static_cast<std::size_t>(at.index)] : nullptr;
+    case Operation::add:
+    case Operation::subtract:
+      return either();
+    case Operation::negate:
+      return added_parameter(model, at.a);
+    case Operation::multiply:
+      return is_number(model, at.a)   ? added_parameter(model, at.b)
+             : is_number(model, at.b) ? added_parameter(model, at.a)
+                                      : nullptr;
+    default:
+      return nullptr;
   }
-  return at.operation == Operation::subtract ? added_parameter(model, at.a) : nullptr;
 }
 
-std::string free_parameter(Model const& model, std::string const& channel) {
+/// `pos` and `(2)` of `pos[1]` and `pos[2]`, which one statement observes.
+struct WholeChannel {
+  std::string name, size;
+};
+WholeChannel whole_channel(Model const& model, std::string const& element) {
+  WholeChannel whole{element.substr(0, element.find('[')), ""};
+  if (whole.name.size() == element.size()) return whole;
+  for (Channel const& each : model.channels)  // elements ascend
+    if (each.name.starts_with(whole.name + "["))
+      whole.size = "(" + each.name.substr(whole.name.size() + 1, each.name.size() - whole.name.size() - 2) + ")";
+  return whole;
+}
+
+std::string free_parameter(Model const& model, std::string const& channel, UserText const& text) {
   std::string wanted = channel + "_offset";
   std::replace(wanted.begin(), wanted.end(), '.', '_');
   auto const taken = [&](std::string const& name) {
     auto const has = [&](auto const& quantities) {
       return std::ranges::any_of(quantities, [&](auto const& each) { return each.name == name; });
     };
-    return has(model.parameters) || has(model.states) || has(model.inputs) || has(model.channels) || has(model.derived);
+    return (text.mentions && text.mentions(name)) || has(model.parameters) || has(model.states) || has(model.inputs) ||
+           has(model.channels) || has(model.derived);
   };
   std::string name = wanted;
   for (int number = 2; taken(name); ++number) name = fmt::format("{}_{}", wanted, number);
@@ -90,27 +118,50 @@ std::string free_parameter(Model const& model, std::string const& channel) {
 /// An offset of a temperature is an interval.
 std::string unit_of_offset(Channel const& channel) {
   if (!channel.unit || channel.unit_text().empty()) return {};
-  return fmt::format(" [{}]", channel.unit->offset != 0 ? "K" : channel.unit_text());
+  return fmt::format(" [{}{}]", channel.unit->offset != 0 ? "delta_" : "", channel.unit_text());
 }
 
-std::string cure(Model const& model, Channel const& channel, bool several, double size, NoiseStatementWith const& statement) {
-  if (Parameter const* const held = added_parameter(model, channel.noise.arguments.front()))
-    return held->prior ? fmt::format(
-                             "`{0}` is added to this channel, and its prior or what else depends on it holds it: widen the "
-                             "prior of `{0}`",
-                             held->name)
-                       : fmt::format("`{0}` is added to this channel and is fixed: give `{0}` a prior", held->name);
-  double const kelvin = channel.unit && channel.unit->offset != 0 ? channel.unit->scale : 1;
-  std::string const name = free_parameter(model, channel.name);
-  std::string const declaration = fmt::format("parameter {}{}{} ~ normal(0, sd = {})", name, several ? " per experiment" : "",
-                                              unit_of_offset(channel), fmt::format("{:g}", round_number_above(3 * kelvin * size)));
-  std::optional<std::string> const written = statement ? statement(channel, name) : std::nullopt;
+std::string cure_of_held(Parameter const& held, bool several) {
+  if (!held.prior) return fmt::format("`{0}` is added to this channel and is fixed: give `{0}` a prior", held.name);
+  if (several && !held.per_experiment)
+    return fmt::format(
+        "`{0}` is added to this channel with the same value in all experiments: write `per experiment` after `{0}` where it is "
+        "declared; if only this experiment has an offset, look for another cause in it",
+        held.name);
   return fmt::format(
-      "if the sensor has an offset, estimate it: add `{}` to the model and {}; otherwise look for an input with an offset, or "
-      "for a constant force that the model lacks",
-      declaration,
-      written ? fmt::format("write `{}`", *written)
-              : fmt::format("add `{}` to the first argument of the noise of {}", name, channel.name));
+      "`{0}` is added to this channel, but its prior, or another quantity that depends on it, keeps it from taking up the offset: "
+      "widen the prior of `{0}`",
+      held.name);
+}
+
+/// Predictions from samples before hold a part of an offset already.
+bool reads_samples(Model const& model, NodeId node) {
+  return model.graph.depends(
+      node, [](Node const& leaf) { return leaf.leaf_kind == LeafKind::measured || leaf.leaf_kind == LeafKind::previous; });
+}
+
+std::string cure(Model const& model, Channel const& channel, bool several, double size, UserText const& text) {
+  NodeId const location = channel.noise.arguments.front();
+  if (Parameter const* const held = added_parameter(model, location)) return cure_of_held(*held, several);
+  WholeChannel const whole = whole_channel(model, channel.name);
+  std::string const name = free_parameter(model, whole.name, text);
+  std::string const declaration =
+      fmt::format("parameter {}{}{}{} ~ normal(0, sd = {:g})", name, whole.size, several ? " per experiment" : "",
+                  unit_of_offset(channel), round_number_above(3 * size));
+  std::optional<std::string> const written = text.noise_statement_with ? text.noise_statement_with(channel, name) : std::nullopt;
+  std::string const added =
+      written ? fmt::format("add `{}` to the model and write `{}`", declaration, *written)
+              : fmt::format(
+                    "in a copy of the model, since it stands in a module, add `{}`, and add `{}` to the first argument of "
+                    "the distribution in `observe {}`",
+                    declaration, name, whole.name);
+  if (reads_samples(model, location))
+    return fmt::format(
+        "if the equation lacks a constant term, {}; it holds what earlier samples do not carry on of a sensor's offset", added);
+  return fmt::format(
+      "if the sensor has an offset, estimate it: {}; otherwise look for an input with an offset, for a constant force that the "
+      "model lacks, or for a law that is not the same in both directions",
+      added);
 }
 
 }  // namespace
@@ -144,16 +195,16 @@ bool offset_can_be_added(Model const& model, Channel const& channel) {
 }
 
 Finding residual_offset(Model const& model, Channel const& channel, std::string const& experiment, bool several,
-                        OffsetTest const& test, std::span<double const> errors, NoiseStatementWith const& statement) {
-  double const size = mean(errors);
+                        OffsetTest const& test, double size, double largest, UserText const& text) {
   return {FindingCode::residual_offset,
           Severity::warning,
           {channel.name, experiment},
-          fmt::format("the residuals of {} have a mean of {}{}, {} times its standard error, which is {} of their mean square",
+          fmt::format("the residuals of {} have a mean of {}{}, {} times its standard error; the square of this mean is {} of "
+                      "their mean square",
                       several ? channel.name + " on " + experiment : channel.name, significant(size, 3),
                       channel.unit_text().empty() ? "" : " " + channel.unit_text(), significant(test.standard_errors, 2),
                       fmt::format("{:.3g} %", 100 * test.share)),
-          cure(model, channel, several, std::fabs(size), statement)};
+          cure(model, channel, several, largest, text)};
 }
 
 }  // namespace sysid

@@ -32,13 +32,19 @@ struct OffsetTest {
 /// neighbouring samples.
 OffsetTest offset_test(std::span<double const> residuals, bool ordered);
 
-/// The noise statement of a channel as it has to read, or nothing where it is not in the user's text.
-using NoiseStatementWith = std::function<std::optional<std::string>(Channel const& channel, std::string const& parameter)>;
+/// What the user's text says, of which a model has only the meaning.
+struct UserText {
+  /// Whether the name stands anywhere in it.
+  std::function<bool(std::string const& name)> mentions;
+  /// The noise statement of a channel with `parameter` added to what the noise lies about; nothing where it is not in the text.
+  std::function<std::optional<std::string>(Channel const& channel, std::string const& parameter)> noise_statement_with;
+};
 
-/// errors: measured minus predicted samples where the channel is scored, in its declared unit; several: it is one of several
-/// experiments. Only for a noise that is added, see `offset_can_be_added`.
+/// size: the mean of measured minus predicted samples where the channel is scored, in its declared unit; largest: of those of all
+/// experiments, whose offsets one declaration has to cover; several: there are several. Only for a noise that is added, see
+/// `offset_can_be_added`.
 Finding residual_offset(Model const& model, Channel const& channel, std::string const& experiment, bool several,
-                        OffsetTest const& test, std::span<double const> errors, NoiseStatementWith const& statement);
+                        OffsetTest const& test, double size, double largest, UserText const& text);
 
 /// Whether a constant can be added to what the noise of this channel lies about. Not where states are random: they follow an
 /// offset.

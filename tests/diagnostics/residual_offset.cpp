@@ -55,6 +55,24 @@ json const* of_code(json const& findings, std::string const& code) {
   return nullptr;
 }
 
+/// Of a model and data blocks as they are written, with a record `wave.csv` (s, a, b, warm): a sine s, and 5 s with noise of 0.05
+/// about 0, 1.3 and 21.
+json findings_of(std::string const& model, std::string const& data, std::string const& experiments) {
+  TemporaryFolder folder;
+  Stream stream({5, Purpose::test, 0, 0});
+  std::string table = "s,a,b,warm\n";
+  for (int row = 0; row < 600; ++row) {
+    double const sine = std::sin(0.06 * row), wave = 5 * sine;
+    auto const noise = [&] { return 0.05 * stream.normal(); };
+    table += fmt::format("{},{},{},{}\n", sine, wave + noise(), wave + 1.3 + noise(), wave + 21 + noise());
+  }
+  write_file(folder.path() / "wave.csv", table);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "m.sysid", model + data + "posterior = fit m to " + experiments + " with map, seed = 1\n", options);
+  return json::parse(read_file(options.output / "posterior/summary.json")).at("findings");
+}
+
 /// The text between the n-th pair of backquotes.
 std::string quoted_part(std::string const& text, int n) {
   std::size_t at = 0;
@@ -149,4 +167,54 @@ TEST_CASE("a good fit, a drift of the sensor and an offset that the model has ar
     REQUIRE(found != nullptr);
     CHECK(found->at("help").get<std::string>().ends_with(cure));
   }
+}
+
+TEST_CASE("the offset of an element of a vector is that of the vector") {
+  std::string const begin =
+      "model m {\n  input s\n  parameter A(2) [mm] ~ log_uniform(0.1, 100)\n  parameter sigma [mm] ~ log_uniform(0.001, 100)\n";
+  std::string const data = "data wave { file \"wave.csv\"; input s = s; measure pos[1] = a [mm]; measure pos[2] = b [mm] }\n";
+  json const findings = findings_of(begin + "  observe pos(2) [mm] ~ normal(A*s, sd = sigma)\n}\n", data, "wave");
+  json const* const found = of_code(findings, "residual_offset");
+  REQUIRE_MESSAGE(found != nullptr, findings.dump());
+  std::string const help = found->at("help"), declaration = quoted_part(help, 1), statement = quoted_part(help, 2);
+  CHECK(declaration == "parameter pos_offset(2) [mm] ~ normal(0, sd = 5)");
+  json const cured = findings_of(begin + "  " + declaration + "\n  " + statement + "\n}\n", data, "wave");
+  CHECK_MESSAGE(of_code(cured, "residual_offset") == nullptr, cured.dump());
+}
+
+TEST_CASE("the offset of a temperature is an interval, and its name is one that the text does not use") {
+  std::string const begin =
+      "model m {\n  input s\n  parameter A [delta_degC] ~ log_uniform(0.1, 100)\n  constant temp_offset = 3\n"
+      "  parameter sigma [delta_degC] ~ log_uniform(0.001, 100)\n";
+  std::string const data = "data wave { file \"wave.csv\"; input s = s; measure temp = warm [degC] }\n";
+  json const findings = findings_of(begin + "  observe temp [degC] ~ normal(20 [degC] + A*s, sd = sigma)\n}\n", data, "wave");
+  json const* const found = of_code(findings, "residual_offset");
+  REQUIRE_MESSAGE(found != nullptr, findings.dump());
+  std::string const help = found->at("help"), declaration = quoted_part(help, 1), statement = quoted_part(help, 2);
+  CHECK(declaration == "parameter temp_offset_2 [delta_degC] ~ normal(0, sd = 5)");
+  json const cured = findings_of(begin + "  " + declaration + "\n  " + statement + "\n}\n", data, "wave");
+  CHECK_MESSAGE(of_code(cured, "residual_offset") == nullptr, cured.dump());
+}
+
+TEST_CASE("records of different offsets get one declaration, and an offset that they share becomes one of each") {
+  std::string const begin =
+      "model m {\n  input s\n  parameter A [mm] ~ log_uniform(0.1, 100)\n  parameter sigma [mm] ~ log_uniform(0.001, 100)\n";
+  std::string const data =
+      "data one { file \"wave.csv\"; input s = s; measure z = b [mm] }\n"
+      "data two { file \"wave.csv\"; input s = s; measure z = warm [mm] }\n";
+  json const findings = findings_of(begin + "  observe z [mm] ~ normal(A*s, sd = sigma)\n}\n", data, "one, two");
+  json const* const found = of_code(findings, "residual_offset");
+  REQUIRE_MESSAGE(found != nullptr, findings.dump());
+  std::string const declaration = quoted_part(found->at("help"), 1), statement = quoted_part(found->at("help"), 2);
+  for (json const& each : findings)
+    if (each.at("code") == "residual_offset") CHECK(quoted_part(each.at("help"), 1) == declaration);
+  CHECK(of_code(findings_of(begin + "  " + declaration + "\n  " + statement + "\n}\n", data, "one, two"), "residual_offset") ==
+        nullptr);
+  std::string const shared = "  observe z [mm] ~ normal(2*(A*s/2 - b), sd = sigma)\n}\n";
+  json const held = findings_of(begin + "  parameter b [mm] ~ normal(0, sd = 100)\n" + shared, data, "one, two");
+  json const* const both = of_code(held, "residual_offset");
+  REQUIRE_MESSAGE(both != nullptr, held.dump());
+  CHECK(both->at("help").get<std::string>().find("write `per experiment` behind `b`") != std::string::npos);
+  json const apart = findings_of(begin + "  parameter b per experiment [mm] ~ normal(0, sd = 100)\n" + shared, data, "one, two");
+  CHECK_MESSAGE(of_code(apart, "residual_offset") == nullptr, apart.dump());
 }

@@ -72,11 +72,16 @@ TEST_CASE("rounded times are named with the rate that reads them, which is then 
   std::string const rest = "; input u = force hold linear; measure z = level [mm]";
   CheckResult const rounded = check_of("t,force,level", "time t [ms]" + rest, true);
   CHECK(messages(rounded, "times_rounded") ==
-        Messages{"the steps of the time of record are 3 or 4 ms, as equal steps at 256 Hz are when they are rounded"});
+        Messages{"the time steps of record are 3 or 4 ms: this results if times at equal steps, 256 Hz, are rounded"});
   std::string const help = help_of(rounded, FindingCode::times_rounded);
   std::size_t const from = help.find('`') + 1;
   std::string const cure = help.substr(from, help.find('`', from) - from);
   CHECK(cure == "rate 256 [Hz]");
   CHECK(messages(check_of("t,force,level", cure + rest, true), "times_rounded").empty());
   CHECK(messages(check_of("t,force,level", "time t [ms]" + rest), "times_rounded").empty());
+  // In seconds, which the name denies, the rate would be a thousandth of the true one.
+  CheckResult const doubtful = check_of("t_ms,force,level", "time t_ms" + rest, true);
+  CHECK(messages(doubtful, "times_rounded").empty());
+  CHECK(messages(doubtful, "unit_in_name").size() == 1);
+  CHECK(messages(check_of("t_ms,force,level", "time t_ms [ms]" + rest, true), "times_rounded").size() == 1);
 }

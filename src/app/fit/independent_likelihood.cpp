@@ -119,11 +119,12 @@ class IndependentLikelihood : public FitLikelihood {
   }
 
   FitCheck check_residuals(FitResult const& result, Draws const&) const override {
-    return particles_
-               ? particles_->check_residuals(parameters_of_each(middle_of(result)))
-               : sysid::check_residuals(*target_, best_of(result), [&](Channel const& channel, std::string const& parameter) {
-                   return noise_statement_with(session_.source, channel, parameter);
-                 });
+    return particles_ ? particles_->check_residuals(parameters_of_each(middle_of(result)))
+                      : sysid::check_residuals(*target_, best_of(result),
+                                               UserText{[&](std::string const& name) { return mentions(session_.source, name); },
+                                                        [&](Channel const& channel, std::string const& parameter) {
+                                                          return noise_statement_with(session_.source, channel, parameter);
+                                                        }});
   }
 
   std::vector<FunctionReport> functions(FitResult const& result, Draws const&) const override {

@@ -122,9 +122,11 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
 FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {
   if (posterior.modes.empty() || posterior.given_up) return {};
   FitCheck check = check_residuals(*likelihood_target(session, candidate, posterior.solver, session.abandonable()),
-                                   posterior.modes.front().declared, [&](Channel const& channel, std::string const& parameter) {
-                                     return noise_statement_with(session.source, channel, parameter);
-                                   });
+                                   posterior.modes.front().declared,
+                                   UserText{[&](std::string const& name) { return mentions(session.source, name); },
+                                            [&](Channel const& channel, std::string const& parameter) {
+                                              return noise_statement_with(session.source, channel, parameter);
+                                            }});
   for (Finding& finding : check.findings) {
     finding.names.insert(finding.names.begin(), candidate.what->name);
     finding.message = fmt::format("`{}`: {}", candidate.what->name, finding.message);
