@@ -110,7 +110,7 @@ Work declare_track(CLI::App& verb) {
       ->type_name("RATE")
       ->check(refuse_no_rate)
       ->default_str("1e-5");
-  verb.add_option("--window", track.window, "how many rows back a change is looked for")
+  verb.add_option("--window", track.window, "maximum age of a change, in rows, that is still looked for")
       ->type_name("N")
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();

@@ -64,7 +64,7 @@ void check_motion(ChainReport const& report, Findings& findings) {
     findings.push_back({FindingCode::chain_did_not_move,
                         Severity::error,
                         {},
-                        fmt::format("the chain did not move: {} accepted {} of the proposed moves{}", chain_list(stuck),
+                        fmt::format("{} did not move: {} of the proposed moves were accepted{}", chain_list(stuck),
                                     most == 0           ? "none"
                                     : stuck.size() == 1 ? percent(most)
                                                         : "at most " + percent(most),

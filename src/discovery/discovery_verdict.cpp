@@ -66,8 +66,8 @@ std::string coefficients_clause(ValidatedStructure const& best) {
   auto const [low, high] = std::minmax_element(percent.begin(), percent.end());
   std::string const most = significant(*high, 2);
   return percent.size() == 1 || significant(*low, 2) == most
-             ? fmt::format("coefficients known to {} %", most)
-             : fmt::format("coefficients known to {} to {} %", significant(*low, 2), most);
+             ? fmt::format("the coefficients have sds of {} %", most)
+             : fmt::format("the coefficients have sds of {} to {} %", significant(*low, 2), most);
 }
 
 std::string elsewhere_clause(ValidationReport const& validation) {
@@ -81,12 +81,13 @@ std::string elsewhere_clause(ValidationReport const& validation) {
     for (ValidatedChannel const& each : best.channels)
       if (each.free_run && each.residual > 0) noises = std::max(noises, *each.free_run / each.residual);
     return noises > 0 && noises <= few_noises
-               ? fmt::format("holds on {} (a free run is off by {} times the noise)", validation.held_out, significant(noises, 2))
-               : fmt::format("holds on {} (a free run is off by {} % of the sd)", validation.held_out, size);
+               ? fmt::format("the equation holds on {} (rms error of a free run: {} times the noise)", validation.held_out,
+                             significant(noises, 2))
+               : fmt::format("the equation holds on {} (rms error of a free run: {} % of the sd)", validation.held_out, size);
   }
   if (run == FreeRun::chaotic)
-    return fmt::format("on {} it predicts {} s ahead and no more", validation.held_out, significant(best.follows, 2));
-  return fmt::format("fails on {} (a free run is off by {} % of the sd)", validation.held_out, size);
+    return fmt::format("on {} the equation predicts no more than {} s ahead", validation.held_out, significant(best.follows, 2));
+  return fmt::format("the equation fails on {} (rms error of a free run: {} % of the sd)", validation.held_out, size);
 }
 
 }  // namespace

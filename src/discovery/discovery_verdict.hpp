@@ -26,8 +26,8 @@ Findings other_terms(ValidationReport const& validation);
 /// Findings of one code and severity as one, in the place of the first.
 Findings merged(Findings const& findings);
 
-/// "the form is decided (probability 0.98), coefficients known to 0.1 to 2 %, holds on the last fifth of bench (...)"; empty where
-/// no structure could be checked.
+/// "the form is decided (probability 0.98), the coefficients have sds of 0.1 to 2 %, the equation holds on bench.test (...)"; empty
+/// where no structure could be checked.
 std::string verdict_clauses(ValidationReport const& validation);
 
 }  // namespace sysid

@@ -40,14 +40,14 @@ std::string names_of(Items const& items) {
 void refuse_what_only_the_file_states(DataBlock const& block) {
   bool const has_dates = !block.rules.stamp.empty() && find_serial_time(block.rules.stamp) == nullptr;
   if (block.time && !block.time->unit && has_dates)
-    refuse(block, *block.time, "`read stamp` makes seconds of the dates of the file, and numbers of an array are no dates",
+    refuse(block, *block.time, "`read stamp` converts the dates of the file to seconds, but the numbers of an array are not dates",
            fmt::format("write the unit that they have: `time {}`; it changes nothing for the file",
                        column_text(block.time->column, "s")));
   if (block.rules.units == UnitsPlace::none) return;
   auto const check = [&](ColumnUse const& column, std::string_view example) {
     if (!column.unit)
       refuse(block, column, "`read units` takes its unit from the file, and an array has none",
-             fmt::format("write the unit of the array behind the column, such as `{}`; plain numbers have `[1]`",
+             fmt::format("write the unit of the array after the column, such as `{}`; plain numbers have `[1]`",
                          column_text(column.column, example)));
   };
   if (block.time && block.rules.stamp.empty()) check(*block.time, "s");

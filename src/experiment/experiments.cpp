@@ -111,9 +111,9 @@ std::string predicted_text(Model const& model, PredictionRule rule, int ahead) {
   std::string const lags = model.dynamics == Dynamics::discrete ? prediction_text(model, rule) : std::string();
   if (!model.filtered()) return lags;
   bool const one_step = rule == PredictionRule::one_step;
-  std::string const corrected = one_step ? "states corrected by all samples before each row"
-                                         : "states corrected by the samples before the predicted rows only";
-  if (ahead > 1) return fmt::format("steps({}): states corrected by all samples up to {} rows before each row", ahead, ahead);
+  std::string const corrected = one_step ? "states estimated from all samples before each row"
+                                         : "states estimated only from the samples before the first predicted row";
+  if (ahead > 1) return fmt::format("steps({}): states estimated from the samples at least {} rows before each row", ahead, ahead);
   if (!lags.empty()) return fmt::format("{}; {}", lags, corrected);
   return fmt::format("{}: {}", prediction_name(one_step ? rule : PredictionRule::free_run), corrected);
 }

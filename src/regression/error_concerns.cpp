@@ -26,14 +26,14 @@ Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::Vecto
   if (errors.size() < shortest_runs * runs) {
     Concern concern{.kind = Concern::Kind::short_runs, .value = static_cast<double>(errors.size()) / runs};
     concern.clause = fmt::format(
-        "missing samples leave {:.1f} rows in sequence on average: correlation of the noise is hardly seen", concern.value);
+        "missing samples leave only {:.1f} consecutive rows on average: a correlation of the noise can hardly be detected",
+        concern.value);
     concerns.push_back(std::move(concern));
   } else if (coloured && errors.size() < short_of_average * runs) {
     Concern concern{.kind = Concern::Kind::short_runs, .value = static_cast<double>(errors.size()) / runs};
     concern.clause = fmt::format(
-        "missing samples leave {:.1f} rows in sequence on average: the estimated moving average of the noise may be too short, "
-        "with "
-        "an unnecessary lagged term in its place",
+        "missing samples leave only {:.1f} consecutive rows on average: the estimated moving average of the noise may be too "
+        "short, with an unnecessary lagged term in its place",
         concern.value);
     concerns.push_back(std::move(concern));
   }

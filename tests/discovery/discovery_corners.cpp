@@ -224,8 +224,8 @@ TEST_CASE("a time column of seven digits has equal steps, and the equation is fo
 TEST_CASE("the verdict says of form, coefficients and other rows in one sentence") {
   DiscoveryAnswer const answer = run(file(oscillator));
   CHECK(contains(answer.said, "the form is decided (probability "));
-  CHECK(contains(answer.said, ", coefficients known to "));
-  CHECK(contains(answer.said, " %, holds on the last fifth of bench (a free run is off by "));
+  CHECK(contains(answer.said, ", the coefficients have sds of "));
+  CHECK(contains(answer.said, " %, the equation holds on the last fifth of bench (rms error of a free run: "));
   CHECK(contains(answer.said, "; the checks pass\n"));
   CHECK(answer.finding("residuals_not_white").is_null());
 }

@@ -61,18 +61,20 @@ Severity tempered(ValidationReport const& validation, Finding each) {
 }  // namespace
 
 TEST_CASE("the verdict has a clause each for the form, the coefficients and other rows") {
-  CHECK(
-      verdict_clauses(report(0.98)) ==
-      "the form is decided (probability 0.980), coefficients known to 0.50 to 2.0 %, holds on the last fifth of record (a free run "
-      "is off by 2.5 times the noise)");
-  CHECK(verdict_clauses(report(0.98, 0.3)).ends_with("holds on the last fifth of record (a free run is off by 30 % of the sd)"));
+  CHECK(verdict_clauses(report(0.98)) ==
+        "the form is decided (probability 0.980), the coefficients have sds of 0.50 to 2.0 %, the equation holds on the last fifth "
+        "of record "
+        "(rms error of a free run: 2.5 times the noise)");
+  CHECK(verdict_clauses(report(0.98, 0.3))
+            .ends_with("the equation holds on the last fifth of record (rms error of a free run: 30 % of the sd)"));
   CHECK(verdict_clauses(report(0.85)).starts_with("the form is more probable than all others (probability 0.850), "));
   CHECK(
       verdict_clauses(report(0.6)).starts_with("the form is not decided, but more probable than all others (probability 0.600), "));
   CHECK(verdict_clauses(report(0.4)).starts_with("the form is not decided (probability 0.400), "));
   CHECK(verdict_clauses(report(0.98, 1.4, 1.2))
-            .ends_with("fails on the last fifth of record (a free run is off by 140 % of the sd)"));
-  CHECK(verdict_clauses(report(0.98, 1.4, 0.1)).ends_with("on the last fifth of record it predicts 3.0 s ahead and no more"));
+            .ends_with("the equation fails on the last fifth of record (rms error of a free run: 140 % of the sd)"));
+  CHECK(verdict_clauses(report(0.98, 1.4, 0.1))
+            .ends_with("on the last fifth of record the equation predicts no more than 3.0 s ahead"));
   CHECK(verdict_clauses(report(0.98, std::nullopt)).ends_with("not tested on other rows"));
   ValidationReport failed = report(0.98);
   failed.structures.front().failure = "it does not converge";

@@ -241,7 +241,7 @@ TEST_CASE("where single missing samples leave short runs of coloured noise, the 
     Found const found(csv, "spike_slab", "1, lags(y, 1..3), lags(u, 0..3)");
     exact += found.kept.size() == 3 && found.kept.contains("lag(y, 1)") && found.kept.contains("lag(y, 2)") &&
              found.kept.contains("lag(u, 1)");
-    told += found.out.find("rows in sequence on average") != std::string::npos;
+    told += found.out.find("consecutive rows on average") != std::string::npos;
   }
   MESSAGE(exact << " of 20 exact");
   CHECK(told == 20);

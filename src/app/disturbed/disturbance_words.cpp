@@ -39,7 +39,7 @@ std::string preference(Comparison const& comparison) {
   std::string const size = fmt::format("log Bayes factor {:+.1f}", factor);
   if (factor >= 3) return fmt::format("the record prefers the model with the disturbance: {}\n", size);
   if (factor <= -3) return fmt::format("the record prefers the model without the disturbance: {}\n", size);
-  return fmt::format("the record does not decide between both models: {}\n", size);
+  return fmt::format("the record does not decide between the two models: {}\n", size);
 }
 
 /// How large the disturbance is in the estimate's own words.

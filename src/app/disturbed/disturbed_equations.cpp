@@ -23,18 +23,18 @@ void require_open(Model const& model, Task const& fit) {
   std::string const name = fmt::format("`{}`", model.name);
   if (!model.disturbances.empty())
     throw refused(model.disturbances.front().span, fmt::format("{} already has a disturbance", name),
-                  "fit it as it is, and a model without the disturbance beside it; `sysid compare` compares both");
+                  "fit it as it is, and also fit the same model without the disturbance; `sysid compare` compares both fits");
   if (!model.processes.empty())
     throw refused(model.processes.front().span,
                   fmt::format("{} has a Gaussian process, which cannot be combined with a disturbance", name),
                   "give the function a range, `within = (low, high)`, which makes it a finite sum");
   if (!model.unknowns.empty() || model.implicit)
     throw refused(model.unknowns.empty() ? fit.span : model.unknowns.front().span,
-                  fmt::format("{} has equations that cannot be solved for the highest derivatives, which no filter takes", name),
+                  fmt::format("{} has equations that cannot be solved for the highest derivatives: no filter supports these", name),
                   "write the model with ordinary differential equations");
   if (model.dynamics == Dynamics::none)
     throw refused(fit.span, fmt::format("{} has no states: a disturbance in one row would not affect later rows", name),
-                  "a disturbance acts on states");
+                  "fit it as it is: only a model with states can have a disturbance");
   for (Channel const& channel : model.channels)
     if (!channel.noise.row->gaussian || channel.noise.lower || channel.noise.upper)
       throw refused(channel.span,
@@ -269,8 +269,8 @@ std::vector<DisturbedEquation> disturbed_equations(Source const& source, Checked
   bool const discrete = model.dynamics == Dynamics::discrete;
   std::vector<Span> const places = chosen_places(*flat, discrete);
   if (places.empty())
-    throw refused(fit.span, fmt::format("`{}` has no equation of motion that a disturbance could stand in", model.name),
-                  discrete ? "a model that predicts from measured samples takes every error as a disturbance already"
+    throw refused(fit.span, fmt::format("`{}` has no equation to which a disturbance can be added", model.name),
+                  discrete ? "a model that predicts each sample from measured samples already treats every error as a disturbance"
                            : "a disturbance can be added only to an equation that contains a derivative");
   Diagnostics ignored;
   auto const tree = parse(source, ignored);

@@ -162,7 +162,7 @@ void add_delta_sd(Values const& values, Eigen::Index d, double along_flat, Summa
   }
   double const sd = slope.norm();
   if (flat_length * along_flat > most_of_flat * sd) {
-    summary.without_sd = "the data leave open a direction along which it changes";
+    summary.without_sd = "it changes along a combination of parameters that the data do not determine";
     return;
   }
   if (not_finite > 0) {

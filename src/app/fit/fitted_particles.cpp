@@ -222,7 +222,7 @@ std::optional<Finding> FittedParticles::check_estimates(ConstLanes draws) const 
       useless ? Severity::error : Severity::warning,
       {parameter.name},
       fmt::format("with {} particles estimates of the log likelihood scatter with an sd above {} at {} of {} draws, up to "
-                  "{:.2g} where {} = {:.3g}{}: chains stay there for long",
+                  "{:.2g} where {} = {:.3g}{}: chains stay there for a long time",
                   need_.particles, large_sd, many, draws.width(), largest, parameter.name, draws(farthest, worst),
                   unit_after_number(parameter.unit)),
       fmt::format("use more particles, `particles = {}` or more, or a prior without such places{}", 4 * need_.particles,

@@ -149,7 +149,7 @@ class SizesApart {
     named.push_back(info.name);
     for (int const k : sizes.noise) named.push_back(name(k));
     preflight_.add(FindingCode::disturbance_and_noise, preflight_.candidate() ? Severity::note : Severity::warning,
-                   std::move(named), "the record cannot tell the disturbance from the noise: " + sentence,
+                   std::move(named), "the record is not expected to distinguish the disturbance from the noise: " + sentence,
                    "state the noise of the sensor in place of its prior, sample faster, or measure another quantity");
   }
 

@@ -141,7 +141,7 @@ class Description {
 
   std::string unasked(AssessedParameter const& coordinate) {
     if (coordinate.role == ParameterRole::noise) return "not computed (noise)";
-    if (coordinate.role == ParameterRole::prior) return "from parameters whose prior depends on it";
+    if (coordinate.role == ParameterRole::prior) return "not computed (used in priors only)";
     if (coordinate.role == ParameterRole::none) return "not used";  // the checker has warned of it
     add(FindingCode::not_identifiable, Severity::error, {coordinate.words.name},
         fmt::format("only derived quantities depend on {}: the data contain no information on it", coordinate.words.name),

@@ -107,10 +107,10 @@ void confirm(Preflight const& preflight, PriorDraws const& prior, double suggest
   InformationPage& information = *preflight.page.information;
   std::optional<SolverCheck> const found = found_from_draws(preflight, prior);
   if (!found) {
-    std::string const sds = suggested > 5 ? "many sds" : fmt::format("{:.2g} sd", suggested);
+    std::string const sds = suggested > 5 ? "more than 5 sds" : fmt::format("up to {:.2g} sd", suggested);
     preflight.add(
         FindingCode::integration_step, Severity::note, {},
-        fmt::format("{} may be too inaccurate: at draws of the prior, parameters would move by up to {} with {}, but no "
+        fmt::format("{} may be too inaccurate: at draws of the prior, parameters would move by {} with {}, but no "
                     "mode was found to confirm this",
                     solver.text(), sds, solver.finer_words()),
         solver.as_model ? "nothing, if the solver is meant to be part of the model" : "nothing now: the fit checks its own result");

@@ -81,7 +81,7 @@ class CandidateSearch {
                          found.solver.as_model ? Severity::note : Severity::warning,
                          {name()},
                          fmt::format("the error of {} moves parameters of `{}` by {}", found.solver.text(), name(),
-                                     move > 5 ? "many sds" : fmt::format("{:.2g} sd", move)),
+                                     move > 5 ? "more than 5 sds" : fmt::format("{:.2g} sd", move)),
                          found.solver.as_model ? "nothing, if the solver is meant to be part of the model"
                                                : fmt::format("select again with `{}`", found.solver.finer().option())});
   }

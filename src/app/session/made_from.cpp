@@ -60,7 +60,7 @@ std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
   return Finding{FindingCode::made_from_earlier,
                  Severity::warning,
                  {source},
-                 fmt::format("this prediction used an earlier run of `{}` than the one stored beside it", source),
+                 fmt::format("this prediction was made from an earlier run of `{}`, which has been run again since", source),
                  "run it again: `sysid predict FILE --force`"};
 }
 

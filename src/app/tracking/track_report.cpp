@@ -63,9 +63,9 @@ ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
 
 ReportTable parameter_table(GatheredTrack const& gathered) {
   ReportTable table{"parameters",
-                    gathered.settled
-                        ? "With their sds. The first rows settle the states; the parameters begin behind them as the fit has them."
-                        : "With their sds.",
+                    gathered.settled ? "Values with their sds. The first rows serve to estimate the states; after them the "
+                                       "parameters are reset to their values in the fit."
+                                     : "Values with their sds.",
                     {"parameter", fmt::format("row {}", gathered.last_row),
                      gathered.settled ? "from the fit" : fmt::format("row {}", gathered.first_row)},
                     {}};
@@ -92,9 +92,8 @@ InnovationSize innovation_size(GatheredTrack const& gathered) {
 ReportTable innovation_table(GatheredTrack const& gathered) {
   InnovationSize const size = innovation_size(gathered);
   return {"innovations",
-          "Their rms divided by the expected rms, 1 where the model and its noise are right. Where it is off by more than a "
-          "tenth, "
-          "sds and the rate of false alarms are not as stated: a disturbance is missing, or the noise has changed.",
+          "Their rms divided by the expected rms, 1 where the model and its noise are right. Where it differs from 1 by more than "
+          "a tenth, sds and the rate of false alarms are not as stated: a disturbance is missing, or the noise has changed.",
           {"samples", "rms / expected", "z", ""},
           {{std::to_string(gathered.samples), significant(size.ratio, 4), fmt::format("{:.1f}", size.z),
             !size.odd()      ? "as expected"
@@ -117,7 +116,7 @@ void add_findings(GatheredTrack const& gathered, Report& report) {
     report.findings.push_back(
         {FindingCode::parameter_changed, Severity::warning, std::move(names),
          fmt::format("{}{}", fmt::join(told, "; "), changes > most_told ? fmt::format("; and {} more", changes - most_told) : ""),
-         "look for the cause at these rows; predict the rows that follow from a fit to rows behind the last change"});
+         "look for the cause at these rows; to predict later rows, fit the rows after the last change and use that fit"});
   }
   if (!size.odd()) return;
   report.verdict += fmt::format("; the innovations are {} than expected", size.ratio > 1 ? "larger" : "smaller");

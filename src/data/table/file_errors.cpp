@@ -128,8 +128,8 @@ Diagnostic not_a_record(std::string const& file, std::string_view what, std::str
 }
 
 Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Mention mention) {
-  return error("E4025", mention, fmt::format("`{}` is a {}, of which `read` can only say what is `missing`", file, what),
-               "remove `read` from the data block, or all of it but `missing`");
+  return error("E4025", mention, fmt::format("`{}` is a {}, for which `missing` is the only setting of `read`", file, what),
+               "remove `read` from the data block, or all its settings except `missing`");
 }
 
 Diagnostic damaged(std::string const& file, std::string const& what, Mention mention) {
@@ -138,9 +138,8 @@ Diagnostic damaged(std::string const& file, std::string const& what, Mention men
 }
 
 Diagnostic reading_waited(std::string const& file, std::string const& what, Mention mention) {
-  return error("E4023", mention,
-               fmt::format("reading `{}` as a {} has stopped: the process that reads it waits, and may do so for ever", file, what),
-               "run it again; if that does not help, the file may be damaged: copy it again, or save it as CSV");
+  return error("E4023", mention, fmt::format("`{}` could not be read as a {}: the process that reads it hangs", file, what),
+               "run the command again; if that does not help, the file may be damaged: copy it again, or save it as CSV");
 }
 
 Diagnostic linked_elsewhere(std::string const& file, std::string const& target, Mention mention) {
@@ -223,12 +222,11 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Men
   std::string help = "a missing sample of a measured column is an empty cell or NA; an input needs a number in every row";
   if (is_time_stamp(text) && std::count(text.begin(), text.end(), ':') == 3)
     help = fmt::format(
-        "frames or a fraction of a second may stand behind the last colon: for frames give `rate` in place of the time column; for "
-        "a "
-        "fraction {}",
+        "the digits after the last colon may be frames or a fraction of a second: for frames give `rate` in place of the time "
+        "column; for a fraction {}",
         text.find_first_not_of("0123456789:") == std::string_view::npos
             ? "add this line to the data block: `read stamp = \"hh:mm:ss:f\"`"
-            : "write `read stamp` with `hh:mm:ss:f` behind the date");
+            : "write `read stamp` with `hh:mm:ss:f` after the date");
   else if (is_time_stamp(text))
     help =
         "dates and times of day are read only in the time column: name this column after `time` and add `read stamp`, or give "
@@ -330,21 +328,21 @@ Diagnostic times_are_clock(Cell const& cell, double before, double now, std::vec
 
 Diagnostic times_are_counts(Cell const& cell, Mention mention) {
   return error("E4029", mention,
-               fmt::format("column `{}` of `{}` counts the rows one by one and has no unit, so it is no time", shown(cell.column),
+               fmt::format("column `{}` of `{}` numbers the rows and has no unit, so it is not read as a time", shown(cell.column),
                            cell.file),
-               "write `rate` or `step` in place of `time` in the data block; if it counts seconds, write `[s]` behind the column");
+               "write `rate` or `step` in place of `time` in the data block; if it counts seconds, write `[s]` after the column");
 }
 
 Diagnostic zones_differ(Cell const& cell, std::string_view text, bool has_zone, Mention mention) {
   return error("E4024", mention,
                fmt::format("{}: `{}` has {} zone, and the first row has {}", place(cell), shown(text), has_zone ? "a" : "no",
                            has_zone ? "none" : "one"),
-               "write the zone in all rows, or in none: times without one are not taken for those of any zone");
+               "write the zone in all rows, or in none: no zone is assumed for times without one");
 }
 
 Diagnostic fractions_differ(Cell const& cell, std::string_view text, Mention mention) {
   return error("E4024", mention,
-               fmt::format("{}: `{}` has another number of digits behind its last colon than the first row, so they are no "
+               fmt::format("{}: `{}` has more or fewer digits after its last colon than the first row, so they are not a "
                            "fraction of a second",
                            place(cell), shown(text)),
                "write the time in seconds, or give `rate` in place of the time column");
@@ -356,8 +354,9 @@ Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string cons
   return error(
       "E4024", mention,
       fmt::format("{}: {} a time as in `stamp = {}`", place(cell), what, is_stamp_word(pattern) ? pattern : "\"" + pattern + "\""),
-      is_count ? fmt::format("{} are a number in every row, in the notation of the file: `1714500000` or `45356.25`", pattern)
-               : "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
+      is_count
+          ? fmt::format("with `stamp = {}` every cell is a number in the notation of the file: `1714500000` or `45356.25`", pattern)
+          : "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
 }
 
 Diagnostic unit_differs(std::string const& file, std::string const& column, std::string const& stated, std::string const& found,

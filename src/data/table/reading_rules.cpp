@@ -165,7 +165,8 @@ Taken take_comments(ReadingRules& rules, ReadingValue const& value) {
   auto const item = single(value);
   constexpr std::string_view allowed = "#%!/;*$@";
   if (!item || item->size() != 1 || allowed.find(item->front()) == allowed.npos)
-    return "must be the sign that comments begin with: `\"#\"`, `\"%\"`, `\"!\"`, `\"/\"`, `\";\"`, `\"*\"`, `\"$\"` or `\"@\"`";
+    return "must be the character that comments begin with: `\"#\"`, `\"%\"`, `\"!\"`, `\"/\"`, `\";\"`, `\"*\"`, `\"$\"` or "
+           "`\"@\"`";
   rules.comments = item->front();
   return {};
 }
@@ -194,7 +195,8 @@ constexpr ReadingRow rows[] = {
     {"date", "date = \"Datum\"", "the column with the date, where the time column holds the time of day", "", &take_date},
     {"ragged", "ragged = yes", "lines may have extra empty cells at the end, or lack the last cells, which are then missing",
      "yes no", &take_ragged},
-    {"comments", "comments = \"%\"", "the sign that begins comments, which may then stand anywhere", "", &take_comments},
+    {"comments", "comments = \"%\"", "the character that begins a comment; comments may then also be between the rows", "",
+     &take_comments},
 };
 
 std::string list_of(std::vector<std::string> const& items) {

@@ -39,7 +39,8 @@ constexpr SettingRow rows[] = {
     {"populations", SettingKind::integer, "100", 1, 1e6, "", "stop after this many populations"},
     {"cross_check", SettingKind::flag, "yes", 0, 0, "",
      "compare with Laplace's model probabilities, and test the residuals of the best model"},
-    {"polish", SettingKind::flag, "no", 0, 0, "", "continue from the particles with Metropolis-Hastings on the likelihood"},
+    {"polish", SettingKind::flag, "no", 0, 0, "",
+     "sample the posterior of each model of probability 0.01 or more by Metropolis-Hastings on the likelihood, from its modes"},
     {"polish_samples", SettingKind::integer, "25000", 100, 1e8, "",
      "iterations of each of the four chains of `polish`, a fifth of them burn-in"},
 };

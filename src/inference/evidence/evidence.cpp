@@ -201,7 +201,7 @@ namespace sysid {
 
 Evidence estimate_evidence(Target const& target, EvidenceTask const& task, Ledger& ledger, std::function<bool()> const& stop) {
   if (task.method == EvidenceMethod::none) {
-    Evidence none{{}, "the task asks for none (`evidence = none`)"};
+    Evidence none{{}, "the task has `evidence = none`"};
     none.method = EvidenceMethod::none;
     return none;
   }

@@ -83,7 +83,8 @@ void add_not_covered(SelectionResult const& result, Findings& findings) {
   }
   if (names.empty()) return;
   std::string const message = fmt::format(
-      "each proposal of {} counts as only {:.1g} draws of its posterior: a part of the posterior is hardly ever reached",
+      "each proposal of {} is equivalent to only {:.1g} independent draws of its posterior: a part of the posterior is hardly ever "
+      "reached",
       quoted(names), least);
   findings.push_back({FindingCode::posterior_not_covered, Severity::error, std::move(names), message,
                       "use a `pilot` ten times as long; if that does not help, the posterior has narrow or curved parts: remove "

@@ -146,7 +146,7 @@ Plot residual_plot(Excerpt const& of, std::string const& unit, Panel panel) {
 std::string caption_of_smoothed(PredictedQuantity const& quantity, std::string_view where) {
   return fmt::format(
       "{}{} given all samples of the record, with its 95 % band, which includes the uncertainty of states and parameters{}.",
-      quantity.name, where, quantity.average ? "; at each sample the mean from there to the next" : "");
+      quantity.name, where, quantity.average ? "; the value at each sample is the mean from there to the next" : "");
 }
 
 /// "deflection" of "white(deflection)": what the model says of a channel without its Gaussian processes.

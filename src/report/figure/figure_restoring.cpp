@@ -142,7 +142,8 @@ Figure loop_figure(RestoringForce const& force, std::string_view where) {
   }
   Figure out{drawing.name, fmt::format("Restoring force of {} on {}", force.displacement, force.experiment),
              loop_caption(force, where), script(drawing), Topic::fit};
-  if (!whole) out.caption += fmt::format(" Shown of the model are {} samples around the largest displacement.", last - first);
+  if (!whole)
+    out.caption += fmt::format(" The line of the model shows only the {} samples around the largest displacement.", last - first);
   return out;
 }
 

@@ -115,13 +115,13 @@ Figure whole_figure(Prediction const& prediction, PredictedQuantity const& quant
   std::vector<Series> series = {band("residuals", 2, 3, muted), level(0, model)};
   if (noisy) series.insert(series.begin(), band("residuals", 4, 5, noise_band));
   drawing.plots.push_back({std::move(below), {{"residuals", std::move(residuals)}}, std::move(series)});
-  return {
-      drawing.name, fmt::format("{} on {}, the whole record", quantity.name, prediction.experiment),
-      fmt::format("The whole record of {}{}: in each of {} stretches the range of what is measured and, between the lines, that of "
-                  "the model; below, the range of the residuals. The largest residual, {}, is at {}.",
-                  quantity.name, where, whole.stretches.size(), quantity_text(whole.worst, 3, quantity.unit),
-                  quantity_text(whole.worst_time, 5, prediction.time_unit)),
-      script(drawing), Topic::fit};
+  return {drawing.name, fmt::format("{} on {}, the whole record", quantity.name, prediction.experiment),
+          fmt::format(
+              "The whole record of {}{}, divided into {} intervals. Above: for each interval the range of the measured samples "
+              "(band) and of the model (between the lines). Below: the range of the residuals. The largest residual, {}, is at {}.",
+              quantity.name, where, whole.stretches.size(), quantity_text(whole.worst, 3, quantity.unit),
+              quantity_text(whole.worst_time, 5, prediction.time_unit)),
+          script(drawing), Topic::fit};
 }
 
 }  // namespace sysid

@@ -86,14 +86,15 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
     tables.push_back(std::move(noise));
   }
   if (!discovery.inner.empty()) {
-    ReportTable inner{"parameters inside terms",
-                      discovery.validation
-                          ? "Where the regression explains the record best; its coefficients and sds are given these "
-                            "values. In the fit by simulation all are free."
-                          : "Where the regression explains the record best. The coefficients and their sds are given "
-                            "these values.",
-                      {"parameter", "value", "unit", "prior"},
-                      {}};
+    ReportTable inner{
+        "parameters inside terms",
+        discovery.validation
+            ? "The values with which the regression explains the record best; its coefficients and sds are conditional on them. "
+              "In the fit by simulation all parameters are free."
+            : "The values with which the regression explains the record best. The coefficients and their sds are conditional "
+              "on them.",
+        {"parameter", "value", "unit", "prior"},
+        {}};
     for (DiscoveryReport::Inner const& each : discovery.inner)
       inner.rows.push_back({each.name, significant(each.value, 4), each.unit, each.prior});
     tables.push_back(std::move(inner));

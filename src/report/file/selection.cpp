@@ -83,8 +83,10 @@ ReportTable jump_table(SelectionReport const& selection) {
 }
 
 ReportTable population_table(SelectionReport const& selection) {
-  ReportTable table{
-      "populations", "Under each model: its probability by weights.", {"", "threshold", "simulations", "acceptance", "ess"}, {}};
+  ReportTable table{"populations",
+                    "The column of each model contains its probability, the sum of the weights of its particles.",
+                    {"", "threshold", "simulations", "acceptance", "ess"},
+                    {}};
   for (SelectedModel const& model : selection.result.models) table.header.push_back(model.name);
   for (std::size_t t = 0; t < selection.result.populations.size(); ++t) {
     PopulationRecord const& record = selection.result.populations[t];

@@ -50,7 +50,7 @@ ReportTable structure_table(ValidationReport const& validation) {
   ReportTable table{
       fmt::format("structures by simulation: {}", segments),
       "Log odds of a structure relative to the first: log evidence plus log prior, which depends on the number of terms. Draws "
-      "bounded: with how many draws of the coefficients the simulation stays within ten times the range of the measurements.",
+      "bounded: number of draws of the coefficients with which a free run stays within ten times the range of the measurements.",
       {"terms", "log odds", "probability", "residual/noise"},
       {}};
   bool const scored = !validation.held_out.empty();

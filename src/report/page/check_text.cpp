@@ -119,7 +119,7 @@ std::string failures_text(PriorPage const& prior) {
   if (prior.stiff_tried > 0)
     text += fmt::format(", {}{} with {}", prior.stiff_tried < prior.stiff_left ? "about " : "", prior.failed, prior.stiff_solver);
   int const curable = prior.failed_as_stated - prior.failed;
-  return text + fmt::format(": {} of these {} fail{} only because {}", curable, prior.failed_as_stated, curable == 1 ? "s" : "",
+  return text + fmt::format(": {} fail{} only because {}", curable, curable == 1 ? "s" : "",
                             prior.spent ? "more steps between two samples are needed" : "the steps are too long");
 }
 
@@ -164,7 +164,7 @@ std::string information_text(InformationPage const& page) {
   out += entry("", lines);
   std::string moves;
   for (auto const& [solver, move] : page.moves)
-    moves += fmt::format("{}{} sd for {}", moves.empty() ? "" : ", ", move > 5 ? "many" : significant(move, 2), solver);
+    moves += fmt::format("{}{} sd for {}", moves.empty() ? "" : ", ", move > 5 ? "more than 5" : significant(move, 2), solver);
   if (!moves.empty())
     out +=
         entry("solver", {fmt::format("with {}, parameters change by {}", page.refinement, moves),

@@ -103,7 +103,7 @@ std::string parameters(Report const& report) {
              std::string(optimum
                              ? "sd: of the normal approximation at the optimum (Laplace); of a quantity that is derived from the "
                                "others by its first derivatives there (the delta method). "
-                             : "Numbers end at their Monte Carlo error, or at a hundredth of the sd. ") +
+                             : "Digits below the Monte Carlo error, or below a hundredth of the sd, are not shown. ") +
                  (priors ? "Below each prior is its 90 % interval. The bar beside it shows the 90 % interval of the posterior "
                            "(the thick bar, with a stroke at the mean) within that of the prior, on a logarithmic scale if the "
                            "prior's "

@@ -18,7 +18,7 @@ std::string evidence_text(Evidence const& evidence);
 
 /// "log likelihood 5573.72 at its maximum (5 parameters, 500 samples)"; empty but for a fit of the likelihood alone.
 std::string likelihood_text(Report const& report);
-/// "no sd of ratio: the data leave open a direction along which it changes", of each that has none.
+/// "no sd of ratio: it has no derivative at the optimum", of each that has none.
 std::vector<std::string> without_sd_texts(Report const& report);
 
 /// Words with each number in them as pages show it: "-324.37 ± 0.01", "5.47e-8 (5e-10)" with minus signs and powers of ten. What

@@ -24,8 +24,9 @@ StateSize size_of(PredictedQuantity const& quantity) {
 ReportTable states_table(Report const& report) {
   ReportTable table{
       "States and disturbances",
-      "Given all samples of the record. rms: root mean square of the mean along the record; sd: that of the posterior sd, "
-      "parameters and states together. Where sd is about as large as rms, the record hardly determines the quantity.",
+      "Estimated from all samples of the record. rms: root mean square of the posterior mean along the record; sd: root mean "
+      "square of the posterior sd, which includes the uncertainty of the parameters. Where sd is about as large as rms, the record "
+      "hardly determines the quantity.",
       {"quantity", "unit", "rms", "sd"},
       {}};
   bool const several = report.states.size() > 1;

@@ -240,7 +240,7 @@ TEST_CASE("an average needs results of all its fits, and a result of other sampl
   auto const notes = compare({options.output / "both"}).notes;
   REQUIRE(notes.size() == 1);
   CAPTURE(notes.front());
-  CHECK(notes.front().find("used an earlier run of `curved`") != std::string::npos);
+  CHECK(notes.front().find("was made from an earlier run of `curved`") != std::string::npos);
   CHECK(refusal(with(models, "straight = fit line to table.train", "straight = fit line to table") + task) == "E6705");
   CHECK(refusal(with(models, "straight = fit line to table.train", "straight = fit line to table") +
                 with(task, "draws(50)", "draws(50), weights = equal")) == "");

@@ -189,7 +189,7 @@ TEST_CASE("a model that can have no disturbance is refused where it says so") {
       "model arx {\n time discrete 1 [s]\n input u\n parameter a ~ uniform(-1, 1)\n"
       " observe d ~ normal(a*lag(measured(d), 1) + lag(u, 1), sd = 1)\n}\n"
       "data b { file \"b.csv\"; time t [s]; input u = x; measure d = y }\npost = fit arx to b with map\n");
-  CHECK(has(past, "no equation of motion"));
+  CHECK(has(past, "no equation to which a disturbance can be added"));
   CHECK(has(at_past, "fit"));
   auto const [process, at_process] =
       refused(with(with(mast, "  observe", "  function f(t) ~ gp(squared_exponential(amplitude = 1 [mm], length = 1))\n  observe"),

@@ -108,7 +108,7 @@ best = fit line to record with ml, seed = 1
   for (int i = 0; i < Line::rows; ++i) sum += 0.01 * i * i;
   CHECK(number(found, "slope", "sd") == doctest::Approx(Line::noise / std::sqrt(sum)).epsilon(0.01));
   CHECK(found.at("other").at("sd").is_null());
-  CHECK(found.at("other").at("without_sd") == "the data leave open a direction along which it changes");
+  CHECK(found.at("other").at("without_sd") == "it changes along a combination of parameters that the data do not determine");
 }
 
 TEST_CASE("of Duffing's oscillator the delta method gives the sd of draws, on the page and in the terminal") {

@@ -173,8 +173,8 @@ TEST_CASE("free predictions know the rows before them and widen; one step ahead 
   CHECK(score("free", "coverage_95") > 0.9);
   CHECK(score("step", "coverage_95") > 0.9);
   auto const rule = [&](std::string const& task) { return run.summary(task).at("settings").at("prediction").get<std::string>(); };
-  CHECK(rule("step") == "one_step: states corrected by all samples before each row");
-  CHECK(rule("free") == "free_run: states corrected by the samples before the predicted rows only");
+  CHECK(rule("step") == "one_step: states estimated from all samples before each row");
+  CHECK(rule("free") == "free_run: states estimated only from the samples before the first predicted row");
   CHECK(run.summary("step").at("prediction_rule") == "one_step");
   // Between both: three rows ahead. One row is the same as one step.
   CHECK(score("first", "rmse") == score("step", "rmse"));
@@ -182,7 +182,7 @@ TEST_CASE("free predictions know the rows before them and widen; one step ahead 
   CHECK(score("third", "rmse") < score("free", "rmse"));
   CHECK(score("third", "coverage_95") > 0.9);
   CHECK(score("all", "coverage_95") > 0.9);
-  CHECK(rule("third") == "steps(3): states corrected by all samples up to 3 rows before each row");
+  CHECK(rule("third") == "steps(3): states estimated from the samples at least 3 rows before each row");
   CHECK(run.summary("third").at("prediction_rule") == "3 steps");
   // The last row of the free run is known from the rows before the predicted ones, as it is 300 rows ahead.
   auto const last = [&](std::string const& task) {

@@ -123,7 +123,7 @@ TEST_CASE("a column that counts the rows is no time without a unit") {
   Answer const asked = read_with(text, {}, "RECORD");
   CHECK(asked.code == "E4029");
   CHECK(has(asked.help, "write `rate` or `step` in place of `time`"));
-  CHECK(has(asked.help, "write `[s]` behind the column"));
+  CHECK(has(asked.help, "write `[s]` after the column"));
   CHECK(read_with(text, {}, "RECORD", "s").record->time == Numbers{7, 8, 9});
   CHECK(read_with("RECORD,y\n7,1\n8,2\n10,3\n", {}, "RECORD").record);
   CHECK(read_with("t,y\n7,1\n8,2\n9,3\n").record);

@@ -97,7 +97,7 @@ TEST_CASE("counts with an exponent are read to their last digit") {
     CAPTURE(none);
     CHECK_FALSE(read_serial(none, *find_serial_time("seconds")));
   }
-  CHECK(mentions(said_of({"45356", "noon"}, stamped("days")).help, "a number in every row"));
+  CHECK(mentions(said_of({"45356", "noon"}, stamped("days")).help, "every cell is a number"));
 }
 
 TEST_CASE("counts whose seconds have more than 64 bits are refused, and those of far times are not") {
