@@ -32,9 +32,16 @@ void to_si(std::vector<double>& values, ColumnRequest const& request) {
   for (double& value : values) value = convert(value, unit, *declared) * declared->scale;
 }
 
+bool is_interval(Unit const& unit) { return unit.text.starts_with("delta_"); }
+
+/// Of numbers that need no change to be in the other: a difference of temperatures is called as they are, and what turns 3000 times
+/// in a minute has 3000 rpm and 3000 1/min.
 bool same_unit(Unit const& a, Unit const& b) {
+  bool const turns = cycles_against_radians(a, b);
+  if (turns && a.hertz == b.hertz) return true;
   auto const same = [](double x, double y) { return std::fabs(x - y) <= 1e-9 * std::max(std::fabs(x), std::fabs(y)); };
-  return a.dimension == b.dimension && same(a.scale, b.scale) && same(a.offset, b.offset) && !cycles_against_radians(a, b);
+  return a.dimension == b.dimension && same(a.scale, b.scale) && !turns &&
+         (same(a.offset, b.offset) || is_interval(a) || is_interval(b));
 }
 
 /// `F [kN]` that the data block has in N. What is no unit of the kind that is wanted may be no unit at all, as in `sensor (A)` and
@@ -69,6 +76,8 @@ Request with_unit_of_file(RecordFile const& file, Request request) {
         file.name(), request.column, unit->text,
         request.declared->text.empty() ? format_dimension(request.declared->dimension) : request.declared->text, request.mention));
   request.unit = unit;
+  // A file that calls differences of temperatures degC does not mean that they begin at 273.15 K.
+  if (request.declared && is_interval(*request.declared)) request.unit->offset = 0;
   return request;
 }
 

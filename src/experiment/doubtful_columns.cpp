@@ -20,8 +20,11 @@ std::string cure_of(UnitInName const& found) {
         "one counts cycles, the other radians: declare in the model in {} what it measures, and write the factor 2*pi "
         "where the equations need it; if the name is wrong, write `{}` in the data block",
         found.in_name, read);
-  return fmt::format("if the name is right, write `{}` in the data block{}", named,
-                     found.stated ? "" : fmt::format("; if not, `{}`", read));
+  bool const has_zero_point = found.in_name == "degC" || found.in_name == "degF";
+  return fmt::format(
+      "if the name is right, write `{}` in the data block{}{}", named,
+      has_zero_point ? fmt::format(", or `{}` if it is a difference", column_text(found.column, "delta_" + found.in_name)) : "",
+      found.stated ? "" : fmt::format("; if not, `{}`", read));
 }
 
 }  // namespace
@@ -47,15 +50,16 @@ Findings find_rounded_times(CheckedFile const& file, ExperimentData const& data,
   if (std::any_of(data.record.other_units.begin(), data.record.other_units.end(), is_time)) return {};
   double const scale = data.record.time_unit ? data.record.time_unit->scale : 1;
   std::string const unit = data.record.time_unit ? data.record.time_unit->text : "s";
-  return {{FindingCode::times_rounded,
-           Severity::warning,
-           {data.use.name},
-           fmt::format("the time steps of {} are {} or {} {}: this results if times at equal steps, {} Hz, are rounded",
-                       data.use.name, fmt::format("{:.6g}", rounded->lower / scale),
-                       fmt::format("{:.6g}", (rounded->lower + rounded->unit) / scale), unit, shortest(rounded->rate)),
-           fmt::format("if the samples were taken at equal steps, write `rate {} [Hz]` in place of `time` in `{}`: times that are "
-                       "wrong by a fraction of a step act like noise, and bias the estimates",
-                       shortest(rounded->rate), block.name)}};
+  return {
+      {FindingCode::times_rounded,
+       Severity::warning,
+       {data.use.name},
+       fmt::format("the time steps of {} are {} or {} {}: this results if times at equal steps, {} Hz, are rounded", data.use.name,
+                   fmt::format("{:.6g}", rounded->lower / scale), fmt::format("{:.6g}", (rounded->lower + rounded->unit) / scale),
+                   unit, shortest(rounded->rate)),
+       fmt::format("if the samples were taken at equal steps, write `rate {} [Hz]` in place of `time` in `{}`: times that are "
+                   "wrong by a fraction of a step act like noise, and bias the estimates{}",
+                   shortest(rounded->rate), block.name, data.experiment.time.front() == 0 ? "" : " (the time then begins at 0)")}};
 }
 
 }  // namespace sysid

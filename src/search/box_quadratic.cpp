@@ -1,8 +1,10 @@
-// Differences on both sides of a place, or twice inwards at an end of the box.
+// The target's own derivatives; else differences on both sides of a place, or twice inwards at an end of the box.
 #include "search/box_quadratic.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "linear_algebra/decompositions.hpp"
 #include "search/descent.hpp"
@@ -133,8 +135,32 @@ void add_prior_at(Objective const& objective, Box const& box, Eigen::VectorXd co
 
 }  // namespace
 
-std::vector<Quadratic> quadratics_at(Objective const& objective, Box const& box, std::vector<Eigen::VectorXd> const& places,
-                                     std::vector<Eigen::MatrixXd> const& curvatures, Ledger& ledger) {
+namespace {
+
+/// By the target's own derivatives. Where it has none of a place, nothing.
+std::vector<std::optional<Quadratic>> by_derivatives(Objective const& objective, Box const& box,
+                                                     std::vector<Eigen::VectorXd> const& places, Ledger& ledger) {
+  int const n = objective.dimension(), width = static_cast<int>(places.size());
+  std::vector<Eigen::VectorXd> outside;
+  for (Eigen::VectorXd const& z : places) outside.push_back(box.outside(z));
+  LaneArray gradient(n, width), curvature(n * n, width);
+  objective.target.gauss_newton(to_lanes(outside), {}, gradient, curvature, ledger);
+  std::vector<std::optional<Quadratic>> quadratics(places.size());
+  for (int k = 0; k < width; ++k) {
+    Eigen::VectorXd const slope = box.slope(outside[static_cast<std::size_t>(k)]);
+    Quadratic made{Eigen::VectorXd(n), Eigen::MatrixXd(n, n)};
+    for (int p = 0; p < n; ++p) {
+      made.gradient(p) = gradient(p, k) / slope(p);
+      for (int q = 0; q < n; ++q) made.curvature(p, q) = curvature(p * n + q, k) / (slope(p) * slope(q));
+    }
+    bool const known = made.gradient.allFinite() && made.curvature.allFinite() && !made.curvature.isZero(0);
+    if (known) quadratics[static_cast<std::size_t>(k)] = std::move(made);
+  }
+  return quadratics;
+}
+
+std::vector<Quadratic> by_differences(Objective const& objective, Box const& box, std::vector<Eigen::VectorXd> const& places,
+                                      std::vector<Eigen::MatrixXd> const& curvatures, Ledger& ledger) {
   double const least = difference_width(objective.target);
   std::vector<Differences> differences;
   std::vector<Eigen::VectorXd> points;
@@ -147,8 +173,29 @@ std::vector<Quadratic> quadratics_at(Objective const& objective, Box const& box,
   objective.target.residuals(to_lanes(points), residuals, ledger);
   std::vector<Quadratic> quadratics;
   int const columns = 1 + 2 * objective.dimension();
-  for (std::size_t k = 0; k < places.size(); ++k) {
+  for (std::size_t k = 0; k < places.size(); ++k)
     quadratics.push_back(of_residuals(residuals, static_cast<int>(k) * columns, differences[k]));
+  return quadratics;
+}
+
+}  // namespace
+
+std::vector<Quadratic> quadratics_at(Objective const& objective, Box const& box, std::vector<Eigen::VectorXd> const& places,
+                                     std::vector<Eigen::MatrixXd> const& curvatures, Ledger& ledger) {
+  // Of a long record with little noise the sds are as short as differences can be, over which the residuals bend.
+  bool const exact = objective.target.derivatives() == DerivativeSource::exact && objective.target.roughness() == 0;
+  std::vector<std::optional<Quadratic>> known(places.size());
+  if (exact) known = by_derivatives(objective, box, places, ledger);
+  std::vector<Eigen::VectorXd> left;
+  std::vector<Eigen::MatrixXd> of_left;
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (!known[k]) left.push_back(places[k]), of_left.push_back(curvatures[k]);
+  std::vector<Quadratic> differenced;
+  if (!left.empty()) differenced = by_differences(objective, box, left, of_left, ledger);
+  std::vector<Quadratic> quadratics;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    quadratics.push_back(std::move(known[k] ? *known[k] : differenced[next++]));
     add_prior_at(objective, box, places[k], quadratics.back());
   }
   return quadratics;

@@ -158,6 +158,7 @@ TEST_CASE("cycles against radians are told apart where the SI sees the same unit
   CHECK_FALSE(cycles_against_radians(atom("Hz"), atom("kHz")));
   CHECK_FALSE(cycles_against_radians(atom("Hz"), rate));
   CHECK_FALSE(cycles_against_radians(rate, angular));
+  CHECK(cycles_against_radians(atom("rpm"), divide(Unit{}, atom("min"))));
   CHECK_FALSE(cycles_against_radians(divide(atom("N"), atom("rad")), atom("N")));
 }
 

@@ -68,6 +68,29 @@ TEST_CASE("names that end like another unit, and in the right one, are left alon
             .empty());
 }
 
+TEST_CASE("turns in a minute have one number in rpm and 1/min, and cycles and radians are not converted") {
+  auto const of = [](std::string const& name, std::string const& unit, std::string const& written) {
+    TemporaryFolder folder;
+    std::string table = name + "\n";
+    for (int i = 0; i < 50; ++i) table += fmt::format("{:.6g}\n", 3000 + std::sin(1.7 * i));
+    write_file(folder.path() / "record.csv", table);
+    return checked(folder.path() / "m.sysid", "model m {\n parameter n [" + unit + "] ~ log_uniform(0.1, 1e6)\n observe z [" +
+                                                  unit + "] ~ normal(n, sd = 1 [" + unit +
+                                                  "])\n}\ndata record { file \"record.csv\"; " + written +
+                                                  " }\nposterior = fit m to record with map, seed = 1\n");
+  };
+  CHECK(messages(of("w_rpm", "1/min", "measure z = w_rpm"), "unit_in_name").empty());
+  CHECK(messages(of("N (rpm)", "1/min", "measure z = \"N (rpm)\" [1/min]"), "unit_in_name").empty());
+  CheckResult const frequency = of("f_Hz", "rad/s", "measure z = f_Hz");
+  CHECK(messages(frequency, "unit_in_name").size() == 1);
+  CHECK(help_of(frequency, FindingCode::unit_in_name).find("2*pi") != std::string::npos);
+  CHECK(messages(of("f_Hz", "Hz", "measure z = f_Hz"), "unit_in_name").empty());
+  // A difference of temperatures, as a name calls it.
+  CHECK(messages(of("dT_degC", "delta_degC", "measure z = dT_degC"), "unit_in_name").empty());
+  CheckResult const kelvin = of("dT_degC", "K", "measure z = dT_degC");
+  CHECK(help_of(kelvin, FindingCode::unit_in_name).find("`dT_degC [delta_degC]` if it is a difference") != std::string::npos);
+}
+
 TEST_CASE("rounded times are named with the rate that reads them, which is then no finding") {
   std::string const rest = "; input u = force hold linear; measure z = level [mm]";
   CheckResult const rounded = check_of("t,force,level", "time t [ms]" + rest, true);

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <numbers>
 #include <numeric>
 #include <span>
 
@@ -312,7 +313,13 @@ double convert(double value, Unit const& from, Unit const& to) {
   return (value * from.scale + (from.offset - to.offset)) / to.scale;
 }
 
-bool cycles_against_radians(Unit const& a, Unit const& b) { return !(a.hertz == b.hertz) && !(a.radian == b.radian); }
+bool cycles_against_radians(Unit const& a, Unit const& b) {
+  if (a.radian == b.radian) return false;
+  if (!(a.hertz == b.hertz)) return true;
+  // What turns 3000 times in a minute has 3000 rpm, 2 pi/60 rad/s each, and 3000 1/min.
+  double const ratio = std::fabs(elementary::log(a.scale / b.scale));
+  return a.dimension == b.dimension && std::fabs(ratio - elementary::log(2 * std::numbers::pi)) < 1e-9;
+}
 
 std::string format_dimension(Dimension const& dimension) {
   std::string above, below;

@@ -61,12 +61,14 @@ std::vector<ModeAtBound> modes_at_bounds(Objective const& objective, Mode const&
     double const all_the_way = thousand * towards_bound(objective, theta, p);
     std::vector<double> moves{0, all_the_way, all_the_way / 2};
     for (int k = 1; one && k <= further; ++k) moves.push_back(k * room / further);
+    // Of an interval: its middle, and nine tenths and all but a thousandth of the way to the other bound.
+    for (double const away : {0.0, std::log(9.0), thousand})
+      if (two) moves.push_back((all_the_way > 0 ? -away : away) - theta(p));
     std::vector<Eigen::VectorXd> places(moves.size(), theta);
     for (std::size_t k = 0; k < moves.size(); ++k) places[k](p) += moves[k];
     Ledger untold;  // places that nobody asked for
     std::vector<double> const density = log_density_in_blocks(objective, to_lanes(places), untold);
-    bool const resists =
-        two || std::any_of(density.begin() + 3, density.end(), [&](double each) { return each < density[0] - fallen; });
+    bool const resists = std::any_of(density.begin() + 3, density.end(), [&](double each) { return each < density[0] - fallen; });
     if (!resists || !(density[1] > density[0] - same)) continue;
     // A power of the distance rises by as much in each half of the way; a density that ends at the bound hardly in the second.
     bool const ends_nowhere = density[1] > density[0] + rises && density[1] - density[2] > (density[2] - density[0]) / 4;

@@ -23,8 +23,8 @@ struct ModeAtBound {
 /// The parameters that lie at a bound in a mode of `objective`, as its density tells it, ascending. At a bound it does not fall
 /// when the parameter is moved to a thousandth of its distance: a mode x sds away from the bound, x^2/2 of which are seen, is
 /// inside. Where a support has two bounds, the mode must also be within a thousandth of its width or of a positive lower bound.
-/// Where it has one, the density must fall by half a nat between the mode and the end of the prior: else the data do not determine
-/// the parameter, which is another finding.
+/// The density must fall by half a nat between the mode and the other end of the prior: else the data do not determine the
+/// parameter, which is another finding.
 std::vector<ModeAtBound> modes_at_bounds(Objective const& objective, Mode const& mode);
 
 }  // namespace sysid

@@ -65,3 +65,15 @@ TEST_CASE("a density that ends at the bound has a maximum there, however steeply
     CHECK_FALSE(bounds[0].unbounded);
   }
 }
+
+TEST_CASE("a parameter that changes nothing is not at a bound, wherever the search has left it") {
+  for (double const effect : {1e-6, 1.0}) {
+    TestTarget const target({"x"}, {{Prior::uniform, 0, 1000}}, 1, 0,
+                            [=](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = effect * (w[0] + 1); });
+    Objective const objective = make_objective(target, ObjectiveKind::declared_posterior, 1, 1);
+    Mode mode;
+    mode.declared = {1e-3};
+    mode.theta = {std::log(1e-6 / (1 - 1e-6))};
+    CHECK(modes_at_bounds(objective, mode).size() == (effect < 1 ? 0 : 1));
+  }
+}
