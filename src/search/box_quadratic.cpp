@@ -144,7 +144,8 @@ std::vector<std::optional<Quadratic>> by_derivatives(Objective const& objective,
   std::vector<Eigen::VectorXd> outside;
   for (Eigen::VectorXd const& z : places) outside.push_back(box.outside(z));
   LaneArray gradient(n, width), curvature(n * n, width);
-  objective.target.gauss_newton(to_lanes(outside), {}, gradient, curvature, ledger);
+  Eigen::VectorXd const steps = difference_width(objective.target) * objective.scale;  // of what the derivatives leave out
+  objective.target.gauss_newton(to_lanes(outside), {steps.data(), static_cast<std::size_t>(n)}, gradient, curvature, ledger);
   std::vector<std::optional<Quadratic>> quadratics(places.size());
   for (int k = 0; k < width; ++k) {
     Eigen::VectorXd const slope = box.slope(outside[static_cast<std::size_t>(k)]);

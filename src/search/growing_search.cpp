@@ -21,7 +21,7 @@ namespace {
 constexpr double first_scored = 64;   // rows of the first part
 constexpr double residuals_each = 4;  // of the first part, for each parameter
 constexpr double longest_first_part = 0.5;
-constexpr double long_jacobian = 3e4;  // numbers
+constexpr double long_jacobian = 4e3;  // numbers
 constexpr int stage_rounds = 6;
 constexpr double stage_simulations = 200;  // whole ones, of the rounds of a stage where its breadth allows
 constexpr double least_breadth_at_first = 16, least_breadth = 4, most_breadth = 256, most_with_functions = 16;

@@ -26,7 +26,7 @@ struct ShorterRecords {
 };
 
 /// Whether a record is so long, and its parameters so many, that a search begins with a part of it: the Jacobian of its residuals
-/// has 30,000 numbers or more, and half of the rows or less are enough to begin with.
+/// has 4,000 numbers or more, and half of the rows or less are enough to begin with.
 bool worth_growing(Target const& target, ShorterRecords const& records);
 
 struct GrownModes {

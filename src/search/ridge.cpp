@@ -13,7 +13,7 @@ namespace sysid {
 namespace {
 
 constexpr double tolerated = 4.5;
-constexpr int most_steps = 12;
+constexpr int most_steps = 12, of_short_move = 4;                  // back to the ridge
 constexpr std::array step_dampings = {0.0, 1e-8, 1e-4, 1.0, 1e4};  // of the largest curvature
 
 /// Steps from `theta` at right angles to the unit vector `along`, which is in widths of the prior, for each damping.
@@ -41,9 +41,9 @@ std::vector<Eigen::VectorXd> steps_across(Objective const& likelihood, Eigen::Ve
 
 /// Where the ridge at `from`, beside a place of this log likelihood, is as high; nothing if it is not.
 std::optional<Eigen::VectorXd> top_beside(Objective const& likelihood, Eigen::VectorXd from, Eigen::VectorXd const& along,
-                                          double top, Ledger& ledger) {
+                                          double top, int rounds, Ledger& ledger) {
   double height = likelihood.log_density(to_lanes({from}), ledger).front();
-  for (int round = 0; round < most_steps && height < top - tolerated; ++round) {
+  for (int round = 0; round < rounds && height < top - tolerated; ++round) {
     std::vector<Eigen::VectorXd> places = steps_across(likelihood, from, along, ledger);
     if (places.empty()) return std::nullopt;
     for (Eigen::VectorXd& each : places) each = likelihood.clamp(from + each, from);
@@ -68,24 +68,25 @@ struct Ridge {
     top = likelihood.log_density(to_lanes({theta}), ledger).front();
   }
   Eigen::VectorXd direction(Eigen::VectorXd const& move) const { return move.cwiseQuotient(likelihood.scale).normalized(); }
-  std::optional<Eigen::VectorXd> beside(Eigen::VectorXd const& place, Eigen::VectorXd const& move, Ledger& ledger) const {
-    return top_beside(likelihood, likelihood.clamp(place + move, place), direction(move), top, ledger);
+  std::optional<Eigen::VectorXd> beside(Eigen::VectorXd const& place, Eigen::VectorXd const& move, int rounds,
+                                        Ledger& ledger) const {
+    return top_beside(likelihood, likelihood.clamp(place + move, place), direction(move), top, rounds, ledger);
   }
 };
 
 bool reaches(Ridge const& ridge, Eigen::VectorXd const& move, Ledger& ledger) {
-  return ridge.beside(ridge.theta, move, ledger).has_value();
+  return ridge.beside(ridge.theta, move, most_steps, ledger).has_value();
 }
 
 /// Whether the ridge goes on to the end of the move, or bends away from it by more than priors are wide: a p q that is known ends,
 /// along p, where q does. In steps that get shorter where the ridge bends more.
 bool goes_on(Ridge const& ridge, Eigen::VectorXd const& move, Ledger& ledger) {
   constexpr double longest = 1.0 / 8, shortest = longest / 16384, bent = 3;  // bent: widths of the prior
-  constexpr int most_tries = 60;
+  constexpr int most_tries = 40;
   Eigen::VectorXd place = ridge.theta;
   double at = 0, step = longest;
   for (int tried = 0; tried < most_tries && at < 1; ++tried) {
-    auto const next = ridge.beside(place, step * move, ledger);
+    auto const next = ridge.beside(place, step * move, of_short_move, ledger);
     if (!next) {
       step /= 2;
       if (step < shortest) return false;

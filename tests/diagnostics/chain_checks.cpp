@@ -43,7 +43,7 @@ TEST_CASE("a chain that accepts almost nothing did not move, and that is all tha
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].code == FindingCode::chain_did_not_move);
   CHECK(findings[0].severity == Severity::error);
-  CHECK(findings[0].message.find("chain 4 accepted 0.01 %") != std::string::npos);
+  CHECK(findings[0].message.find("chain 4 did not move: 0.01 % of the proposed moves were accepted") != std::string::npos);
   CHECK(findings[0].help.find("proposal = adaptive") != std::string::npos);
   fixed.adaptive = true;
   CHECK(check_chains(fixed)[0].help.find("burn_in") != std::string::npos);

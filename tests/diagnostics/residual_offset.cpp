@@ -214,7 +214,7 @@ TEST_CASE("records of different offsets get one declaration, and an offset that 
   json const held = findings_of(begin + "  parameter b [mm] ~ normal(0, sd = 100)\n" + shared, data, "one, two");
   json const* const both = of_code(held, "residual_offset");
   REQUIRE_MESSAGE(both != nullptr, held.dump());
-  CHECK(both->at("help").get<std::string>().find("write `per experiment` behind `b`") != std::string::npos);
+  CHECK(both->at("help").get<std::string>().find("write `per experiment` after `b`") != std::string::npos);
   json const apart = findings_of(begin + "  parameter b per experiment [mm] ~ normal(0, sd = 100)\n" + shared, data, "one, two");
   CHECK_MESSAGE(of_code(apart, "residual_offset") == nullptr, apart.dump());
 }
