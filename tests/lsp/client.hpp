@@ -71,9 +71,13 @@ class Client {
   }
   /// Bytes of `old` replaced, as an editor sends it.
   void edit(std::string const& old, Span span, std::string const& text) {
+    type(old, span, text);
+    settle();
+  }
+  /// The same, while more is being typed: nothing is said yet.
+  void type(std::string const& old, Span span, std::string const& text) {
     notify("textDocument/didChange", {{"textDocument", {{"uri", uri}, {"version", ++version_}}},
                                       {"contentChanges", {{{"range", lsp::range(lsp::Lines(old), span)}, {"text", text}}}}});
-    settle();
   }
   Json at(std::string const& method, std::string const& text, std::size_t offset, Json more = Json::object()) {
     more["textDocument"] = {{"uri", uri}};

@@ -102,12 +102,28 @@ forecast  = predict posterior on bench.test with draws(20), seed = 1
 """
 
 
+def notebook_of(*cells):
+    return nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(each) for each in cells])
+
+
 class Cells(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # To start a kernel and import all takes longer than the cells do: one serves all of these tests.
+        folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, folder)
+        cls.client = nbclient.NotebookClient(notebook_of(), timeout=300, kernel_name="python3", record_timing=False, resources={"metadata": {"path": folder}})
+        cls.addClassCleanup(cls.client.execute, cleanup_kc=True)
+
     def run_cells(self, *cells, allow_errors=False):
+        """In a folder of their own, where no name is known and the extension has just been loaded."""
         with tempfile.TemporaryDirectory() as folder:
             pathlib.Path(folder, "bench.csv").write_text(TABLE)
-            notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(each) for each in ("%load_ext sysid", *cells)])
-            return [shown(cell) for cell in executed(notebook, folder, allow_errors=allow_errors).cells[1:]]
+            before = ("%reset -f", "%unload_ext sysid", f"import os\nos.chdir({folder!r})\ndel os", "%load_ext sysid")
+            self.client.nb = notebook_of(*before, *cells, "import os\nos.chdir('/')")
+            self.client.allow_errors = allow_errors
+            self.client.execute(cleanup_kc=False)
+            return [shown(cell) for cell in self.client.nb.cells[len(before) : -1]]
 
     def test_results_are_shown_and_bound(self):
         cell, names, moved = self.run_cells(
@@ -186,7 +202,7 @@ class Cells(unittest.TestCase):
     def test_progress_is_a_bar_that_gives_way_to_the_result(self):
         code = """
 import sysid._notebook, sysid._progress
-sysid._progress.Bar.PATIENCE = 0
+patience, sysid._progress.Bar.PATIENCE = sysid._progress.Bar.PATIENCE, 0
 seen = []
 display = sysid._notebook.display
 def watched(*arguments, **options):
@@ -200,7 +216,9 @@ def watched(*arguments, **options):
     return handle
 sysid._notebook.display = watched
 """
-        cell, seen = self.run_cells(code, CELL.replace("samples = 400", "samples = 300000"), "print(len(seen) > 1, all('<progress max=' in each for each in seen))")[1:]
+        asked = "print(len(seen) > 1, all('<progress max=' in each for each in seen))"
+        taken_back = "sysid._notebook.display, sysid._progress.Bar.PATIENCE = display, patience"
+        cell, seen = self.run_cells(code, CELL.replace("samples = 400", "samples = 300000"), asked, taken_back)[1:3]
         self.assertEqual(len(cell), 2)
         self.assertNotIn("<progress", cell[0]["text/html"])
         self.assertEqual(seen[0][1], "True True\n")
