@@ -40,6 +40,11 @@ std::string array_of_structs(matvar_t const& variable) {
   return fmt::format("is a {0} array of structs: save what is in it as vectors, such as `{1}_1 = {2}(1).{1}`", size, field, name);
 }
 
+std::string complex_refusal(matvar_t const& variable) {
+  std::string const name = variable.name == nullptr ? "z" : variable.name;
+  return fmt::format("is complex: save its parts as variables of their own, `{0}_re = real({0})` and `{0}_im = imag({0})`", name);
+}
+
 std::string matlab_refusal(matvar_t const& variable) {
   switch (variable.class_type) {
     case MAT_C_DOUBLE:
@@ -52,7 +57,7 @@ std::string matlab_refusal(matvar_t const& variable) {
     case MAT_C_UINT32:
     case MAT_C_INT64:
     case MAT_C_UINT64:
-      return variable.isComplex ? "is complex: save its `real` and `imag` parts" : "";
+      return variable.isComplex ? complex_refusal(variable) : "";
     case MAT_C_CHAR:
       return "is text";
     case MAT_C_SPARSE:
