@@ -49,7 +49,7 @@ std::string read_drift(std::string const& text, DriftOption& drift) {
   if (!good)
     return fmt::format("invalid drift `{}`: a drift is a fraction from 0 to 1 in 1000 rows, or in a time: 0.01, 0.01/h, 0.05/day",
                        text);
-  drift = {relative, time};
+  drift = {relative, time, text};
   return "";
 }
 

@@ -13,6 +13,7 @@
 #include "data/cell/time_doubt.hpp"
 #include "data/cell/unit_text.hpp"
 #include "data/format/open_record.hpp"
+#include "data/input_gap.hpp"
 #include "data/table/file_errors.hpp"
 #include "data/table_record.hpp"
 
@@ -52,8 +53,20 @@ void refuse_other_unit_in_name(RecordFile const& file, std::string const& column
   if (!unit) return;
   bool const surely = trimmed(column).ends_with(']') && split->unit.size() > 1;
   if (same_unit(*unit, stated) || (unit->dimension != stated.dimension && !surely)) return;
-  throw UserError(data_errors::unit_differs_from_name(file.name(), {column, split->name}, {stated.text, split->unit},
-                                                      file.row_count().has_value(), mention));
+  throw UserError(data_errors::unit_differs_from_name(
+      file.name(), {column, split->name}, {stated.text, split->unit, unit->dimension == stated.dimension ? unit->text : ""},
+      file.row_count().has_value(), mention));
+}
+
+/// `F [kN]` without a unit in the data block would be read in the unit of the model.
+void refuse_unit_left_out(RecordFile const& file, std::string const& column, Unit const& read_in, std::optional<Span> mention) {
+  auto const split = split_name(column);
+  std::optional<Unit> const unit = split ? unit_of_text(split->unit, read_in) : std::nullopt;
+  if (!unit || unit->dimension != read_in.dimension || same_unit(*unit, read_in)) return;
+  throw UserError(data_errors::unit_differs_from_name(
+      file.name(), {column, split->name},
+      {read_in.text.empty() ? format_dimension(read_in.dimension) : read_in.text, split->unit, unit->text},
+      file.row_count().has_value(), mention));
 }
 
 /// With the unit that the file states, where the data block has it read and gives none itself; the two must agree.
@@ -61,6 +74,7 @@ template <class Request>
 Request with_unit_of_file(RecordFile const& file, Request request) {
   std::optional<std::string> const text = file.unit(request.column);
   if (!text && request.unit) refuse_other_unit_in_name(file, request.column, *request.unit, request.mention);
+  if (!text && !request.unit && request.declared) refuse_unit_left_out(file, request.column, *request.declared, request.mention);
   if (!text) return request;
   std::optional<Unit> const& wanted = request.unit ? request.unit : request.declared;
   std::optional<Unit> const unit = wanted ? unit_of_text(*text, *wanted) : unit_of_text(*text);
@@ -103,6 +117,7 @@ class Columns {
     std::vector<double> const written = complete(file_.times(column.column, column.mention), column, "the time");
     if (!file_.has_stamps()) {
       column = with_unit_of_file(file_, column);
+      if (!column.unit) refuse_unit_left_out(file_, column.column, unit_atom("s").value(), column.mention);
       if (column.unit && column.unit->dimension != unit_atom("s").value().dimension)
         throw UserError(data_errors::unit_of_another_kind(file_.name(), column.column, column.unit->text, "s", column.mention));
       time_unit_ = column.unit;
@@ -135,10 +150,20 @@ class Columns {
       time[i] = request_.step > 0 ? static_cast<double>(i) * request_.step : static_cast<double>(i + 1);
     return time;
   }
-  std::vector<double> input(InputRequest const& asked) {
+  /// Rows that arrive one by one are used at once, so none of them may lack a value.
+  std::vector<double> input(InputRequest const& asked, std::size_t index, bool whole) {
     InputRequest const column = with_unit_of_file(file_, asked);
     note_unit(column);
-    std::vector<double> values = complete(file_.numbers(column.column, column.mention), column, "an input");
+    std::vector<double> values = file_.numbers(column.column, column.mention);
+    bool const empty = std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
+    values = whole && !empty ? of_one_length(std::move(values), column) : complete(std::move(values), column, "an input");
+    for (InputGap& gap : bridge_gaps(values)) {
+      gap.input = index;
+      gap.line = file_.place(static_cast<std::size_t>(gap.first - 1), column.column).line;
+      gap.column = column.column;
+      gap.mention = column.mention;
+      gaps_.push_back(std::move(gap));
+    }
     to_si(values, column);
     return values;
   }
@@ -155,6 +180,7 @@ class Columns {
   std::optional<Unit> const& time_unit() const { return time_unit_; }
   std::vector<UnitInName> const& other_units() const { return other_units_; }
   std::optional<RoundedSteps> const& rounded() const { return rounded_; }
+  std::vector<InputGap> const& gaps() const { return gaps_; }
 
  private:
   void note_unit(ColumnRequest const& column, std::optional<Unit> const& usual = std::nullopt) {
@@ -210,6 +236,7 @@ class Columns {
   std::optional<Unit> time_unit_;
   std::vector<UnitInName> other_units_;
   std::optional<RoundedSteps> rounded_;
+  std::vector<InputGap> gaps_;
 };
 
 /// The diagnostic of a UserError, pointing to `mention` when it points nowhere yet.
@@ -273,7 +300,8 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
   std::optional<std::vector<double>> time;
   if (request.time) time = keep([&] { return columns.times(whole); }, request.mention);
   std::vector<std::optional<std::vector<double>>> inputs;
-  for (InputRequest const& input : request.inputs) inputs.push_back(keep([&] { return columns.input(input); }, input.mention));
+  for (InputRequest const& input : request.inputs)
+    inputs.push_back(keep([&] { return columns.input(input, inputs.size(), whole); }, input.mention));
   for (std::optional<ColumnRequest> const& channel : request.measured) {
     auto samples = channel ? keep([&] { return columns.measured(*channel); }, channel->mention) : std::vector<double>();
     if (samples) record.measured.push_back(std::move(*samples));
@@ -298,6 +326,7 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
   record.time_unit = file.has_stamps() && request.time ? request.time->unit : columns.time_unit();
   record.other_units = columns.other_units();
   record.rounded = columns.rounded();
+  record.gaps = columns.gaps();
   return record;
 }
 
@@ -316,14 +345,15 @@ std::optional<Diagnostic> check_rows(Record const& record, std::string const& wh
   return data_errors::rows_outside(record.path, what, rows.first, last, record.rows(), mention);
 }
 
-Experiment make_experiment(Record const& record, std::string name, int simulate_from, RowRange scored,
-                           std::optional<Span> mention) {
+Experiment make_experiment(Record const& record, std::string name, int simulate_from, RowRange scored, std::optional<Span> mention,
+                           int earlier) {
   if (std::optional<Diagnostic> wrong = check_rows(record, fmt::format("`{}`", name), scored, mention))
     throw UserError(std::move(*wrong));
   if (simulate_from < 1 || simulate_from > scored.first)
     throw InternalError("a simulation starts after the first row it is scored on");
   int const last = scored.last == 0 ? record.rows() : scored.last;
   int const begin = simulate_from - 1;
+  refuse_gaps(record, {simulate_from - earlier, last}, {simulate_from, last});
   Experiment experiment;
   experiment.name = std::move(name);
   experiment.first_row = simulate_from;

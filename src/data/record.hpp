@@ -47,12 +47,23 @@ struct UnitInName {
   bool cycles = false;  // one counts cycles and the other radians
 };
 
+/// Rows without a value of an input. The input bridges them by a straight line, which no run may use.
+struct InputGap {
+  std::size_t input = 0;    // its index
+  int first = 0, last = 0;  // rows
+  int line = 0;             // of the first, in the file; 0: a file without lines
+  std::string column;
+  double before = 0, after = 0;  // the numbers around it, as the file has them; NaN at an end of the record
+  std::optional<Span> mention;
+};
+
 struct Record {
   std::string path;
   std::string digest;                         // SHA-256 of the file
   std::vector<double> time;                   // [N] s, strictly increasing, N >= 2
   std::optional<Unit> time_unit;              // in which people read them; absent: seconds
   std::vector<InputSignal> inputs;            // over the whole record
+  std::vector<InputGap> gaps;                 // of inputs, those of one input in the order of rows
   std::vector<std::vector<double>> measured;  // [N] each, NaN where missing; empty: not in this data
   std::vector<std::string> comments;          // before the header of the file
   std::vector<UnitInName> other_units;
@@ -79,8 +90,9 @@ std::optional<Diagnostic> check_rows(Record const& record, std::string const& wh
 /// Rows simulate_from..scored.last, of which `scored` count in the likelihood. simulate_from is 1 where simulation runs from the
 /// record's first row, scored.first for a start at rest, less than that where a start is estimated. Inputs keep the shape that the
 /// whole record gives them; times are those of the record. UserError when the rows are not in the record; simulate_from is
-/// in 1..scored.first.
+/// in 1..scored.first. E4013 where an input has no value in a row that is simulated, among the `earlier` rows before them, or where
+/// its rule reads around them.
 Experiment make_experiment(Record const& record, std::string name, int simulate_from, RowRange scored,
-                           std::optional<Span> mention = std::nullopt);
+                           std::optional<Span> mention = std::nullopt, int earlier = 0);
 
 }  // namespace sysid

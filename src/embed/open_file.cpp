@@ -100,12 +100,12 @@ int fit_task(CheckedFile const& file, std::string const& name) {
 }  // namespace
 
 OpenFile::OpenFile(std::string const& path, std::optional<std::string> const& text,
-                   std::map<std::string, std::string> const& records)
+                   std::map<std::string, std::string> const& records, bool awaits_records)
     : source_(path, "") {
   guarded(source_, [&] { source_ = Source(path, text ? *text : read_file(path, most_text_bytes + 1)); });
   guarded(source_, [&] {
     Diagnostics diagnostics;
-    file_ = load(source_, diagnostics);
+    file_ = load(source_, diagnostics, {}, [&](std::string const& block) { return awaits_records || records.contains(block); });
     if (!file_) throw Raised(diagnostics, source_);
     if (!diagnostics.all().empty()) warnings_ = Raised(diagnostics, source_).what();
     point(*file_, records);

@@ -18,9 +18,11 @@ namespace sysid::embed {
 /// A checked file. Records of data blocks may lie elsewhere than the text says.
 class OpenFile {
  public:
-  /// text: in place of what the file at `path` holds. records: the path of a table, absolute, by the name of a data block. Throws
+  /// text: in place of what the file at `path` holds. records: the path of a table, absolute, by the name of a data block, which
+  /// then needs no `file` line. awaits_records: nor does any other, since the file is opened to learn what tables it needs. Throws
   /// Raised where the text or the names of blocks are wrong.
-  OpenFile(std::string const& path, std::optional<std::string> const& text, std::map<std::string, std::string> const& records);
+  OpenFile(std::string const& path, std::optional<std::string> const& text, std::map<std::string, std::string> const& records,
+           bool awaits_records = false);
 
   Source const& source() const { return source_; }
   CheckedFile const& file() const { return *file_; }

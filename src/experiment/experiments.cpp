@@ -9,6 +9,7 @@
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
+#include "data/cell/usual_step.hpp"
 #include "experiment/record_request.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/lags.hpp"
@@ -203,7 +204,7 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
            {part < 0 ? block.name : rows.name}});
     range.first += start.rows;
   }
-  Experiment experiment = make_experiment(record, name, from, range, rows.span);
+  Experiment experiment = make_experiment(record, name, from, range, rows.span, history);
   mark_past(experiment, model, rows.span);
   return experiment;
 }
@@ -224,9 +225,7 @@ struct OddStep {
 OddStep oddest_step(std::vector<double> const& time) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
-  std::vector<double> sorted = steps;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  double const median = sorted[sorted.size() / 2];
+  double const median = usual_step(time).median;
   auto const odd = std::max_element(steps.begin(), steps.end(),
                                     [&](double a, double b) { return std::fabs(a - median) < std::fabs(b - median); });
   return {static_cast<std::size_t>(odd - steps.begin()) + 1, *odd, median};

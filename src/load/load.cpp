@@ -1,6 +1,8 @@
 // parse, modules, elaborate, check: one line each.
 #include "load/load.hpp"
 
+#include <algorithm>
+
 #include "check/independent.hpp"
 #include "inference/table.hpp"
 #include "regression/choice/selector.hpp"
@@ -34,11 +36,23 @@ std::vector<BackendSettings> selecting_backends() {
   return rows;
 }
 
+/// As though each of these blocks had a `file` line.
+void add_file_lines(ast::File& tree, DataAtHand const& at_hand) {
+  for (ast::Item& item : tree.items) {
+    auto* const data = std::get_if<ast::Data>(&item);
+    if (data == nullptr || !at_hand(data->name.text)) continue;
+    bool const named = std::any_of(data->statements.begin(), data->statements.end(),
+                                   [](ast::DataStatement const& each) { return std::holds_alternative<ast::DataFile>(each); });
+    if (!named) data->statements.emplace_back(ast::DataFile{{data->name.span}, {{data->name.span}, {}}});
+  }
+}
+
 }  // namespace
 
-std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved) {
-  ReadableFile const read = parse_readable(source, diagnostics);
+std::optional<CheckedFile> load(Source& source, Diagnostics& diagnostics, UnsavedText const& unsaved, DataAtHand const& at_hand) {
+  ReadableFile read = parse_readable(source, diagnostics);
   if (!read.tree) return std::nullopt;
+  if (at_hand) add_file_lines(*read.tree, at_hand);
   bool const complete = !diagnostics.has_errors();
   Diagnostics found;  // behind the syntax
   auto const modules = load_modules(*read.tree, source, found, unsaved);

@@ -20,10 +20,10 @@ using embed::Raised;
 
 /// Ctrl-C before it is open stops it.
 std::shared_ptr<OpenFile> open(std::string const& path, std::optional<std::string> const& text,
-                               std::map<std::string, std::string> const& records) {
+                               std::map<std::string, std::string> const& records, bool awaits_records) {
   Interrupts interrupts;
   interrupts.stop_if_requested();
-  auto file = std::make_shared<OpenFile>(path, text, records);
+  auto file = std::make_shared<OpenFile>(path, text, records, awaits_records);
   interrupts.stop_if_requested();
   return file;
 }
@@ -67,7 +67,8 @@ PYBIND11_MODULE(_engine, module) {
   module.attr("version") = SYSID_VERSION;
   module.def("instruction_set", [] { return std::string(name(instruction_set())); });
   py::class_<OpenFile, std::shared_ptr<OpenFile>>(module, "File")
-      .def(py::init(&open), py::arg("path"), py::arg("text"), py::arg("records"), py::call_guard<py::gil_scoped_release>())
+      .def(py::init(&open), py::arg("path"), py::arg("text"), py::arg("records"), py::arg("awaits_records") = false,
+           py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("warnings", &OpenFile::warnings)
       .def_property_readonly("path", [](OpenFile const& file) { return file.source().name(0); })
       .def_property_readonly("text", [](OpenFile const& file) { return std::string(file.source().text(0)); })

@@ -40,7 +40,8 @@ struct DictionaryPage {
 struct CoveragePage {
   std::string name, file, made_by;  // made_by: the simulate task that makes the file, when it is not there yet
   int rows = 0, first = 0, last = 0, scored = 0, start_rows = 0;
-  double rate = 0;              // Hz, mean; 0: rows that no time orders
+  double rate = 0;              // Hz, of the usual step; 0: rows that no time orders
+  int gaps = 0;                 // steps longer than 1.5 usual ones
   bool equal = true;            // steps
   std::string time_unit = "s";  // in which the record counts its time,
   double time_scale = 1;        // [s] one of these

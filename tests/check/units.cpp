@@ -167,7 +167,23 @@ TEST_CASE("what agrees passes: numbers adapt, prefixes and pure numbers do not m
 
 TEST_CASE("the help names what is missing") {
   CHECK(with_equation("m*y'' + c*y' + k + k3*y^3 = x").help == "multiply it by a length, such as `y`");
-  CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^4 = x").help == "divide it by a length, such as `y`");
+  // One power of what moves too many or too few: the unit of the coefficient may be the mistake.
+  CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^4 = x").help ==
+        "declare `k3` in [N/m^4], or divide this term by a length, such as `y`");
+  CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^2 = x").help ==
+        "declare `k3` in [N/m^2], or multiply this term by a length, such as `y`");
+  CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter k3 [N/m^2] = 1\nparameter sigma [m] = 1\ninput x [N]\n"
+                "initial y = 0\n1 [N s/m]*y' + k*y + k3*y^3 = x\nobserve d ~ normal(y, sd = sigma)\n}\n")
+            .help == "declare `k3` in [N/m^3], or divide this term by a length, such as `y` or `sigma`");
+  // A reciprocal coefficient takes the inverse factor; one inside a function or a sum is not a factor of the term.
+  CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter h [m/N] = 1\ninput x [N]\n"
+                "initial y = 0\n1 [N s/m]*y' + k*y + y^2/h = x\nobserve d ~ normal(y, sd = 1)\n}\n")
+            .help == "declare `h` in [m^2/N], or divide this term by a length, such as `y`");
+  CHECK(with_equation("m*y'' + c*y' + k*y + (k3 + 1)*y^4 = x").help == "divide it by a length, such as `y`");
+  // Not a power of what moves: another name is missing.
+  CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter m [kg] = 1\ninitial y = 0, y' = 0\ny'' + k*y = 0\n"
+                "observe d ~ normal(y, sd = 1)\n}\n")
+            .help == "divide it by a mass, such as `m`");
   CHECK(with_equation("m*y'' + 20*y' + k*y = x").help == "a number as a factor has no unit: write `20 [N s/m]`");
   CHECK(with_equation("m*y'' + c*y' + 100*y = x").help == "a number as a factor has no unit: write `100 [N/m]`");
   CHECK(said_of("model a {\nstate y [m]\nparameter c [N s/m] = 1\nparameter k [N/m] = 1\ninput x [N]\ninitial y = 0\nc*y' + c*y + "

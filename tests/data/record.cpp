@@ -131,12 +131,101 @@ TEST_CASE("samples may be missing in measured columns only") {
   CHECK(std::isnan(record.measured[0][0]));
   CHECK(record.measured[0][1] == 5);
   CHECK(std::isnan(record.measured[0][2]));
-  std::vector<Diagnostic> const found = errors(request(file.path(), {input("x", InputRule::zero_order)}, {"y"}));
+  TemporaryFile const empty("t,x,y\n0,,1\n1,NA,5\n2,,6\n");
+  std::vector<Diagnostic> const found = errors(request(empty.path(), {input("x", InputRule::zero_order)}, {"y"}));
   REQUIRE(found.size() == 1);
   CHECK(found[0].code == "E4013");
-  CHECK(found[0].message == "`" + file.path() + "` row 3 (line 4), column `x` has no value, but an input needs one in every row");
+  CHECK(found[0].message == "`" + empty.path() + "` row 1 (line 2), column `x` has no value, but an input needs one in every row");
   TemporaryFile const gap("t,y\n0,1\n,2\n");
   CHECK(errors(request(gap.path(), {}, {"y"})).at(0).code == "E4013");
+}
+
+namespace {
+
+/// 200 rows of a sine, of which `from`..`to` lack the input.
+std::string with_gap(int from, int to) {
+  std::string text = "t,x,y\n";
+  for (int row = 1; row <= 200; ++row)
+    text += row >= from && row <= to ? fmt::format("{},,1\n", row) : fmt::format("{},{},1\n", row, row % 7);
+  return text;
+}
+
+Diagnostic refused_rows(Record const& record, int from, RowRange rows, int earlier = 0) {
+  try {
+    (void)make_experiment(record, "bench", from, rows, std::nullopt, earlier);
+  } catch (UserError const& error) {
+    return error.diagnostic();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a gap of an input is refused where the rows of a run, or what its rule reads around them, have it, and nowhere else") {
+  TemporaryFile const file(with_gap(100, 101));
+  struct Case {
+    InputRule rule;
+    int around;
+  };
+  for (Case const& each : {Case{InputRule::zero_order, 0}, Case{InputRule::linear, 0}, Case{InputRule::cubic, 20},
+                           Case{InputRule::band_limited, 40}}) {
+    CAPTURE(each.around);
+    Record const record = loaded(request(file.path(), {input("x", each.rule)}, {"y"}));
+    CHECK(refused_rows(record, 1, {1, 99 - each.around}).code.empty());
+    CHECK(refused_rows(record, 102 + each.around, {102 + each.around, 200}).code.empty());
+    for (RowRange const rows : {RowRange{1, 100 - each.around}, RowRange{101 + each.around, 200}, RowRange{50, 150}}) {
+      Diagnostic const said = refused_rows(record, rows.first, rows);
+      CHECK(said.code == "E4013");
+      CHECK(said.message.find("row 100 (line 101), column `x` has no values up to row 101 (2 rows)") != std::string::npos);
+    }
+  }
+  // The rows before those that are simulated: a simulation from the record's first row, samples that a model looks back to.
+  Record const record = loaded(request(file.path(), {input("x", InputRule::zero_order)}, {"y"}));
+  CHECK(refused_rows(record, 1, {150, 200}).code == "E4013");
+  CHECK(refused_rows(record, 103, {103, 200}, 1).code.empty());
+  CHECK(refused_rows(record, 103, {103, 200}, 2).code == "E4013");
+}
+
+TEST_CASE("values outside a gap are those of a record without it, to what a run could show") {
+  TemporaryFile const with(with_gap(100, 101)), without(with_gap(0, 0));
+  for (InputRule const rule : {InputRule::zero_order, InputRule::linear, InputRule::cubic}) {
+    Experiment const a = make_experiment(loaded(request(with.path(), {input("x", rule)}, {"y"})), "bench", 122, {122, 200});
+    Experiment const b = make_experiment(loaded(request(without.path(), {input("x", rule)}, {"y"})), "bench", 122, {122, 200});
+    for (int i = 0; i < 78; ++i) CHECK(a.inputs[0].value(i, 0.4) == doctest::Approx(b.inputs[0].value(i, 0.4)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("the message about a gap names how to fill a short one, and the longest rows without it") {
+  TemporaryFile const brief(with_gap(100, 101)), longer(with_gap(60, 120));
+  Record const record = loaded(request(brief.path(), {input("x", InputRule::zero_order)}, {"y"}));
+  CHECK(refused_rows(record, 1, {1, 200}).help ==
+        "fill the gap in the file with numbers between its neighbours, 1 and 4, or use rows without it: `split part = rows 1..99`");
+  CHECK(refused_rows(record, 90, {90, 200}).help ==
+        "fill the gap in the file with numbers between its neighbours, 1 and 4, or use rows without it: `split part = rows "
+        "102..200` with `start = rest` or `start = estimated(rows = 50)` in the task");
+  std::string const far =
+      refused_rows(loaded(request(longer.path(), {input("x", InputRule::zero_order)}, {"y"})), 1, {1, 200}).help;
+  CHECK(far.find("neighbours") == std::string::npos);
+  CHECK(far.find("rows 121..200") != std::string::npos);
+}
+
+TEST_CASE("a column whose name has another unit than the model is not read in that of the model") {
+  TemporaryFile const file("t,a_z [mg],F [kN],u (V)\n0,1000,1,2\n1,1001,2,3\n");
+  Unit const acceleration = divide(atom("m"), power(atom("s"), {2, 1}));
+  auto const ask = [&](std::string name, std::optional<Unit> unit, std::optional<Unit> declared) {
+    RecordRequest wanted = request(file.path(), {}, {});
+    wanted.measured.push_back(column(std::move(name), std::move(unit), std::move(declared)));
+    return wanted;
+  };
+  Diagnostic const said = errors(ask("a_z [mg]", {}, acceleration)).at(0);
+  CHECK(said.code == "E4026");
+  CHECK(said.help.find("`[mg_n]`") != std::string::npos);
+  CHECK(errors(ask("a_z [mg]", acceleration, acceleration)).at(0).help.find("`[mg_n]`") != std::string::npos);
+  CHECK(errors(ask("F [kN]", {}, atom("N"))).at(0).code == "E4026");
+  CHECK(loaded(ask("a_z [mg]", atom("mg_n"), acceleration)).measured[0][0] == doctest::Approx(9.80665));
+  CHECK(loaded(ask("F [kN]", atom("kN"), atom("N"))).measured[0][0] == 1000);
+  CHECK(loaded(ask("F [kN]", {}, atom("kN"))).measured[0][0] == 1000);
+  CHECK(loaded(ask("u (V)", {}, atom("N"))).measured[0][0] == 2);  // of another kind: it may be no unit
 }
 
 TEST_CASE("several wrong columns are reported together, each at its mention") {

@@ -69,6 +69,17 @@ TEST_CASE("the data block of every table of a logger reads it") {
   }
 }
 
+TEST_CASE("milli-g of an accelerometer is pasted as such, and a mass is asked about") {
+  TemporaryFile const file("t,a_z [mg],dose [mg],F [kN]\n0,1000,1,2\n1,1001,2,3\n2,1002,4,3\n");
+  RecordLook const look = look_at_record(file.path());
+  CHECK(look.block.find("\"a_z [mg]\" [mg_n]") != std::string::npos);
+  CHECK(look.block.find("\"dose [mg]\" [mg]") != std::string::npos);
+  std::string const text = record_text(look);
+  CHECK(text.find("`dose [mg]` is read as a mass, [mg]; if it is an acceleration, write `[mg_n]`") != std::string::npos);
+  CHECK(text.find("`a_z [mg]` is read as a mass") == std::string::npos);
+  CHECK(text.find("`F [kN]` is read as a mass") == std::string::npos);
+}
+
 TEST_CASE("gaps, dead, clipped and drifting channels, coarse steps and frequencies are seen") {
   std::string text = "t,sine,dead,clipped,drift,coarse\n";
   for (int i = 0; i < 1000; ++i) {

@@ -159,7 +159,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
      {"core", "result", "criteria", "data", "likelihood", "likelihood/selection", "search", "diagnostics", "diagnostics/tolerance",
       "inference/backend", "inference/chain", "inference", "experiment", "mechanics", "report/file", "app/session", "app/process"}},
     {"app/preflight",
-     {"core", "linear_algebra", "result", "data", "expression", "gaussian_process", "syntax", "simulate", "likelihood",
+     {"core", "linear_algebra", "result", "data", "data/cell", "expression", "gaussian_process", "syntax", "simulate", "likelihood",
       "likelihood/particle", "search", "check/expression", "diagnostics", "diagnostics/tolerance", "experiment", "discovery",
       "app/session", "app/process"}},
     {"app/fit",

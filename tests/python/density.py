@@ -317,6 +317,19 @@ class Data(unittest.TestCase):
                 text = LINE.replace("u = u [V]", f'u = "{name}" [V]')
                 self.assertEqual(sysid.loads(text, data={name: U, "d": D}).log_density(np.zeros(2)), expected)
 
+    def test_a_block_whose_data_are_arrays_needs_no_file_line(self):
+        arrays = {"u": U, "d": D}
+        text = LINE.replace('  file    "nowhere.csv"\n', "")
+        self.assertNotIn("nowhere", text)
+        model = sysid.loads(text, data=arrays)
+        expected = sysid.loads(LINE, data=arrays).log_density(np.zeros(2))
+        self.assertEqual(model.log_density(np.zeros(2)), expected)
+        self.assertEqual(pickle.loads(pickle.dumps(model)).log_density(np.zeros(2)), expected)
+        with self.assertRaisesRegex(sysid.Error, r"error\[E4101\]: data block `\w+` names no file"):
+            sysid.loads(text)
+        with self.assertRaisesRegex(sysid.Error, r"E4113|E2"):  # what else is wrong with the block is found as in one with a file
+            sysid.loads(text.replace("u = u [V]", "u = u [kg]"), data=arrays)
+
     def test_what_numbers_mean_holds_for_arrays(self):
         """Marks of missing samples, and what times count since a date, are rules of the block, and the lines of messages work."""
 

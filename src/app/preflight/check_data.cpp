@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/preflight/check_file.hpp"
+#include "data/cell/usual_step.hpp"
 #include "data/input_spectrum.hpp"
 
 namespace sysid {
@@ -25,7 +26,11 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
     longest = std::max(longest, time[i] - time[i - 1]);
   }
   bool const timed = model.dynamics != Dynamics::none;
-  if (timed) page.rate = static_cast<double>(time.size() - 1) / (time.back() - time.front());
+  if (timed) {
+    UsualStep const usual = usual_step(time);
+    page.rate = 1 / usual.step;
+    page.gaps = usual.gaps;
+  }
   page.equal = longest - shortest <= 1e-3 * shortest;
   if (experiment.time_unit) {
     page.time_unit = experiment.time_unit->text;

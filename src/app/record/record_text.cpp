@@ -43,6 +43,8 @@ std::vector<std::string> remarks(ColumnLook const& column) {
   std::vector<std::string> all;
   if (!column.unread.empty()) return {column.unread};
   if (column.dead) all.push_back(fmt::format("is {} in all rows: a dead channel", six_digits(column.smallest)));
+  if (column.unit == "g" || column.unit == "mg" || column.unit == "ug")
+    all.push_back(fmt::format("is read as a mass, [{0}]; if it is an acceleration, write `[{0}_n]`", column.unit));
   if (column.missing > 0) all.push_back(fmt::format("misses {}", counted(column.missing, "sample")));
   for (auto const& [count, end, value] :
        {std::tuple(column.at_largest, "largest", column.largest), std::tuple(column.at_smallest, "smallest", column.smallest)})

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/session/made_from.hpp"
+#include "app/session/repetition.hpp"
 #include "app/session/resolved.hpp"
 #include "app/session/results.hpp"
 #include "app/session/task_rows.hpp"
@@ -43,17 +44,6 @@ ast::Model const* as_written(ast::File const& tree, Span span) {
   return nullptr;
 }
 
-/// As one word of a POSIX shell: in quotes where it would not be one by itself, or would be taken for an option.
-std::string quoted_for_shell(std::string const& word) {
-  bool const plain = !word.empty() && word.front() != '-' && std::all_of(word.begin(), word.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || std::string_view("_-./=,+@%:").find(c) != std::string_view::npos;
-  });
-  if (plain) return word;
-  std::string out = word.starts_with('-') ? "'./" : "'";
-  for (char const c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 /// The parameters of the model that are not estimated.
 std::vector<FixedValue> fixed_parameters(Report const& report) {
   if (report.selection || report.discovery) return {};
@@ -65,6 +55,16 @@ std::vector<FixedValue> fixed_parameters(Report const& report) {
 }
 
 }  // namespace
+
+std::string quoted_for_shell(std::string const& word) {
+  bool const plain = !word.empty() && word.front() != '-' && std::all_of(word.begin(), word.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || std::string_view("_-./=,+@%:").find(c) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string out = word.starts_with('-') ? "'./" : "'";
+  for (char const c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
 
 std::string task_digest(Session const& session, Task const& task) { return task_row(task).digest(session, task); }
 
@@ -91,6 +91,12 @@ std::string statement_digest(Session const& session, Task const& task) {
   return sha256(text);
 }
 
+std::string folder_of_repetition(RunOptions const& options) {
+  auto again = options.temporary_output ? RunOptions().output : options.output;
+  if (!again.has_filename()) again = again.parent_path();
+  return quoted_for_shell(again.string() + "_again");
+}
+
 void add_repetition(Session const& session, Task const& task, Report& report, Repetition const& repetition) {
   report.place = static_cast<int>(&task - session.file.tasks.data());
   RunOptions const& options = session.options;
@@ -106,10 +112,7 @@ void add_repetition(Session const& session, Task const& task, Report& report, Re
   if (!options.seed && !all_drawn)
     for (Task const* each : needed)
       if (!stated(*each)) report.unseeded.push_back(each->name);
-  // Beside the first, so that the two can be compared.
-  auto again = options.temporary_output ? RunOptions().output : options.output;
-  if (!again.has_filename()) again = again.parent_path();
-  report.command += fmt::format(" -o {}", quoted_for_shell(again.string() + "_again"));
+  report.command += " -o " + folder_of_repetition(options);
 }
 
 Report begin_report(Session const& session, Task const& task, int model_index, std::string what, std::uint64_t seed) {

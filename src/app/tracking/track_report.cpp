@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/session/made_from.hpp"
+#include "app/session/repetition.hpp"
 #include "app/session/reporting.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
@@ -188,6 +189,31 @@ std::string GatheredTrack::name(std::size_t quantity) const {
   return units.names[quantity] + (unit.empty() || unit == "-" ? "" : fmt::format(" [{}]", unit));
 }
 
+namespace {
+
+/// All options that change the table.
+std::string repetition_of(Session const& session, TrackOptions const& options) {
+  TrackOptions const usual;
+  std::string command =
+      fmt::format("sysid track {} {}", quoted_for_shell(session.source.name()), quoted_for_shell(options.result.string()));
+  if (!options.data.empty()) command += " --data " + options.data;
+  if (!options.record.empty())
+    command += " --record " + (options.record == "-" ? options.record : quoted_for_shell(options.record));
+  if (options.first_row > 1 || options.last_row > 0)
+    command += fmt::format(" --rows {}..{}", options.first_row, options.last_row > 0 ? std::to_string(options.last_row) : "");
+  if (options.at_rest) command += " --at-rest";
+  if (!options.parameters.empty())
+    command += " --parameters " + quoted_for_shell(fmt::format("{}", fmt::join(options.parameters, ",")));
+  if (!options.drift.text.empty() && options.drift.text != shortest(usual.drift.relative))
+    command += " --drift " + options.drift.text;
+  if (options.filter != usual.filter) command += fmt::format(" --filter {}", filter_name(options.filter));
+  if (options.false_alarms != usual.false_alarms) command += " --false-alarms " + shortest(options.false_alarms);
+  if (options.window != usual.window) command += fmt::format(" --window {}", options.window);
+  return command + " -o " + folder_of_repetition(session.options);
+}
+
+}  // namespace
+
 Report track_head(Session const& session, TrackedFit const& fit) {
   TrackOptions const& options = fit.options;
   Report report = begin_report(session, *fit.task, fit.fit->model,
@@ -197,13 +223,7 @@ Report track_head(Session const& session, TrackedFit const& fit) {
                                                                    : options.record),
                                0);
   report.verb = "track";
-  std::string arguments = fmt::format(" {}", options.result.string());
-  if (!options.data.empty()) arguments += " --data " + options.data;
-  if (!options.record.empty()) arguments += " --record " + options.record;
-  if (options.first_row > 1 || options.last_row > 0)
-    arguments += fmt::format(" --rows {}..{}", options.first_row, options.last_row > 0 ? std::to_string(options.last_row) : "");
-  if (options.at_rest) arguments += " --at-rest";
-  report.command = fmt::format("sysid track {}{}", session.source.name(), arguments);
+  report.command = repetition_of(session, options);
   std::vector<std::string> names;
   for (TrackedParameter const& each : fit.tracked)
     names.push_back(fit.model().parameters[static_cast<std::size_t>(each.parameter)].name);

@@ -12,6 +12,7 @@ namespace sysid {
 struct DriftOption {
   double relative = 0.01;  // sd of the change of a parameter, as a part of it,
   double time = 0;         // [s] over this time; 0: over 1000 rows
+  std::string text = {};   // as the user wrote it; empty: nobody did
 };
 
 struct TrackOptions {

@@ -13,6 +13,14 @@ std::string choice_of_rules(Names rules) {
   return quoted(rules, "or");
 }
 
+/// Loggers of accelerations write g and mg, which are masses here.
+std::string unit_help(std::string const& column_unit) {
+  if (column_unit == "g") return "`[g]` is the gram; the acceleration of gravity is `[g_n]`";
+  if (column_unit == "mg") return "`[mg]` is the milligram; a thousandth of the acceleration of gravity is `[mg_n]`";
+  if (column_unit == "ug") return "`[ug]` is the microgram; a millionth of the acceleration of gravity is `[ug_n]`";
+  return "correct one of the two units: both must measure the same kind of quantity";
+}
+
 }  // namespace
 
 Diagnostic no_file(ast::Name const& block) {
@@ -112,8 +120,7 @@ Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, 
 Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& column_unit, std::string const& declared_unit) {
   return about(what.names,
                error("E4113", span, fmt::format("{} is in [{}], but [{}] is needed", what.words, column_unit, declared_unit),
-                     column_unit == "g" ? "`[g]` is the gram; the acceleration of gravity is `[g_n]`"
-                                        : "correct one of the two units: both must measure the same kind of quantity"));
+                     unit_help(column_unit)));
 }
 
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {

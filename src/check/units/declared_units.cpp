@@ -62,6 +62,19 @@ std::optional<DeclaredUnit> only_coefficient(ast::Expression const& tree, std::v
   return found;
 }
 
+// How often a name is a factor of a product, -1 below the fraction line; nothing where it stands elsewhere as well, as in a sum.
+std::optional<int> factor_power(ast::Expression const& tree, std::string const& name) {
+  std::vector<std::string> const used = names_in(tree);
+  if (std::find(used.begin(), used.end(), name) == used.end()) return 0;
+  if (std::holds_alternative<ast::Reference>(tree.node)) return 1;
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return factor_power(*(*unary)->operand, name);
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return std::nullopt;
+  auto const left = factor_power(*(*binary)->left, name), right = factor_power(*(*binary)->right, name);
+  if (!left || !right) return std::nullopt;
+  return (*binary)->symbol == "*" ? *left + *right : *left - *right;
+}
+
 }  // namespace
 
 void DeclaredUnits::declare(DeclaredUnit declared) {
@@ -124,8 +137,18 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& w
                                   coefficient ? coefficient->name : "", other);
     }
   }
+  std::string cure = factor_cure(wanted, missing, but);
   if (odd != nullptr && !pure)
-    if (auto const declared = declared_otherwise(*odd, missing)) return errors::declare_in(declared->name, words(declared->unit));
+    if (auto const declared = declared_otherwise(*odd, missing)) {
+      std::string const other = errors::declare_in(declared->name, words(declared->unit));
+      return is_power_of_moving(*odd, missing) ? errors::or_else(other, cure) : other;
+    }
+  return cure;
+}
+
+// The term as it is declared, with another factor.
+std::string DeclaredUnits::factor_cure(std::string const& wanted, Dimension const& missing,
+                                       std::vector<std::string> const& but) const {
   if (std::string const names = named(missing, but); !names.empty())
     return errors::multiply_by(kind_words(missing, names_in_use_), names);
   if (std::string const names = named(inverse(missing), but); !names.empty())
@@ -135,18 +158,30 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& w
   return errors::should_be_in(wanted);
 }
 
-// Of a unit that is no kind of its own, such as 1/m^2, a name would be a factor by accident: a noise precision has that one. The
-// slip is then in the declaration of the coefficient, as that of a cubic stiffness in N/m.
+bool DeclaredUnits::is_power_of_moving(ast::Expression const& odd, Dimension const& missing) const {
+  std::vector<std::string> const used = names_in(odd);
+  return std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
+    return each.moves && (each.unit.dimension == missing || each.unit.dimension == inverse(missing)) &&
+           std::find(used.begin(), used.end(), each.name) != used.end();
+  });
+}
+
+// A coefficient that multiplies something that moves, as in k3*y^3: its declaration is as likely to be wrong as the power of y,
+// unless what is missing is no power of y but another name: a mass, where the other terms are accelerations. Of a unit that is no
+// kind of its own, such as 1/m^2, a name would be a factor by accident: a noise precision has that one.
 std::optional<DeclaredUnit> DeclaredUnits::declared_otherwise(ast::Expression const& odd, Dimension const& missing) const {
   std::vector<std::string> const used = names_in(odd);
   bool const moves = std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
     return each.moves && std::find(used.begin(), used.end(), each.name) != used.end();
   });
-  if (!moves || is_plain_kind(missing) || !named(inverse(missing), {}).empty()) return std::nullopt;
+  if (!moves) return std::nullopt;
+  bool const another_name = !named(inverse(missing), {}).empty() || (is_plain_kind(missing) && !named(missing, {}).empty());
+  if (another_name && !is_power_of_moving(odd, missing)) return std::nullopt;
   std::optional<DeclaredUnit> coefficient = only_coefficient(odd, declared_);
-  if (!coefficient) return std::nullopt;
+  std::optional<int> const power = coefficient ? factor_power(odd, coefficient->name) : std::nullopt;
+  if (!power || std::abs(*power) != 1) return std::nullopt;
   Unit factor;
-  factor.dimension = missing;
+  factor.dimension = *power == 1 ? missing : inverse(missing);
   coefficient->unit = multiply(plain(coefficient->unit), factor);
   if (coefficient->unit.dimensionless()) return std::nullopt;
   return coefficient;

@@ -35,8 +35,11 @@ class DeclaredUnits {
   std::string frequency_in(ast::Expression const& tree) const;
 
  private:
+  std::string factor_cure(std::string const& wanted, Dimension const& missing, std::vector<std::string> const& but) const;
   // The one coefficient of a term, in the unit that it should have been declared in; nothing where something else is likelier.
   std::optional<DeclaredUnit> declared_otherwise(ast::Expression const& odd, Dimension const& missing) const;
+  // Whether one power of something that moves in a term is what it lacks, or has too much.
+  bool is_power_of_moving(ast::Expression const& odd, Dimension const& missing) const;
   // "`y`", "`y` or `l`": declared names of this dimension.
   std::string named(Dimension const& dimension, std::vector<std::string> const& but) const;
 

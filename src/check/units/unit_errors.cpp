@@ -176,6 +176,10 @@ std::string multiply_by(std::string const& kind, std::string const& names) {
 std::string divide_by(std::string const& kind, std::string const& names) {
   return with_names(fmt::format("divide it by {}", kind), names);
 }
+std::string or_else(std::string const& declaration, std::string const& factor) {
+  std::size_t const it = factor.find(" it ");
+  return declaration + ", or " + (it == std::string::npos ? factor : factor.substr(0, it) + " this term " + factor.substr(it + 4));
+}
 std::string declare_in(std::string const& name, std::string const& unit) {
   return fmt::format("declare `{}` in [{}]", name.substr(0, name.find('[')), unit);
 }

@@ -51,6 +51,8 @@ void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function
 // What to do, for `help`. names: declared quantities that would do ("`y` or `l`"), or empty.
 std::string multiply_by(std::string const& kind, std::string const& names);
 std::string divide_by(std::string const& kind, std::string const& names);
+/// Two cures; `factor` begins with what to do with the term.
+std::string or_else(std::string const& declaration, std::string const& factor);
 /// Elements of a vector share a declaration: `k[2]` is declared as `k`.
 std::string declare_in(std::string const& name, std::string const& unit);
 std::string should_be_in(std::string const& unit);

@@ -27,10 +27,35 @@ std::string in_small_letters_only(std::string_view name) {
 
 bool is_word_of_time(std::string_view name) {
   std::string const small = in_small_letters_only(name);
-  for (std::string_view const each :
-       {"t",     "time",        "zeit",    "timestamp", "datetime", "date",   "uhrzeit", "datum",       "xvalue",
-        "xaxis", "elapsedtime", "seconds", "sec",       "temps",    "tiempo", "tid",     "zeitstempel", "ts",
-        "epoch", "unixtime",    "utc",     "utctime",   "hhmm",     "hhmmss", "gpstime"})
+  for (std::string_view const each : {"t",
+                                      "time",
+                                      "zeit",
+                                      "timestamp",
+                                      "datetime",
+                                      "date",
+                                      "uhrzeit",
+                                      "datum",
+                                      "xvalue",
+                                      "xaxis",
+                                      "elapsedtime",
+                                      "seconds",
+                                      "sec",
+                                      "temps",
+                                      "tiempo",
+                                      "tid",
+                                      "zeitstempel",
+                                      "ts",
+                                      "epoch",
+                                      "unixtime",
+                                      "utc",
+                                      "utctime",
+                                      "hhmm",
+                                      "hhmmss",
+                                      "gpstime",
+                                      "zeitstandardmessrate",
+                                      "timedefaultsamplerate",
+                                      "millis",
+                                      "micros"})
     if (small == each) return true;
   return false;
 }
@@ -47,6 +72,9 @@ bool is_kind_of_temperature(std::string_view column) {
 
 std::optional<NameWithUnit> unit_behind_underscore(std::string_view column) {
   std::string_view name = last_part(column);
+  // Functions of Arduino, whose names are units.
+  if (name == "millis") return NameWithUnit{"millis", "ms"};
+  if (name == "micros") return NameWithUnit{"micros", "us"};
   while (name.ends_with('_')) name.remove_suffix(1);
   std::size_t const at = name.rfind('_');
   if (at == std::string_view::npos) return std::nullopt;
@@ -78,7 +106,13 @@ bool is_temperature_name(std::string_view column) {
 
 bool is_acceleration_name(std::string_view column) {
   std::string const small = in_small_letters_only(column);
-  return small.starts_with("acc") || small.find("accel") != std::string::npos || small.find("beschl") != std::string::npos;
+  if (small.starts_with("acc") || small.find("accel") != std::string::npos || small.find("beschl") != std::string::npos ||
+      small.starts_with("gforce"))
+    return true;
+  // `a_z`, `ax`, `a1`, `A (x)`: nobody weighs these.
+  auto const split = split_name(column);
+  std::string const bare = in_small_letters_only(last_part(split ? split->name : column));
+  return bare == "a" || bare == "ax" || bare == "ay" || bare == "az";
 }
 
 }  // namespace sysid

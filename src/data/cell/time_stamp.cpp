@@ -102,6 +102,9 @@ std::optional<StampPattern> StampPattern::parse(std::string_view text) {
   pattern.has_date_ = year && (of_month || has(Part::day_of_year));
   bool const part_of_date = year || has(Part::month) || has(Part::month_name) || has(Part::day) || has(Part::day_of_year);
   if (part_of_date != pattern.has_date_ || (!pattern.has_date_ && !has(Part::hour) && !has(Part::minute))) return std::nullopt;
+  // `hh:mm` is no such pattern: `59:59` would be hours as well as minutes.
+  bool const packed = pattern.tokens_.front().exact;
+  pattern.elapsed_ = !pattern.has_date_ && has(Part::second) && !has(Part::half) && !has(Part::zone) && !packed;
   return pattern;
 }
 
@@ -114,6 +117,9 @@ struct StampPattern::Reader {
   int decimals = 0;
   bool has_zone = false;
   std::optional<bool> afternoon{};
+  static constexpr int most_digits_elapsed = 4;
+  bool elapsed = false;
+  bool first_is_minutes = false;
 
   bool number(int& value, int most_digits, bool exact) {
     std::size_t const begin = at;
@@ -181,8 +187,12 @@ struct StampPattern::Reader {
       case Part::day_of_year:
         return number(day_of_year, 3, token.exact) && day_of_year >= 1;
       case Part::hour:
-        return number(hour, 2, token.exact);
+        return number(hour, elapsed ? most_digits_elapsed : 2, token.exact);
       case Part::minute:  // `0:05` of a stop watch, as `8:05` of a clock
+        if (at == 0 && elapsed) {
+          first_is_minutes = true;
+          return number(minute, most_digits_elapsed, false);
+        }
         return number(minute, 2, token.exact || at > 0);
       case Part::second:
         return number(second, 2, true);
@@ -201,14 +211,15 @@ struct StampPattern::Reader {
     return false;
   }
   std::optional<TimeStamp> stamp() const {
-    if (month < 1 || month > 12 || day < 1 || day > days_in(year, month) || minute > 59 || second > 60) return std::nullopt;
+    if (month < 1 || month > 12 || day < 1 || day > days_in(year, month) || second > 60) return std::nullopt;
+    if (minute > 59 && !first_is_minutes) return std::nullopt;
     if (day_of_year > (is_leap(year) ? 366 : 365)) return std::nullopt;
     int hours = hour;
     if (afternoon) {
       if (hour < 1 || hour > 12) return std::nullopt;
       hours = hour % 12 + (*afternoon ? 12 : 0);
     }
-    if (hours > 23 && (hours > 24 || minute > 0 || second > 0 || picosecond > 0)) return std::nullopt;
+    if (hours > 23 && !elapsed && (hours > 24 || minute > 0 || second > 0 || picosecond > 0)) return std::nullopt;
     std::int64_t const days = day_of_year > 0 ? days_from_civil(year, 1, 1) + day_of_year - 1 : days_from_civil(year, month, day);
     return TimeStamp{((days * 24 + hours) * 60 + minute - offset_minutes) * 60 + second, picosecond, decimals, has_zone};
   }
@@ -243,6 +254,7 @@ std::optional<TimeStamp> StampPattern::read(std::string_view text) const {
   std::string const cell = with_plain_blanks(text);
   Reader reader{.cell = trimmed(cell)};
   if (tokens_.empty()) return reader.iso_stamp();
+  reader.elapsed = elapsed_;
   std::string padded;
   for (std::size_t i = 0; i < tokens_.size(); ++i) {
     // A fraction may be left out, with the sign before it: programs print whole seconds without one.

@@ -23,6 +23,7 @@ double seconds_between(TimeStamp const& from, TimeStamp const& to);
 ///   YYYY YY     year; two digits are 1970 to 2069           hh mm ss    24 hours, or 12 hours where AP stands; 1 or 2 digits
 ///   MM MMM      month as a number, as a name (Jan, Mai)     f           any number of digits of a fraction, which may be left out
 ///   DD DDD      day of the month, of the year               AP          AM or PM
+///   Without a date, AP and zone the first number before seconds may be larger, up to four digits: elapsed time, `25:13:02`.
 ///   hhmmss hhmm without signs between: zeros in front may be absent, as of a number; 24:00 is the end of a day
 ///   zone        Z, +02:00, -0500: taken off                 a blank     any number of blanks; any other sign stands for itself
 ///
@@ -72,6 +73,7 @@ class StampPattern {
   std::string text_;
   std::vector<Token> tokens_;
   bool has_date_ = false, has_hours_ = true;
+  bool elapsed_ = false;  // the first number may go on beyond a day, or an hour: 25:13:02
 };
 
 /// Digits in groups between the signs of dates and times: `2024-05-01 12:00:00.5`, `1.5.2024`, `5/1/24 3:00 PM`, `12:00:01`.

@@ -27,6 +27,27 @@ bool fit(std::string const& text, std::vector<std::string> const& cells) {
          });
 }
 
+/// What a name says that two numbers with a colon between them are: `mm:ss` of `Zeit [min:s]`; empty: it does not.
+std::string two_numbers_in(std::string_view name) {
+  std::string small;
+  for (char const c : name) small += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  struct Words {
+    std::string_view words, pattern;
+  };
+  static constexpr Words known[] = {{"mm:ss", "mm:ss"},   {"m:ss", "mm:ss"},   {"min:sec", "mm:ss"}, {"min:s", "mm:ss"},
+                                    {"m:s", "mm:ss"},     {"mi:se", "mm:ss"},  {"hh:mm", "hh:mm"},   {"h:mm", "hh:mm"},
+                                    {"h:min", "hh:mm"},   {"hr:min", "hh:mm"}, {"std:min", "hh:mm"}, {"hours:min", "hh:mm"},
+                                    {"hrs:min", "hh:mm"}, {"h:m", "hh:mm"}};
+  auto const is_letter = [&](std::size_t at) { return at < small.size() && small[at] >= 'a' && small[at] <= 'z'; };
+  for (Words const& each : known) {
+    std::size_t const at = small.find(each.words), end = at + each.words.size();
+    bool const longer = at == std::string::npos || (at > 0 && (is_letter(at - 1) || small[at - 1] == ':')) || is_letter(end) ||
+                        (end < small.size() && small[end] == ':');
+    if (!longer) return std::string(each.pattern);
+  }
+  return {};
+}
+
 /// 0 of steps without gaps, 1 of times that do not fall, 2 of others.
 int roughness(std::string const& text, std::vector<std::string> const& cells) {
   auto const pattern = StampPattern::parse(text);
@@ -45,7 +66,7 @@ int roughness(std::string const& text, std::vector<std::string> const& cells) {
 
 }  // namespace
 
-std::vector<std::string> patterns_of(std::vector<std::string> const& cells) {
+std::vector<std::string> patterns_of(std::vector<std::string> const& cells, std::string_view name) {
   static constexpr std::string_view dates[] = {
       "",           "YYYY-MM-DD",  "YYYY/MM/DD",  "YYYY.MM.DD", "DD.MM.YYYY", "DD/MM/YYYY", "MM/DD/YYYY",  "DD-MM-YYYY",
       "MM-DD-YYYY", "DD.MM.YY",    "YY.MM.DD",    "DD/MM/YY",   "MM/DD/YY",   "YY/MM/DD",   "DD-MM-YY",    "MM-DD-YY",
@@ -76,8 +97,10 @@ std::vector<std::string> patterns_of(std::vector<std::string> const& cells) {
           if (taken || !fits(text)) continue;
           // `00:01` may be hours and minutes, or minutes and seconds.
           bool const either = date.empty() && text == "hh:mm" && fits("mm:ss");
-          found.push_back(std::move(text));
-          if (either) found.emplace_back("mm:ss");
+          std::string const told = either ? two_numbers_in(name) : std::string();
+          if (told.empty()) found.push_back(std::move(text));
+          if (told.empty() && either) found.emplace_back("mm:ss");
+          if (!told.empty()) found.push_back(told);
           taken = true;
         }
       }

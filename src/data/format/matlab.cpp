@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
@@ -41,6 +42,13 @@ std::string array_of_structs(matvar_t const& variable, std::string const& path) 
                      path);
 }
 
+std::string complex_refusal(std::string const& path) {
+  std::string name = path;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return fmt::format("is complex: save its parts as variables of their own, `{0}_re = real({1})` and `{0}_im = imag({1})`", name,
+                     path);
+}
+
 std::string matlab_refusal(matvar_t const& variable, std::string const& path) {
   switch (variable.class_type) {
     case MAT_C_DOUBLE:
@@ -53,7 +61,7 @@ std::string matlab_refusal(matvar_t const& variable, std::string const& path) {
     case MAT_C_UINT32:
     case MAT_C_INT64:
     case MAT_C_UINT64:
-      return variable.isComplex ? "is complex: save its `real` and `imag` parts" : "";
+      return variable.isComplex ? complex_refusal(path) : "";
     case MAT_C_CHAR:
       return "is text";
     case MAT_C_SPARSE:

@@ -78,13 +78,15 @@ std::vector<Variable> unpacked(std::string const& bytes) {
   return variables;
 }
 
-/// Words are in no array of numbers.
-std::vector<double> numbers_among(std::vector<std::string> const& words) {
+/// UserError E4025 for a word: in an array of numbers it stands nowhere.
+std::vector<double> marks_of(std::vector<std::string> const& words, std::string const& file, std::string_view format) {
   std::vector<double> numbers;
   for (std::string const& word : words) {
     double number = 0;
     auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error == std::errc{} && end == word.data() + word.size()) numbers.push_back(number);
+    bool const is_number = error == std::errc{} && end == word.data() + word.size();
+    if (!is_number && word != "NA") throw UserError(data_errors::word_among_numbers(file, format, word, std::nullopt));
+    if (is_number) numbers.push_back(number);
   }
   return numbers;
 }
@@ -93,7 +95,7 @@ class VariableRecord final : public RecordFile {
  public:
   VariableRecord(VariableFormat const& format, std::string name, std::string const& bytes, std::string digest,
                  ReadingRules const& rules)
-      : missing_(numbers_among(rules.missing)),
+      : missing_(marks_of(rules.missing, name, format.name)),
         format_(format),
         name_(std::move(name)),
         digest_(std::move(digest)),

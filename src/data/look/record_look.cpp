@@ -16,6 +16,7 @@
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_doubt.hpp"
 #include "data/cell/unit_text.hpp"
+#include "data/cell/usual_step.hpp"
 #include "data/format/open_record.hpp"
 #include "data/look/paste_block.hpp"
 #include "data/table/encoding.hpp"
@@ -104,21 +105,18 @@ void look_at_time(RecordLook& look) {
   time.first = t.front();
   time.last = t.back();
   time.unequal = time.gaps = 0;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
-  if (steps.empty()) return;
-  std::vector<double> sorted = steps;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  time.step = sorted[sorted.size() / 2];
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (steps[i] > 1.5 * time.step) {
-      ++time.gaps;
-      if (steps[i] > time.longest_gap) time.longest_gap = steps[i], time.longest_gap_row = i + 2;
-    } else if (std::fabs(steps[i] - time.step) > 1e-3 * time.step) {
+  if (t.size() < 2) return;
+  UsualStep const usual = usual_step(t);
+  time.step = usual.step;
+  time.gaps = static_cast<std::size_t>(usual.gaps);
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    double const step = t[i] - t[i - 1];
+    if (usual.is_gap(step)) {
+      if (step > time.longest_gap) time.longest_gap = step, time.longest_gap_row = i + 1;
+    } else if (std::fabs(step - usual.median) > 1e-3 * usual.median) {
       ++time.unequal;
     }
   }
-  if (time.gaps == 0) time.step = (time.last - time.first) / static_cast<double>(steps.size());
 }
 
 class Looking {

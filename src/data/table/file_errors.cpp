@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <algorithm>
 
 #include "core/text/utf8.hpp"
@@ -130,6 +132,12 @@ Diagnostic not_a_record(std::string const& file, std::string_view what, std::str
 Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Mention mention) {
   return error("E4025", mention, fmt::format("`{}` is a {}, for which `missing` is the only setting of `read`", file, what),
                "remove `read` from the data block, or all its settings except `missing`");
+}
+
+Diagnostic word_among_numbers(std::string const& file, std::string_view what, std::string const& word, Mention mention) {
+  return error("E4025", mention,
+               fmt::format("`missing` lists `{}`, but columns of `{}`, a {}, have numbers only", shown(word), file, what),
+               "list the number that stands for it there, or remove it: NaN is a missing sample anyway");
 }
 
 Diagnostic damaged(std::string const& file, std::string const& what, Mention mention) {
@@ -368,7 +376,8 @@ Diagnostic unit_differs(std::string const& file, std::string const& column, std:
 
 Diagnostic unit_differs_from_name(std::string const& file, NamedUnit const& name, TwoUnits const& units, bool is_text,
                                   Mention mention) {
-  std::string help = fmt::format("one of the two is wrong: write the unit that its numbers have, `[{}]`", as_unit(units.found));
+  std::string help = fmt::format("one of the two is wrong: write the unit that its numbers have, `[{}]`",
+                                 units.to_write.empty() ? as_unit(units.found) : units.to_write);
   if (is_text)
     help += fmt::format(
         ", or add `read units = names` and write `{}` without a unit; where the name is wrong, name the columns with `read "
@@ -395,10 +404,30 @@ Diagnostic unit_of_another_kind(std::string const& file, std::string const& colu
 }
 
 Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention) {
-  return error(
-      "E4013", mention, fmt::format("{} has no value, but {} needs one in every row", place(cell), what),
-      "only measured columns may have missing samples: fill the gap in the file, or save the rows before and after it in files of "
-      "their own");
+  return error("E4013", mention, fmt::format("{} has no value, but {} needs one in every row", place(cell), what),
+               "only measured columns may have missing samples: fill the gap in the file, or save the rows before and after it in "
+               "files of their own");
+}
+
+Diagnostic gap_in_input(Cell const& first, GapEnd const& end, SimulatedRows const& rows, FreeRows const& free, Mention mention) {
+  constexpr int longest_to_fill = 3;
+  int const count = end.last - first.row + 1;
+  bool const inside = first.row <= rows.last && end.last >= rows.first;
+  std::string const why = inside ? fmt::format("rows {}..{} are simulated and need one", rows.first, rows.last)
+                          : rows.around > 0
+                              ? fmt::format("its rule between samples reads up to {} rows around rows {}..{}, which are simulated",
+                                            rows.around, rows.first, rows.last)
+                              : fmt::format("rows {}..{} are simulated and read earlier rows, too", rows.first, rows.last);
+  std::string const what = count == 1 ? "has no value" : fmt::format("has no values up to row {} ({} rows)", end.last, count);
+  std::string help = "fill the gap in the file";
+  if (count <= longest_to_fill && std::isfinite(end.before) && std::isfinite(end.after))
+    help += fmt::format(" with numbers between its neighbours, {:.6g} and {:.6g}", end.before, end.after);
+  if (free.last > free.first)
+    help += fmt::format(", or use rows without it: `split part = rows {}..{}`{}", free.first, free.last,
+                        free.first > rows.first ? " with `start = rest` or `start = estimated(rows = 50)` in the task" : "");
+  else
+    help += ", or save the rows before and after it in files of their own";
+  return error("E4013", mention, fmt::format("{} {}, but {}", place(first), what, why), std::move(help));
 }
 
 Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention) {

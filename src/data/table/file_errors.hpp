@@ -37,6 +37,8 @@ Diagnostic no_column_of_numbers(std::string const& file, std::string const& vari
 Diagnostic not_a_record(std::string const& file, std::string_view what, std::string_view help, Mention mention);
 /// E4025: `read` says how text is written. what: "MATLAB file".
 Diagnostic reading_of_no_text(std::string const& file, std::string_view what, Mention mention);
+/// E4025: a mark of missing samples that no number is. what: "MATLAB file".
+Diagnostic word_among_numbers(std::string const& file, std::string_view what, std::string const& word, Mention mention);
 /// E4023. what: "gzip file".
 /// what: "MATLAB file"; the process that reads it waits for ever.
 Diagnostic reading_waited(std::string const& file, std::string const& what, Mention mention);
@@ -96,6 +98,7 @@ struct NamedUnit {
 };
 struct TwoUnits {
   std::string stated, found;  // in the data block, in the file
+  std::string to_write{};     // what the data block should have for `found`; empty: the same
 };
 /// E4026. is_text: `read` can be said of the file.
 Diagnostic unit_differs_from_name(std::string const& file, NamedUnit const& name, TwoUnits const& units, bool is_text,
@@ -104,6 +107,21 @@ Diagnostic unit_unknown(std::string const& file, std::string const& column, std:
 Diagnostic unit_of_another_kind(std::string const& file, std::string const& column, std::string const& found,
                                 std::string const& wanted, Mention mention);
 Diagnostic missing_value(Cell const& cell, std::string const& what, Mention mention);
+/// Where a gap of an input ends, and the numbers around it; NaN at an end of the record.
+struct GapEnd {
+  int last = 0;
+  double before = 0, after = 0;
+};
+/// around: rows to either side that the input's rule reads.
+struct SimulatedRows {
+  int first = 0, last = 0, around = 0;
+};
+/// The longest stretch of them without a gap; last <= first: none.
+struct FreeRows {
+  int first = 0, last = 0;
+};
+/// E4013 of an input, in rows that a run uses.
+Diagnostic gap_in_input(Cell const& first, GapEnd const& end, SimulatedRows const& rows, FreeRows const& free, Mention mention);
 
 Diagnostic not_a_count(Cell const& cell, double value, Mention mention);
 

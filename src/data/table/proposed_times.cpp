@@ -73,7 +73,7 @@ void add_stamps(Layout const& layout, std::string const& wanted, Proposal& propo
     std::vector<std::string> const dates = filled_cells(layout, *date);
     for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = dates[i] + " " + cells[i];
   }
-  std::vector<std::string> const patterns = patterns_of(cells);
+  std::vector<std::string> const patterns = patterns_of(cells, layout.columns[*column]);
   if (patterns.empty()) return;
   std::vector<ReadingRules> made;
   for (ReadingRules const& rules : all.rules)

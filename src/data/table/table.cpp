@@ -283,6 +283,7 @@ std::vector<double> Table::times_as_told(std::string const& column, std::optiona
   std::vector<double> seconds(static_cast<std::size_t>(rows_));
   TimeStamp first, before;
   std::int64_t turns = 0;
+  bool elapsed = false;
   for (int row = 1; row <= rows_; ++row) {
     if (row % rows_between_looks == 0) stop_if_interrupted();
     std::string text = unquoted_cell(cell(row, index));
@@ -299,7 +300,9 @@ std::vector<double> Table::times_as_told(std::string const& column, std::optiona
     if (pattern->has_counted_fraction() && stamp->decimals != first.decimals)
       throw UserError(data_errors::fractions_differ(place(static_cast<std::size_t>(row - 1), column), text, mention));
     // Time of day that falls by more than half a day has passed midnight, minutes and seconds that fall by half an hour the hour.
-    if (!pattern->has_date() && row > 1 && before.second - (stamp->second + turns * turn) > turn / 2) ++turns;
+    // Elapsed times that have gone beyond a day, or an hour, do not begin again.
+    elapsed = elapsed || (!pattern->has_date() && stamp->second > turn);
+    if (!pattern->has_date() && !elapsed && row > 1 && before.second - (stamp->second + turns * turn) > turn / 2) ++turns;
     stamp->second += turns * turn;
     before = *stamp;
     seconds[static_cast<std::size_t>(row - 1)] = seconds_between(first, *stamp);

@@ -145,10 +145,10 @@ class Model:
         self._state = {"path": os.fspath(path), "task": task, "threads": threads, "from": os.getcwd()}
         self._prepared: Optional[int] = None
         self._folder: Optional[Folder] = None
-        self._begin(_engine.File(self.path, text, {}), {})
+        self._begin(_engine.File(self.path, text, {}, data is not None), {})
         if data is not None:
             self._folder = Folder()
-            records = _records.write(data, self._file.data, str(self._folder.path))
+            records = _records.write(data, self._file.data, str(self._folder.path))  # blocks need no `file` line
             self._begin(_engine.File(self.path, self.text, records), records)
         if self._file.warnings:
             warnings.warn(in_python(self._file.warnings), ModelWarning, stacklevel=3)

@@ -69,7 +69,7 @@ class SysidMagics(Magics):
 
     @magic_arguments()
     @argument("name", nargs="?", help="the name that the model is bound to")
-    @argument("--data", help="a variable with the data: a mapping, a pandas frame or an xarray data set")
+    @argument("--data", help="a variable with the data, which then need no `file` line: a mapping, a pandas frame or an xarray data set")
     @argument("--seed", type=int, help="of all random numbers, in place of those in the cell")
     @argument("--output", help="the folder of results; by default a temporary one of each")
     @argument("--force", action="store_true", help="replace results that are in the folder")

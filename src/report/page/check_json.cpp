@@ -59,6 +59,7 @@ Json coverage_object(CoveragePage const& data) {
           {"start_rows", data.start_rows},
           {"rate_hz", data.rate > 0 ? Json(data.rate) : Json(nullptr)},
           {"equal_steps", data.equal},
+          {"gaps", data.gaps},
           {"inputs", inputs},
           {"channels", channels}};
 }

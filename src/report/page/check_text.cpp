@@ -79,9 +79,10 @@ double frequency(CoveragePage const& data, double hertz) { return slow(data) ? h
 // "1000 Hz", with a comma before it; nothing of rows that no time orders.
 std::string rate_text(CoveragePage const& data) {
   if (data.rate == 0) return {};
-  return fmt::format(", {}{}", data.equal ? "" : "on average ",
+  return fmt::format(", {}{}{}", data.equal || data.gaps > 0 ? "" : "on average ",
                      slow(data) ? fmt::format("one every {:.6g} {}", 1 / (data.rate * data.time_scale), data.time_unit)
-                                : fmt::format("{:.6g} Hz", data.rate));
+                                : fmt::format("{:.6g} Hz", data.rate),
+                     data.gaps > 0 ? fmt::format(" with {}", counted(static_cast<std::size_t>(data.gaps), "gap")) : std::string());
 }
 
 std::string input_text(CoveragePage const& data, CoveragePage::Input const& input) {

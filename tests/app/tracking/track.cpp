@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -147,6 +148,19 @@ TEST_CASE("a track has a line for every row, an alarm where the stiffness has fa
   std::string const page = read_file(beam.folder.path() / "tracked/posterior/report.html");
   CHECK(page.find("class=\"part verdict doubtful\"") != std::string::npos);
   CHECK(page.find("That nothing was found") == std::string::npos);
+  // What repeats it writes beside it, and has the options that it had, no others.
+  std::string const folder = beam.folder.path().string();
+  CHECK_MESSAGE(
+      page.find(fmt::format("<code>sysid track {0}/beam.sysid {0}/results/posterior --rows 501.. -o {0}/tracked_again</code>",
+                            folder)) != std::string::npos,
+      page.substr(std::min(page.find("<code>sysid track"), page.size()), 200));
+  options.parameters = {"k"};
+  options.drift = {0.02, 3600, "0.02/h"};
+  options.window = 512;
+  beam.run(options, "other");
+  std::string const other = read_file(beam.folder.path() / "other/posterior/report.html");
+  CHECK(other.find(fmt::format("--rows 501.. --parameters k --drift 0.02/h --window 512 -o {}/other_again</code>", folder)) !=
+        std::string::npos);
   CHECK(page.find("<th scope=\"col\" class=\"n\">from the fit</th>") != std::string::npos);
   CHECK(std::filesystem::exists(beam.folder.path() / "tracked/posterior/report.html"));
   CHECK(!std::filesystem::exists(beam.folder.path() / "tracked/posterior/track.csv.partial"));
@@ -182,7 +196,8 @@ TEST_CASE("innovations that are larger than expected are a warning, and settling
   for (std::size_t i = 500; i < beam.rows.size(); ++i) {  // three times the noise, alternating
     std::size_t const at = beam.rows[i].rfind(',');
     std::string const sample = beam.rows[i].substr(at + 1);
-    if (sample.size() > 1) beam.rows[i] = fmt::format("{},{:.5f}\n", beam.rows[i].substr(0, at), std::stod(sample) + (i % 2 == 0 ? 15 : -15));
+    if (sample.size() > 1)
+      beam.rows[i] = fmt::format("{},{:.5f}\n", beam.rows[i].substr(0, at), std::stod(sample) + (i % 2 == 0 ? 15 : -15));
   }
   beam.write(900);
   TrackOptions options = beam.options();

@@ -30,9 +30,17 @@ TEST_CASE("indices, kinds and letters behind an underscore are no units") {
 }
 
 TEST_CASE("the time is called so with a unit as well") {
-  for (char const* const column :
-       {"t", "time", "Zeit (ms)", "Messung_03.t_ms", "time_ms", "Zeit_ms", "t_s", "run/time", "Time [min]"})
+  for (char const* const column : {"t", "time", "Zeit (ms)", "Messung_03.t_ms", "time_ms", "Zeit_ms", "t_s", "run/time",
+                                   "Time [min]", "millis", "Zeit 1 - Standardmessrate"})
     CHECK_MESSAGE(is_time_name(column), column);
   for (char const* const column : {"x_ms", "t_kN", "temp", "ramp_ms", "y", "T_s", "T_h", "run.T_min"})
     CHECK_MESSAGE(!is_time_name(column), column);
+}
+
+TEST_CASE("columns of accelerations are told from others, whose g and mg are masses") {
+  for (char const* const column : {"acc_x", "Beschl. 3", "a_z [mg]", "ax (g)", "A", "imu.a_y", "G Force Lat"})
+    CHECK_MESSAGE(is_acceleration_name(column), column);
+  for (char const* const column : {"dose [mg]", "m [g]", "max", "amp", "a_lpha", "mass_a"})
+    CHECK_MESSAGE(!is_acceleration_name(column), column);
+  CHECK(unit_behind_underscore("millis")->unit == "ms");
 }

@@ -242,3 +242,32 @@ TEST_CASE("`0:05` may be hours and minutes or minutes and seconds, as `00:05` ma
   CHECK(seconds_in({"9:59.5", "10:00.0"}, stamped("mm:ss.f")) == Seconds{0, 0.5});
   CHECK(said_of({"8:5:00", "8:06:00"}, stamped("hh:mm:ss")).code == "E4024");
 }
+
+TEST_CASE("elapsed times go on beyond a day, and a time of day begins again at midnight") {
+  CHECK(seconds_in({"23:59:59", "24:00:00", "25:13:02", "125:00:00"}, stamped("hh:mm:ss")) == Seconds{0, 1, 4383, 363601});
+  CHECK(seconds_in({"59:59.5", "60:00.0", "125:00.0"}, stamped("mm:ss.f")) == Seconds{0, 0.5, 3900.5});
+  CHECK(seconds_in({"23:59:59", "00:00:01"}, stamped("hh:mm:ss")) == Seconds{0, 2});
+  // A counter that has passed a day and falls has been set back: no midnight lies between.
+  CHECK(seconds_in({"25:00:00", "00:00:01"}, stamped("hh:mm:ss")) == Seconds{0, -89999});
+  CHECK(said_of({"2024-01-01 25:00:00"}, stamped("YYYY-MM-DD hh:mm:ss")).code == "E4024");
+  CHECK(said_of({"12:00:00", "12:75:00"}, stamped("hh:mm:ss")).code == "E4024");
+  CHECK(patterns_of({"23:59:59", "25:13:02"}) == std::vector<std::string>{"hh:mm:ss"});
+  CHECK(patterns_of({"00:00", "25:30", "59:59"}) == std::vector<std::string>{"mm:ss.f"});  // no hours, which end at 24:00
+}
+
+TEST_CASE("the name of a column says whether two numbers are minutes and seconds or hours and minutes") {
+  using Patterns = std::vector<std::string>;
+  Patterns const cells{"0:00", "0:10", "1:20"}, minutes{"mm:ss"}, hours{"hh:mm"}, both{"hh:mm", "mm:ss"};
+  for (char const* name : {"Zeit (min:sec)", "mm:ss", "t [m:s]", "Time MM:SS"}) {
+    CAPTURE(name);
+    CHECK(patterns_of(cells, name) == minutes);
+  }
+  for (char const* name : {"Zeit (hh:mm)", "h:min", "Uhrzeit Std:Min"}) {
+    CAPTURE(name);
+    CHECK(patterns_of(cells, name) == hours);
+  }
+  for (char const* name : {"Zeit", "hh:mm:ss", "comm:ssh"}) {
+    CAPTURE(name);
+    CHECK(patterns_of(cells, name) == both);
+  }
+}

@@ -180,7 +180,10 @@ TEST_CASE("vectors, fields of structs and columns of matrices are read from MATL
     CHECK((force[0] == 1.5 && std::isnan(force[1]) && force[2] == 3.5));
     CHECK(contains(refusal(*record, "X").message, "array of 3 x 2"));
     CHECK(refusal(*record, "X[:, 3]").code == "E4027");
-    CHECK(contains(refusal(*record, "z").message, "is complex"));
+    CHECK(contains(refusal(*record, "z").message, "is complex: save its parts as variables of their own, `z_re = real(z)`"));
+    auto const left_out = record->left_out();
+    CHECK(std::any_of(left_out.begin(), left_out.end(), [](auto const& each) { return each.first == "z"; }));
+    CHECK(std::none_of(left_out.begin(), left_out.end(), [](auto const& each) { return each.first == "time"; }));
     CHECK(contains(refusal(*record, "remark").message, "is text"));
     CHECK(contains(refusal(*record, "cells").message, "cell array"));
     Diagnostic const missing = refusal(*record, "data.forse");
@@ -207,6 +210,16 @@ TEST_CASE("numbers that mark missing samples are missing in a MATLAB file too, a
   CHECK((y[0] == 1 && std::isnan(y[1]) && y[2] == 3));
   CHECK((std::isnan(a[0]) && a[1] == 2 && std::isnan(a[2])));
   CHECK(open_record(file.path, {})->numbers("y")[1] == -9999);
+  rules.missing = {"-9999", "OVLD"};
+  try {
+    (void)open_record(file.path, rules, {}, Span{3, 4});
+    FAIL("a word was taken");
+  } catch (UserError const& error) {
+    CHECK(error.diagnostic().code == "E4025");
+    CHECK(error.diagnostic().primary->span == Span{3, 4});
+    CHECK(contains(error.diagnostic().message, "`missing` lists `OVLD`"));
+  }
+  rules.missing = {"-9999"};
   rules.decimal = ',';
   CHECK_THROWS_AS(open_record(file.path, rules), UserError);
 }
