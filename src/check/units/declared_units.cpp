@@ -109,7 +109,8 @@ std::string DeclaredUnits::named(Dimension const& dimension, std::vector<std::st
   return text;
 }
 
-std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& wanted, Dimension const& missing, bool pure) const {
+std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& wanted, Dimension const& missing, bool pure,
+                                bool is_term) const {
   std::vector<std::string> but;
   if (pure && odd != nullptr) but = names_in(*odd);
   if (odd != nullptr && !pure) {
@@ -139,9 +140,9 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& w
   }
   std::string cure = factor_cure(wanted, missing, but);
   if (odd != nullptr && !pure)
-    if (auto const declared = declared_otherwise(*odd, missing)) {
+    if (auto const declared = declared_otherwise(*odd, missing, is_term)) {
       std::string const other = errors::declare_in(declared->name, words(declared->unit));
-      return is_power_of_moving(*odd, missing) ? errors::or_else(other, cure) : other;
+      return is_term && is_power_of_moving(*odd, missing) ? errors::or_else(other, cure) : other;
     }
   return cure;
 }
@@ -169,14 +170,15 @@ bool DeclaredUnits::is_power_of_moving(ast::Expression const& odd, Dimension con
 // A coefficient that multiplies something that moves, as in k3*y^3: its declaration is as likely to be wrong as the power of y,
 // unless what is missing is no power of y but another name: a mass, where the other terms are accelerations. Of a unit that is no
 // kind of its own, such as 1/m^2, a name would be a factor by accident: a noise precision has that one.
-std::optional<DeclaredUnit> DeclaredUnits::declared_otherwise(ast::Expression const& odd, Dimension const& missing) const {
+std::optional<DeclaredUnit> DeclaredUnits::declared_otherwise(ast::Expression const& odd, Dimension const& missing,
+                                                              bool is_term) const {
   std::vector<std::string> const used = names_in(odd);
   bool const moves = std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
     return each.moves && std::find(used.begin(), used.end(), each.name) != used.end();
   });
   if (!moves) return std::nullopt;
   bool const another_name = !named(inverse(missing), {}).empty() || (is_plain_kind(missing) && !named(missing, {}).empty());
-  if (another_name && !is_power_of_moving(odd, missing)) return std::nullopt;
+  if (another_name && !(is_term && is_power_of_moving(odd, missing))) return std::nullopt;
   std::optional<DeclaredUnit> coefficient = only_coefficient(odd, declared_);
   std::optional<int> const power = coefficient ? factor_power(odd, coefficient->name) : std::nullopt;
   if (!power || std::abs(*power) != 1) return std::nullopt;

@@ -23,8 +23,10 @@ class DeclaredUnits {
   /// A unit as the text has it, else in the names that it uses.
   std::string words(Unit const& unit) const;
   /// How an expression that lacks the factor `missing` could be mended ("multiply it by a length, such as `y`"); odd: null where it
-  /// is a declaration; wanted: the unit it should have; pure: a pure number is wanted.
-  std::string cure(ast::Expression const* odd, std::string const& wanted, Dimension const& missing, bool pure) const;
+  /// is a declaration; wanted: the unit it should have; pure: a pure number is wanted; is_term: of a sum
+  /// or an equation, whose coefficient is its own.
+  std::string cure(ast::Expression const* odd, std::string const& wanted, Dimension const& missing, bool pure,
+                   bool is_term = false) const;
 
   /// Whether `cycles` holds a frequency in Hz where `other`, which counts neither cycles nor radians, asks for an angular one: as a
   /// square (k = m omega^2), or as the factor of something else that moves beside a derivative in time (y'' + omega^2 y, y' =
@@ -37,7 +39,7 @@ class DeclaredUnits {
  private:
   std::string factor_cure(std::string const& wanted, Dimension const& missing, std::vector<std::string> const& but) const;
   // The one coefficient of a term, in the unit that it should have been declared in; nothing where something else is likelier.
-  std::optional<DeclaredUnit> declared_otherwise(ast::Expression const& odd, Dimension const& missing) const;
+  std::optional<DeclaredUnit> declared_otherwise(ast::Expression const& odd, Dimension const& missing, bool is_term) const;
   // Whether one power of something that moves in a term is what it lacks, or has too much.
   bool is_power_of_moving(ast::Expression const& odd, Dimension const& missing) const;
   // "`y`", "`y` or `l`": declared names of this dimension.

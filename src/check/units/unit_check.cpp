@@ -168,7 +168,8 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   conflict.wanted = words(wanted);
   conflict.found = words(operands[shown].value.unit);
   missing_.push_back(quotient(wanted.dimension, dimension_of(operands[shown])));
-  conflict.help = declared_.cure(operands[shown].tree, conflict.wanted, missing_.back(), false);
+  conflict.help =
+      declared_.cure(operands[shown].tree, conflict.wanted, missing_.back(), false, occasion.kind == Occasion::Kind::terms);
   // Against other terms of its own sum a term is shown as such, whatever the sum is for.
   bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
   report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));
