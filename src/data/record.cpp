@@ -327,6 +327,11 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
   record.other_units = columns.other_units();
   record.rounded = columns.rounded();
   record.gaps = columns.gaps();
+  if (whole) {
+    record.unused_time = find_unused_time(file, request);
+    record.measured_time = find_measured_time(file, request);
+    record.unused_columns = find_unused_columns(file, request);
+  }
   return record;
 }
 

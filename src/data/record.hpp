@@ -9,6 +9,7 @@
 #include "data/cell/rounded_times.hpp"
 #include "data/experiment.hpp"
 #include "data/table/reading_rules.hpp"
+#include "data/unused_time.hpp"
 
 namespace sysid {
 
@@ -68,6 +69,9 @@ struct Record {
   std::vector<std::string> comments;          // before the header of the file
   std::vector<UnitInName> other_units;
   std::optional<RoundedSteps> rounded;  // of times that are read as they stand
+  std::optional<UnusedTime> unused_time;
+  std::string measured_time;                // a measured column that is called and looks like the time; empty: none
+  std::vector<std::string> unused_columns;  // of the file
 
   int rows() const { return static_cast<int>(time.size()); }
 };

@@ -27,6 +27,22 @@ std::string cure_of(UnitInName const& found) {
       found.stated ? "" : fmt::format("; if not, `{}`", read));
 }
 
+/// "steps of 0.02 s (50 Hz)": what the column has in place of the steps of the block.
+std::string times_of(UnusedTime const& found) {
+  switch (found.kind) {
+    case UnusedTime::Kind::gap:
+      return fmt::format("a gap of {:.4g} s between rows {} and {}{}", found.longest, found.row, found.row + 1,
+                         found.gaps > 1 ? fmt::format(" (and {} more)", found.gaps - 1) : "");
+    case UnusedTime::Kind::unequal:
+      return fmt::format("unequal steps, {:.4g} to {:.4g} s", found.shortest, found.longest);
+    case UnusedTime::Kind::other_rate:
+    case UnusedTime::Kind::by_steps:
+    case UnusedTime::Kind::other_units:
+      break;
+  }
+  return fmt::format("steps of {:.5g} s ({:.5g} Hz)", found.step, 1 / found.step);
+}
+
 }  // namespace
 
 Findings find_other_units(ExperimentData const& data) {
@@ -60,6 +76,75 @@ Findings find_rounded_times(CheckedFile const& file, ExperimentData const& data,
        fmt::format("if the samples were taken at equal steps, write `rate {} [Hz]` in place of `time` in `{}`: times that are "
                    "wrong by a fraction of a step act like noise, and bias the estimates{}",
                    shortest(rounded->rate), block.name, data.experiment.time.front() == 0 ? "" : " (the time then begins at 0)")}};
+}
+
+Findings find_contradicted_rate(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  std::optional<UnusedTime> const& found = data.record.unused_time;
+  if (!found || model.dynamics == Dynamics::none) return {};
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  bool const of_block = block.step > 0;
+  double const step = of_block ? block.step : model.step.value_or(0);
+  std::string const word = of_block && !block.step_stated ? "rate" : "step";
+  std::string const stated = word == "rate" ? fmt::format("`rate` {:.6g} Hz", 1 / step) : fmt::format("`step` {:.6g} s", step);
+  std::string const owner = of_block ? block.name : model.name;
+  auto const finding = [&](Severity severity, std::string message, std::string help) {
+    return Findings{{FindingCode::rate_contradicted, severity, {data.use.name}, std::move(message), std::move(help)}};
+  };
+  std::string const use = of_block ? fmt::format("write {} in place of `{}`", found->lines, word)
+                                   : fmt::format("write {} in `{}`, and the same step in the model", found->lines, block.name);
+  if (found->kind == UnusedTime::Kind::other_units)
+    return finding(Severity::note,
+                   fmt::format("column `{}` of {} agrees with the {} of `{}` only if its numbers are in {}", found->column,
+                               block.name, stated, owner, found->meant_unit),
+                   fmt::format("if they are, {}: then its times are used", use));
+  if (found->kind == UnusedTime::Kind::by_steps)
+    return finding(Severity::note,
+                   fmt::format("`{}` has {}, but column `{}` of {}, which is not used, has equal steps of {:.5g}: is it the time?",
+                               owner, stated, found->column, block.name, found->step),
+                   fmt::format("if it is, {}", use));
+  std::string const rate = found->kind == UnusedTime::Kind::other_rate && of_block
+                               ? word == "rate" ? fmt::format(" or `rate {:.6g} [Hz]`", 1 / found->step)
+                                                : fmt::format(" or `step {:.6g} [s]`", found->step)
+                               : "";
+  return finding(
+      Severity::warning,
+      fmt::format("`{}` has {}, but the time in column `{}` of {} has {}: with a wrong time all rates and frequencies "
+                  "are wrong",
+                  owner, stated, found->column, block.name, times_of(*found)),
+      fmt::format("{}{}; if `{}` is not the time of these samples, give it another name in the file", use, rate, found->column));
+}
+
+Findings find_shared_columns(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  auto const has = [](auto const& all, std::string const& name) {
+    return std::any_of(all.begin(), all.end(), [&](auto const& each) { return each.name == name; });
+  };
+  std::vector<std::string> unused = data.record.unused_columns;
+  if (unused.size() > 3) unused.resize(3);
+  std::string others;
+  for (std::string const& column : unused) others += (others.empty() ? "`" : ", `") + column_text(column, "") + "`";
+  Findings findings;
+  for (std::size_t m = 0; m < block.measured.size(); ++m) {
+    DataMeasureUse const& channel = block.measured[m];
+    if (!has(model.channels, channel.channel)) continue;
+    std::string use;
+    if (block.time && block.time->column == channel.column) use = "the time";
+    for (DataInputUse const& input : block.inputs)
+      if (input.column == channel.column && has(model.inputs, input.input)) use = fmt::format("the input {}", input.input);
+    for (std::size_t before = 0; before < m && use.empty(); ++before)
+      if (block.measured[before].column == channel.column && has(model.channels, block.measured[before].channel))
+        use = fmt::format("the channel {}", block.measured[before].channel);
+    if (use.empty() && data.record.measured_time == channel.column) use = "a time, by its name and its equal steps";
+    if (use.empty()) continue;
+    findings.push_back({FindingCode::column_used_twice,
+                        Severity::warning,
+                        {channel.channel, data.use.name},
+                        fmt::format("{} is read from column `{}` of {}, which is also {}: nothing else was measured for it",
+                                    channel.channel, channel.column, data.use.name, use),
+                        fmt::format("write the column of its sensor in `measure {} = ...`{}", channel.channel,
+                                    others.empty() ? "" : "; columns that are not used: " + others)});
+  }
+  return findings;
 }
 
 }  // namespace sysid

@@ -36,6 +36,8 @@ constexpr FindingRow rows[] = {
     {FindingCode::column_constant, "column_constant", warning_or_note},
     {FindingCode::time_gap, "time_gap", warning},
     {FindingCode::times_rounded, "times_rounded", warning},
+    {FindingCode::rate_contradicted, "rate_contradicted", warning_or_note},
+    {FindingCode::column_used_twice, "column_used_twice", warning},
     {FindingCode::unit_in_name, "unit_in_name", warning_or_note},
     {FindingCode::samples_far_off, "samples_far_off", warning},
     {FindingCode::explains_little, "explains_little", error_or_warning},

@@ -35,6 +35,8 @@ enum class FindingCode {
   column_constant,
   time_gap,
   times_rounded,
+  rate_contradicted,
+  column_used_twice,
   unit_in_name,
   samples_far_off,
   explains_little,

@@ -322,10 +322,11 @@ std::vector<int> possible_fits(Session& session, std::vector<int> const& fits) {
 /// All that can be refused is refused before the first begins.
 ExitCode calibrate_all(Session& session, std::vector<int> const& fits, CalibrateOptions const& options) {
   std::vector<int> open;
+  ExitCode worst = ExitCode::success;
   for (int const index : possible_fits(session, fits)) {
     Task const& task = session.file.tasks[static_cast<std::size_t>(index)];
     if (kept(session, task, options))
-      session.notices << fmt::format("{}: complete, kept\n", task.name);
+      worst = std::max(worst, keep_complete(session, task));
     else
       open.push_back(index);
   }
@@ -339,7 +340,6 @@ ExitCode calibrate_all(Session& session, std::vector<int> const& fits, Calibrate
     calibrations.back()->prepare();
   }
   ranks::wait_for_all();
-  ExitCode worst = ExitCode::success;
   for (auto& calibration : calibrations) {
     ExitCode const code = calibration->run();
     if (code == ExitCode::interrupted) return code;

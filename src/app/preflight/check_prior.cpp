@@ -64,6 +64,21 @@ std::string units_that_scale(Model const& model) {
   return model.inputs.empty() ? "and " + time : "the units of the " + plural("input", model.inputs.size()) + ", and " + time;
 }
 
+// The step of the rows is too long for nearly all of the prior: so it is when milliseconds are read as seconds. Empty otherwise.
+std::string unit_of_time_first(Preflight const& preflight) {
+  constexpr double nearly_all = 0.9;
+  PriorPage const& page = *preflight.page.prior;
+  SolverSettings const& solver = preflight.what.solver;
+  if (!solver.fixed_step() || solver.row().exact || page.failed_as_stated < nearly_all * page.draws) return {};
+  Experiment const& first = preflight.experiments.front();
+  if (first.time.size() < 2) return {};
+  double const step = (first.time.back() - first.time.front()) / static_cast<double>(first.time.size() - 1);
+  return fmt::format(
+      "check the unit of time in the data block first: its rows are {} s apart, too far for the motion that {} of "
+      "{} prior draws predict; else ",
+      significant(step, 3), page.failed_as_stated, page.draws);
+}
+
 // Draws that only an implicit method follows. Fixed explicit steps as short as the motion asks for would follow them, too, but
 // there would be as many of them as adaptive ones take.
 void check_stiffness(Preflight const& preflight, double share) {
@@ -85,7 +100,7 @@ void check_stiffness(Preflight const& preflight, double share) {
       fmt::format("explicit steps ({}, {}) fail on {:.0f} % of the prior draws, and {} succeeds on {} of these: the model "
                   "is stiff there",
                   page.stated, page.explicit_solver, 100.0 * page.failed_explicit / page.draws, page.stiff_solver, followed),
-      fmt::format("use {}, or narrow the priors if such fast motion is not intended", exact));
+      fmt::format("{}use {}, or narrow the priors if such fast motion is not intended", unit_of_time_first(preflight), exact));
 }
 
 std::string finer_advice(SolverSettings const& solver) {
@@ -111,7 +126,7 @@ void check_failures(Preflight const& preflight) {
                     preflight.candidate()
                         ? fmt::format(": this lowers the probability of the candidate by a factor of {:.2g}", 1 / (1 - share))
                         : ""),
-        "narrow the priors, or check the named part of the equation");
+        unit_of_time_first(preflight) + "narrow the priors, or check the named part of the equation");
   check_stiffness(preflight, stiff);
   if (preflight.refines_solver() && solver.fixed_step()) return;
   if (lost > many_failures)

@@ -80,7 +80,7 @@ ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& a
   ExitCode worst = ExitCode::success;
   for (std::size_t i = 0; i < file.tasks.size(); ++i) {
     Task const& task = file.tasks[i];
-    if (complete_already.contains(&task)) session.notices << fmt::format("{}: complete, kept\n", task.name);
+    if (complete_already.contains(&task)) worst = std::max(worst, keep_complete(session, task));
     if (!wanted(task)) continue;
     ExitCode const code = run_or_stop(session, static_cast<int>(i), task);
     if (code == ExitCode::interrupted) return code;

@@ -94,8 +94,9 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
 
 Findings data_findings(CheckedFile const& file, ExperimentData const& data, Model const& model) {
   Findings all = find_placeholders(file, data, model);
-  for (Findings const& more : {find_constant_columns(file, data, model), find_time_gaps(file, data, model), find_other_units(data),
-                               find_rounded_times(file, data, model)})
+  for (Findings const& more :
+       {find_constant_columns(file, data, model), find_time_gaps(file, data, model), find_other_units(data),
+        find_rounded_times(file, data, model), find_contradicted_rate(file, data, model), find_shared_columns(file, data, model)})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -121,7 +122,8 @@ std::string samples_digest(Experiment const& experiment, Model const& model) {
 
 bool tells_of_data(FindingCode code) {
   return code == FindingCode::looks_missing || code == FindingCode::column_constant || code == FindingCode::time_gap ||
-         code == FindingCode::times_rounded || code == FindingCode::unit_in_name;
+         code == FindingCode::times_rounded || code == FindingCode::rate_contradicted || code == FindingCode::column_used_twice ||
+         code == FindingCode::unit_in_name;
 }
 
 void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/session/made_from.hpp"
@@ -261,6 +262,18 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
   auto const summary = nlohmann::json::parse(read_whole_summary(folder));
   return interpreted(folder / "summary.json",
                      [&] { return otherwise(session, task, seed, verb.empty() ? verb_of(task) : verb, summary); });
+}
+
+ExitCode keep_complete(Session& session, Task const& task) {
+  auto const folder = session.result_folder(task);
+  auto verdict = nlohmann::json::object();  // a plain simulation has none
+  if (std::filesystem::exists(folder / "summary.json")) {
+    auto const summary = nlohmann::json::parse(read_summary(folder));
+    verdict = interpreted(folder / "summary.json", [&] { return summary.value("verdict", nlohmann::json::object()); });
+  }
+  std::string const text = verdict.value("text", std::string());
+  session.notices << fmt::format("{}: complete, kept{}{}\n", task.name, text.empty() ? "" : ": ", text);
+  return verdict.value("pass", true) ? ExitCode::success : ExitCode::doubtful;
 }
 
 }  // namespace sysid

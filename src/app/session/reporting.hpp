@@ -49,4 +49,8 @@ std::string statement_digest(Session const& session, Task const& task);
 std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed,
                                            std::string const& verb = {});
 
+/// Says that a task is complete, with the verdict of its stored result, which stays as it is; the exit code of the run that made
+/// it: a script that is started again must not take a failed check for success.
+ExitCode keep_complete(Session& session, Task const& task);
+
 }  // namespace sysid

@@ -86,6 +86,7 @@ class DataChecker {
       return;
     }
     block_.step = tree.step ? *value : 1 / *value;
+    block_.step_stated = tree.step;
   }
   void take(ast::DataReading const& tree) {
     reading_ = tree.span;

@@ -1,6 +1,8 @@
 // Arguments of a distribution are matched to rows of its table; scales must be spelt out (sd, variance or precision).
 #include "check/expression/distributions.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +10,7 @@
 #include "check/message/errors_numbers.hpp"
 #include "check/message/unit_words.hpp"
 #include "function/primitive.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid {
 namespace {
@@ -103,10 +106,10 @@ class DistributionChecker {
   }
 
   std::optional<Typed> value_in(std::optional<Unit> const& wanted, ast::Expression const& tree, std::string const& spelt,
-                                bool is_width = false) {
+                                bool is_width = false, std::vector<std::pair<Dimension, std::string>> cures = {}) {
     std::string const declared = variate_.unit ? "[" + unit_words(*variate_.unit, {}) + "]" : "";
     return scope_.expression_in(wanted, variate_.span, tree,
-                                {Occasion::Kind::distribution, spelt, variate_.name, declared, is_width});
+                                {Occasion::Kind::distribution, spelt, variate_.name, declared, is_width, std::move(cures)});
   }
 
   void evaluate_arguments() {
@@ -114,7 +117,7 @@ class DistributionChecker {
     for (std::size_t i = 0; i < given_.size(); ++i) {
       ArgumentRow const& argument = row_.arguments[i];
       if (given_[i].value != nullptr) {
-        evaluate(given_[i]);
+        evaluate(given_[i], argument);
       } else if (!std::isnan(argument.fallback)) {
         auto const scale = unit_of_argument(variate_.unit, argument.spellings.front().unit_power);
         use_.arguments.push_back(graph_.constant(argument.fallback * (scale ? scale->scale : 1)));
@@ -125,12 +128,32 @@ class DistributionChecker {
     }
   }
 
-  void evaluate(Given const& given) {
+  /// `variance = sigma` of a sigma in the unit of an sd: by the spelling that has its unit, or as the power that was asked for.
+  std::vector<std::pair<Dimension, std::string>> other_spellings(Given const& given, ArgumentRow const& row) const {
+    std::vector<std::pair<Dimension, std::string>> cures;
+    if (!variate_.unit || variate_.unit->dimensionless()) return cures;
+    std::string const text = unparse(*given.value);
+    std::string const base = std::holds_alternative<ast::Reference>(given.value->node) ? text : "(" + text + ")";
+    for (Spelling const& other : row.spellings) {
+      if (other.unit_power == given.spelling->unit_power || other.unit_power == 0) continue;
+      std::string const written = fmt::format("write `{} = {}`", other.name, text);
+      std::string power;
+      if (other.unit_power == 1 && given.spelling->unit_power == 2) power = fmt::format("{}^2", base);
+      if (other.unit_power == 1 && given.spelling->unit_power == -2) power = fmt::format("1/{}^2", base);
+      if (other.unit_power == 2 && given.spelling->unit_power == 1) power = fmt::format("sqrt({})", text);
+      if (other.unit_power == -given.spelling->unit_power) power = fmt::format("1/{}", base);
+      cures.emplace_back(unit_of_argument(variate_.unit, other.unit_power)->dimension,
+                         power.empty() ? written : fmt::format("{}, or `{} = {}`", written, given.spelling->name, power));
+    }
+    return cures;
+  }
+
+  void evaluate(Given const& given, ArgumentRow const& row) {
     std::optional<Unit> unit = unit_of_argument(variate_.unit, given.spelling->unit_power);
     // Widths of a temperature are differences: they have no zero to shift.
     std::string_view const spelt = given.spelling->name;
     bool const place = spelt == "mean" || spelt == "median" || spelt == "location" || spelt == "lower" || spelt == "upper";
-    std::optional<Typed> value = value_in(unit, *given.value, std::string(spelt), !place);
+    std::optional<Typed> value = value_in(unit, *given.value, std::string(spelt), !place, other_spellings(given, row));
     if (!value) {
       good_ = false;
       return;

@@ -18,6 +18,10 @@ constexpr Synonym function_synonyms[] = {
 constexpr Synonym unit_synonyms[] = {
     {"gn", "g_n"}, {"gee", "g_n"}, {"gravity", "g_n"}, {"decc", "degC"}, {"strain", "microstrain"}};
 
+constexpr char const* declared_in_stan =
+    "a parameter is declared with its prior, in one statement: write `parameter NAME ~ normal(0, sd = 1, lower = 0)` in place of "
+    "this line, or delete it where another line gives the prior";
+
 // Help in place of a guess.
 constexpr Synonym name_synonyms[] = {
     {"time", "declare it, `time time [s]`, or, if the model declares the time under another name, use that name"},
@@ -30,6 +34,10 @@ constexpr Synonym name_synonyms[] = {
     {"unknown", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"free", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"estimate", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
+    {"real", declared_in_stan},
+    {"int", declared_in_stan},
+    {"lower", "bounds are arguments of a prior: `parameter NAME ~ normal(0, sd = 1, lower = 0)`"},
+    {"upper", "bounds are arguments of a prior: `parameter NAME ~ normal(0, sd = 1, upper = 1)`"},
     {"NA", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"NaN", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"nan", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},

@@ -1,6 +1,8 @@
 // Operands are grouped by dimension; the largest group is taken to be right, and the others are shown against it.
 #include "check/units/unit_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <map>
@@ -73,6 +75,58 @@ Stretch agreeing(std::span<UnitOperand const> operands, std::vector<std::size_t>
   return {cover(operands[first].value.span, operands[last].value.span), last<odd, last> first};
 }
 
+/// All terms of a value have one dimension, so that it is the value that is meant otherwise, and not one of its terms.
+bool terms_alike(Groups const& groups, std::span<UnitOperand const> operands) {
+  return groups.size() == 2 && std::any_of(groups.begin(), groups.end(), [&](std::vector<std::size_t> const& members) {
+           return members.size() == 1 && operands[members.front()].tree == nullptr;
+         });
+}
+
+/// The factors of a product: those that a value is multiplied by, and those that it is divided by. One factor of 2 and those of pi,
+/// by which cycles and radians are converted, are counted only.
+struct Factors {
+  std::vector<ast::Expression const*> above, below;
+  int pi_above = 0, pi_below = 0, twos = 0;
+
+  void take(ast::Expression const& tree, bool divides) {
+    if (auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+        binary != nullptr && ((*binary)->symbol == "*" || (*binary)->symbol == "/")) {
+      take(*(*binary)->left, divides);
+      return take(*(*binary)->right, divides != ((*binary)->symbol == "/"));
+    }
+    auto const* number = std::get_if<ast::Number>(&tree.node);
+    auto const* name = std::get_if<ast::Reference>(&tree.node);
+    if (number != nullptr && number->value == 2 && !number->unit && twos++ == 0) return;
+    if (name != nullptr && name->name.text == "pi")
+      ++(divides ? pi_below : pi_above);
+    else
+      (divides ? below : above).push_back(&tree);
+  }
+};
+
+std::string product_text(std::vector<ast::Expression const*> const& factors) {
+  std::string text;
+  for (ast::Expression const* factor : factors) {
+    auto const* binary = std::get_if<ast::Box<ast::Binary>>(&factor->node);
+    bool const sum = binary != nullptr && (*binary)->symbol != "^";
+    text += (text.empty() ? "" : "*") + (sum ? "(" + unparse(*factor) + ")" : unparse(*factor));
+  }
+  return text;
+}
+
+/// With 2*pi on the other side of the fraction, where it stands on the wrong one; else empty.
+std::string with_turns_moved(ast::Expression const& tree, bool multiply) {
+  Factors factors;
+  factors.take(tree, false);
+  if ((multiply ? factors.pi_below : factors.pi_above) != 1 || (multiply ? factors.pi_above : factors.pi_below) != 0) return {};
+  if (factors.above.empty()) return {};
+  std::string text = (multiply ? "2*pi*" : "") + product_text(factors.above);
+  std::string below = product_text(factors.below);
+  if (!multiply) below = "2*pi" + (below.empty() ? "" : "*" + below);
+  bool const several = !multiply || factors.below.size() > 1;
+  return below.empty() ? text : fmt::format("{}/{}", text, several ? "(" + below + ")" : below);
+}
+
 }  // namespace
 
 Label UnitCheck::unit_label(UnitOperand const& operand) const {
@@ -107,7 +161,8 @@ void UnitCheck::hint_cycles(std::span<UnitOperand const> operands) {
         bool const shows_second = operands[i].tree != nullptr;  // the expression rather than a declaration
         UnitOperand const &shown = operands[shows_second ? i : j], &other = operands[shows_second ? j : i];
         bool const counts_cycles = shown.value.unit.hertz.numerator > other.value.unit.hertz.numerator;
-        report(errors::cycles_meet_radians(unit_label(shown), unit_label(other), counts_cycles));
+        std::string const moved = shown.tree == nullptr ? std::string() : with_turns_moved(*shown.tree, counts_cycles);
+        report(errors::cycles_meet_radians(unit_label(shown), unit_label(other), counts_cycles, moved));
         return;
       }
       bool const first = angular(operands[j], operands[i]);
@@ -168,8 +223,13 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   conflict.wanted = words(wanted);
   conflict.found = words(operands[shown].value.unit);
   missing_.push_back(quotient(wanted.dimension, dimension_of(operands[shown])));
-  conflict.help =
-      declared_.cure(operands[shown].tree, conflict.wanted, missing_.back(), false, occasion.kind == Occasion::Kind::terms);
+  auto const cure = std::find_if(occasion.cures.begin(), occasion.cures.end(), [&](auto const& each) {
+    return terms_alike(groups, operands) && each.first == dimension_of(operands[shown]);
+  });
+  bool const terms = occasion.kind == Occasion::Kind::terms;
+  conflict.help = cure != occasion.cures.end()
+                      ? cure->second
+                      : declared_.cure(operands[shown].tree, conflict.wanted, missing_.back(), false, terms);
   // Against other terms of its own sum a term is shown as such, whatever the sum is for.
   bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
   report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));

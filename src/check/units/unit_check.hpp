@@ -28,6 +28,7 @@ struct Occasion {
   std::string of = {};    // distribution: the name of the variate
   std::string note = {};  // stands under the declaration in place of its unit
   bool is_width = false;  // what is declared as a temperature stands for a difference of two
+  std::vector<std::pair<Dimension, std::string>> cures = {};  // of what has another dimension: what it is likelier to be
 };
 
 /// Compares units where they must agree, adds a diagnostic where they do not, and remembers what could not be compared. Nothing is

@@ -125,10 +125,11 @@ Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other) {
   }
   return at(Severity::error, "E2211", std::move(shown.label), {std::move(other.label)}, message, help);
 }
-Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles) {
+Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles, std::string const& moved) {
+  std::string help = counts_cycles ? "multiply this by 2*pi" : "divide this by 2*pi";
+  if (!moved.empty()) help = fmt::format("2*pi belongs on the other side of the fraction: write `{}`", moved);
   return at(Severity::warning, "E2210", std::move(shown), {std::move(other)},
-            "a frequency in cycles is combined with one in radians without 2*pi",
-            counts_cycles ? "multiply this by 2*pi" : "divide this by 2*pi");
+            "a frequency in cycles is combined with one in radians without 2*pi", std::move(help));
 }
 Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name) {
   shown.text = name.empty() ? "counts cycles" : fmt::format("`{}` counts cycles", name);

@@ -34,8 +34,9 @@ struct Temperature {
   Unit unit;
 };
 Diagnostic zeros_differ(Zeros zeros, Temperature shown, Temperature other);
-/// Warnings. counts_cycles: the shown quantity does, the other is in radians.
-Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles);
+/// Warnings. counts_cycles: the shown quantity does, the other is in radians. moved: the shown one with its 2*pi on the other side
+/// of the fraction, or empty.
+Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles, std::string const& moved);
 /// name: of the frequency, or empty.
 Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name);
 Diagnostic cycles_in_angle(Span argument, std::string const& function);

@@ -128,6 +128,8 @@ double shortest_between(double least, double most) {
 
 }  // namespace
 
+double last_digit(std::span<double const> time) { return last_unit(time); }
+
 std::optional<RoundedSteps> rounded_steps(std::span<double const> time, double scale) {
   constexpr std::size_t fewest_steps = 40;
   constexpr double fewest_units = 1.5;

@@ -16,6 +16,9 @@ namespace sysid {
 /// time: as the numbers stand in the file, at least two, rising. unit: of their last digit; 0: it is found from them.
 std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time, double unit = 0);
 
+/// The unit of the last digit of these numbers, as they stand in the file.
+double last_digit(std::span<double const> time);
+
 /// Times that equal steps give when they are rounded to few units.
 struct RoundedSteps {
   double unit = 0;   // s, of the last digit
