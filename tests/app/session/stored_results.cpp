@@ -310,7 +310,7 @@ TEST_CASE("draws that are not all there are neither predicted with nor kept by -
   refused("`OUT/posterior/draws_2.csv` has been changed since it was written");
   write(fit / "draws_2.csv", draws);
   CHECK(run("k", output.path(), {"predict"}, force).exit <= ExitCode::doubtful);
-  CHECK(run("k", output.path(), {"fit"}, resume).exit == ExitCode::success);
+  CHECK(run("k", output.path(), {"fit"}, resume).exit <= ExitCode::doubtful);  // the verdict of what is kept
 }
 
 TEST_CASE("a forced run that ends without a result leaves the old ones, and a run that fails leaves no folders") {
