@@ -87,19 +87,22 @@ Findings find_contradicted_rate(CheckedFile const& file, ExperimentData const& d
   std::string const word = of_block && !block.step_stated ? "rate" : "step";
   std::string const stated = word == "rate" ? fmt::format("`rate` {:.6g} Hz", 1 / step) : fmt::format("`step` {:.6g} s", step);
   std::string const owner = of_block ? block.name : model.name;
-  auto const finding = [&](Severity severity, std::string message, std::string help) {
-    return Findings{{FindingCode::rate_contradicted, severity, {data.use.name}, std::move(message), std::move(help)}};
+  bool const perhaps = found->kind == UnusedTime::Kind::other_units || found->kind == UnusedTime::Kind::by_steps;
+  auto const finding = [&](std::string message, std::string help) {
+    return Findings{{FindingCode::rate_contradicted,
+                     perhaps ? Severity::note : Severity::warning,
+                     {data.use.name},
+                     std::move(message),
+                     std::move(help)}};
   };
   std::string const use = of_block ? fmt::format("write {} in place of `{}`", found->lines, word)
                                    : fmt::format("write {} in `{}`, and the same step in the model", found->lines, block.name);
   if (found->kind == UnusedTime::Kind::other_units)
-    return finding(Severity::note,
-                   fmt::format("column `{}` of {} agrees with the {} of `{}` only if its numbers are in {}", found->column,
+    return finding(fmt::format("column `{}` of {} agrees with the {} of `{}` only if its numbers are in {}", found->column,
                                block.name, stated, owner, found->meant_unit),
                    fmt::format("if they are, {}: then its times are used", use));
   if (found->kind == UnusedTime::Kind::by_steps)
-    return finding(Severity::note,
-                   fmt::format("`{}` has {}, but column `{}` of {}, which is not used, has equal steps of {:.5g}: is it the time?",
+    return finding(fmt::format("`{}` has {}, but column `{}` of {}, which is not used, has equal steps of {:.5g}: is it the time?",
                                owner, stated, found->column, block.name, found->step),
                    fmt::format("if it is, {}", use));
   std::string const rate = found->kind == UnusedTime::Kind::other_rate && of_block
@@ -107,7 +110,6 @@ Findings find_contradicted_rate(CheckedFile const& file, ExperimentData const& d
                                                 : fmt::format(" or `step {:.6g} [s]`", found->step)
                                : "";
   return finding(
-      Severity::warning,
       fmt::format("`{}` has {}, but the time in column `{}` of {} has {}: with a wrong time all rates and frequencies "
                   "are wrong",
                   owner, stated, found->column, block.name, times_of(*found)),
