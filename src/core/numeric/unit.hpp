@@ -52,7 +52,7 @@ Unit power(Unit const& a, Rational exponent);
 double convert(double value, Unit const& from, Unit const& to);
 
 /// Whether one counts cycles and the other radians ([Hz] and [rad/s], [Hz] and [rpm]): `convert` has factor 1 there, as the SI has,
-/// where the user means 2 pi. Such a conversion must be refused.
+/// where the user means 2 pi; or [rpm] and [1/min], where it has 2 pi and the user means 1. Such a conversion must be refused.
 bool cycles_against_radians(Unit const& a, Unit const& b);
 
 /// Canonical SI text, readable as a unit expression: "kg m/s^2", "kg/(m s^2)", "m^(1/2)"; "1" when dimensionless.
