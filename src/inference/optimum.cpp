@@ -14,6 +14,7 @@
 #include "inference/backend/checkpoint.hpp"
 #include "inference/evidence/weighted_draws.hpp"
 #include "search/journal.hpp"
+#include "search/laplace.hpp"
 #include "search/mode/at_bound.hpp"
 #include "search/objective.hpp"
 #include "search/search.hpp"
@@ -72,7 +73,7 @@ struct Misfit {
   double size() const { return std::max(std::fabs(std::log(ratio)), 0.4 * std::fabs(shift)); }
 };
 
-/// skipped: their sds are known to mean nothing.
+/// skipped: their sds are known to mean nothing. The largest first.
 std::vector<Misfit> misfits(Mode const& best, WeightedDraws const& draws, std::vector<ModeAtBound> const& skipped) {
   std::vector<Misfit> found;
   for (std::size_t p = 0; p < best.sd.size(); ++p) {
@@ -81,10 +82,38 @@ std::vector<Misfit> misfits(Mode const& best, WeightedDraws const& draws, std::v
     for (std::size_t at = p; at < best.flat.size(); at += best.sd.size()) flat = flat || best.flat[at] != 0;
     if (flat || !(best.sd[p] > 0)) continue;
     Misfit const each{p, draws.sd[p] / best.sd[p], (draws.mean[p] - best.declared[p]) / draws.sd[p]};
-    if (draws.tell() ? each.notable() : each.wrong()) found.push_back(each);
+    if (each.notable()) found.push_back(each);
   }
   std::stable_sort(found.begin(), found.end(), [](Misfit const& a, Misfit const& b) { return a.size() > b.size(); });
   return found;
+}
+
+Finding widths_wrong(Target const& target, Mode const& best, WeightedDraws const& draws, std::vector<Misfit> const& found) {
+  std::vector<std::string> names;
+  for (Misfit const& each : found) names.push_back(target.parameters()[each.parameter].name);
+  std::size_t const p = found.front().parameter;
+  bool const wrong = std::any_of(found.begin(), found.end(), [](Misfit const& each) { return each.wrong(); });
+  ParameterInfo const& worst = target.parameters()[p];
+  std::string const others =
+      found.size() > 1 ? fmt::format("; the same holds for {}", counted(found.size() - 1, "further parameter")) : "";
+  return {FindingCode::widths_not_normal, wrong ? Severity::error : Severity::warning, std::move(names),
+          fmt::format("the posterior is not normal around its optimum: weighted draws give {} = {:.3g} ± {:.2g}{}, the "
+                      "Laplace approximation {:.3g} ± {:.2g}{}{}{}",
+                      worst.name, draws.mean[p], draws.sd[p], unit_after_number(worst.unit), best.declared[p], best.sd[p],
+                      unit_after_number(worst.unit), others,
+                      draws.confirmed ? "" : "; these draws are too few to determine the sds, which may be larger still"),
+          "fit with mh to get the sds of the posterior; use only the optimum of this result"};
+}
+
+/// Of a posterior that weighted draws do not describe, and that was too dear for walkers.
+Finding widths_unknown() {
+  return {
+      FindingCode::widths_not_normal,
+      Severity::warning,
+      {},
+      "it is not known whether the posterior has the stated sds: it is not normal around its optimum, and weighted draws do not "
+      "determine how wide it is",
+      "fit with mh to get the sds of the posterior; use only the optimum of this result"};
 }
 
 /// Whether the posterior has the widths of the normal distribution at its highest mode. Several modes are a finding of their own.
@@ -94,25 +123,14 @@ std::optional<Finding> check_widths(Target const& target, std::vector<Mode> cons
   auto const stop = [&] { return context.stop_requested(); };
   std::vector<Mode> const sampled = sampled_modes(target, ObjectiveKind::declared_posterior, modes, context.seed, extra, stop);
   if (sampled.size() != 1) return std::nullopt;
-  WeightedDraws const draws = weighted_draws(target, sampled, context.seed, extra, stop);
+  WeightedDraws const draws = weighted_draws(target, sampled, context.seed, extra, stop, true);
   if (draws.draws == 0 || draws.sd.empty()) return std::nullopt;
-  Mode const& best = modes.front();
-  std::vector<Misfit> const found = misfits(best, draws, at_bound);
-  if (found.empty()) return std::nullopt;
-  std::vector<std::string> names;
-  for (Misfit const& each : found) names.push_back(target.parameters()[each.parameter].name);
-  std::size_t const p = found.front().parameter;
-  bool const wrong = std::any_of(found.begin(), found.end(), [](Misfit const& each) { return each.wrong(); });
-  ParameterInfo const& worst = target.parameters()[p];
-  std::string const unit = unit_after_number(worst.unit);
-  std::string const others =
-      found.size() > 1 ? fmt::format("; the same holds for {}", counted(found.size() - 1, "further parameter")) : "";
-  return Finding{FindingCode::widths_not_normal, wrong ? Severity::error : Severity::warning, names,
-                 fmt::format("the posterior is not normal around its optimum: weighted draws give {} = {:.3g} ± {:.2g}{}, the "
-                             "Laplace approximation {:.3g} ± {:.2g}{}{}{}",
-                             worst.name, draws.mean[p], draws.sd[p], unit, best.declared[p], best.sd[p], unit, others,
-                             draws.tell() ? "" : "; the weighted draws are too few to determine the sds"),
-                 "fit with mh to get the sds of the posterior; use only the optimum of this result"};
+  std::vector<Misfit> const found = misfits(modes.front(), draws, at_bound);
+  bool const some = !found.empty() && (draws.confirmed || draws.walked || found.front().wrong());
+  if (some) return widths_wrong(target, modes.front(), draws, found);
+  // What walkers find as wide as stated is, though the weights are poor, as they are with many parameters.
+  if (draws.confirmed || draws.walked || !at_bound.empty() || !modes.front().flat.empty()) return std::nullopt;
+  return widths_unknown();
 }
 
 void write_draw(Target const& target, Mode const& mode, RunContext& context, FitResult& result) {

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/generalised_pareto.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "inference/evidence/component.hpp"
+#include "inference/evidence/walked_draws.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 #include "search/refit.hpp"
@@ -19,7 +21,11 @@ constexpr double nearer = 0.5;      // widths: modes so near have come together
 constexpr int most_parameters = 40;
 constexpr int draws_per_round = 300;  // even: pairs
 constexpr int most_rounds = 6;
-constexpr std::uint64_t first_step = 4'000'000, scale_step = 4;  // of Purpose::start
+constexpr int walker_count = 96;
+constexpr double largest_k = 0.7;
+constexpr double another_width = 1.2;  // over the mode's, or under it: not said without walkers
+constexpr double most_rows = 6e7;      // that walkers may simulate: 20,000 times 3,000
+constexpr std::uint64_t first_step = 4'000'000, scale_step = 4, walk_step = 14'000'000;  // of Purpose::start
 
 /// Each with half of the weight of normal and t.
 struct WeightedComponent {
@@ -113,15 +119,19 @@ Moments moments_of(std::vector<Eigen::VectorXd> const& points, std::vector<doubl
   return moments;
 }
 
-/// The next round's: where the weighted draws are. Weights that stand out are cut, so that a single draw is no population
-/// (Ionides 2008).
-WeightedComponent adapted(Population const& population, double weight) {
+/// Weights that stand out are cut, so that a single draw is no population (Ionides 2008).
+std::vector<double> cut_weights(Population const& population) {
   double mean = 0;
   for (double const each : population.weight) mean += each / static_cast<double>(population.weight.size());
   double const most = mean * std::sqrt(static_cast<double>(population.weight.size()));
   std::vector<double> cut;
   for (double const each : population.weight) cut.push_back(std::min(each, most));
-  Moments const moments = moments_of(population.places, cut);
+  return cut;
+}
+
+/// The next round's: where the weighted draws are.
+WeightedComponent adapted(Population const& population, double weight) {
+  Moments const moments = moments_of(population.places, cut_weights(population));
   // A few draws span no volume: something of the first shape is left.
   Component const& first = population.mixture.front().shape;
   return {weight, Component(moments.mean, moments.covariance + 0.01 * first.root * first.root.transpose())};
@@ -195,9 +205,68 @@ WeightedDraws summarised(Target const& target, std::vector<Mode> const& modes, P
   for (double const each : population.weight) square += each * each;
   double const sum = sum_of(population.weight);
   result.effective = sum * sum / square;
+  std::vector<double> logs;
+  for (double const each : population.weight) logs.push_back(each > 0 ? elementary::log(each) : -infinity);
+  double const k = smooth_weights(logs, pareto_tail_length(result.draws, 1)).k;
+  result.confirmed = result.tell() && k < largest_k;
   add_evidence(population, result);
   add_widths(target, modes, population, result);
   return result;
+}
+
+bool as_wide_as(Mode const& mode, WeightedDraws const& draws) {
+  for (std::size_t p = 0; p < draws.sd.size(); ++p)
+    if (!(draws.sd[p] < another_width * mode.sd[p] && draws.sd[p] * another_width > mode.sd[p])) return false;
+  return true;
+}
+
+/// Where the weighted draws are, each place as often as its weight says.
+LaneArray first_walkers(Population const& population) {
+  std::vector<double> const weight = cut_weights(population);
+  double const total = sum_of(weight);
+  LaneArray start(static_cast<int>(population.places.front().size()), walker_count);
+  std::size_t at = 0;
+  double passed = weight.front();
+  for (int w = 0; w < walker_count; ++w) {
+    while (at + 1 < weight.size() && (w + 0.5) / walker_count * total > passed) passed += weight[++at];
+    for (int i = 0; i < start.rows(); ++i) start(i, w) = population.places[at](i);
+  }
+  return start;
+}
+
+void set_moments(Target const& target, LaneArray const& theta, std::vector<double> const& weight, WeightedDraws& result) {
+  LaneArray declared(theta.rows(), theta.width());
+  target.constrain(theta, declared);
+  std::vector<Eigen::VectorXd> values;
+  for (int w = 0; w < declared.width(); ++w) values.push_back(column(declared, w));
+  Moments const found = moments_of(values, weight);
+  result.mean.assign(found.mean.begin(), found.mean.end());
+  result.sd.clear();
+  for (Eigen::Index p = 0; p < found.mean.size(); ++p) result.sd.push_back(std::sqrt(found.covariance(p, p)));
+}
+
+/// What walkers make of it.
+void walk_on(Objective const& objective, Population const& population, std::uint64_t seed, Ledger& ledger,
+             std::function<bool()> const& stop, WeightedDraws& result) {
+  Target const& target = objective.target;
+  auto const most = static_cast<std::uint64_t>(most_rows / std::max(1, target.residual_count()));
+  marginal::WalkedDraws const walked =
+      marginal::walked_draws(objective, first_walkers(population), most, {seed, Purpose::start, 0, walk_step}, ledger, stop);
+  if (walked.empty()) return;
+  result.walked = true;
+  result.confirmed = walked.confirmed;
+  result.draws = walked.theta.width();
+  result.effective = walked.effective;
+  if (!walked.confirmed) {
+    set_moments(target, walked.walked, std::vector<double>(static_cast<std::size_t>(walked.walked.width()), 1.0), result);
+    return;
+  }
+  double const largest = *std::max_element(walked.log_weights.begin(), walked.log_weights.end());
+  std::vector<double> weight;
+  for (double const each : walked.log_weights) weight.push_back(elementary::exp(each - largest));
+  set_moments(target, walked.theta, weight, result);
+  result.log_evidence = largest + elementary::log(sum_of(weight) / result.draws);
+  result.error = std::sqrt(std::max(0.0, 1 / result.effective - 1.0 / result.draws));
 }
 
 }  // namespace
@@ -219,7 +288,7 @@ std::vector<Mode> sampled_modes(Target const& target, ObjectiveKind objective_ki
 }
 
 WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
-                             std::function<bool()> const& stop) {
+                             std::function<bool()> const& stop, bool further) {
   if (modes.empty() || target.dimension() == 0 || target.dimension() > most_parameters || target.is_expensive()) return {};
   Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
   double heaviest = -infinity;
@@ -241,6 +310,9 @@ WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& mode
     bool const enough = round == 0 ? result.effective > 0.3 * result.draws : result.effective > 4 * pairs / 1.5;
     if (enough) break;
   }
+  bool const in_doubt =
+      further && modes.size() == 1 && modes.front().flat.empty() && !(result.confirmed && as_wide_as(modes.front(), result));
+  if (in_doubt && !target.is_estimated() && !(stop && stop())) walk_on(objective, population, seed, ledger, stop, result);
   return result;
 }
 

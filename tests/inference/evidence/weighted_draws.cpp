@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "inference/evidence/laplace.hpp"
 #include "inference/optimum.hpp"
@@ -70,6 +71,68 @@ TestTarget slow_relaxation() {
                     });
 }
 
+/// Saturation kinetics S' = -V S/(Km + S) from a known start: Km ln S + S falls by V t.
+double log_substrate(double t, double v, double km, double guess) {
+  double const rest = km * std::log(2.0) + 2.0 - v * t;
+  double x = guess;
+  for (int round = 0; round < 60; ++round) {
+    double const step = std::clamp((km * x + std::exp(x) - rest) / (km + std::exp(x)), -3.0, 3.0);
+    x -= step;
+    if (std::fabs(step) < 1e-10) break;
+  }
+  return x;
+}
+
+/// Differences from a record at V = 0.8, Km = 3 with errors of that size.
+std::vector<double> kinetic_errors(double v, double km, double size) {
+  constexpr int rows = 40;
+  std::vector<double> errors;
+  double x = std::log(2.0), truth = std::log(2.0);
+  for (int i = 0; i < rows; ++i) {
+    double const t = 6.0 * i / (rows - 1);
+    x = log_substrate(t, v, km, x);
+    truth = log_substrate(t, 0.8, 3, truth);
+    errors.push_back(std::exp(truth) + size * (std::sin(2.4 * i) + 0.6 * std::cos(5.1 * i + 1)) - std::exp(x));
+  }
+  return errors;
+}
+
+TestTarget kinetics(double size) {
+  constexpr double lowest = 1e-4;
+  double const ceiling = -40 * std::log(lowest);
+  return TestTarget({"V", "Km", "sigma"},
+                    {{Prior::log_uniform, 0.01, 100}, {Prior::log_uniform, 0.05, 100}, {Prior::log_uniform, lowest, 1}}, 41,
+                    ceiling, [=](std::vector<double> const& w, std::vector<double>& r) {
+                      r = kinetic_errors(w[0], w[1], size);
+                      for (double& each : r) each /= w[2];
+                      r.push_back(as_residual(-40 * std::log(w[2]), ceiling));
+                    });
+}
+
+/// sd of V and Km by the midpoint rule over ln Km and the initial rate; sigma is integrated in closed form: its prior is wide.
+std::vector<double> kinetic_sds(double size) {
+  constexpr int steps = 120;
+  double least = 1e9, sum = 0;
+  std::vector<double> mean(2), square(2), squares, km, v;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      km.push_back(0.05 * std::pow(2000, (i + 0.5) / steps));
+      v.push_back((0.25 + 0.15 * (j + 0.5) / steps) * (km.back() + 2) / 2);
+      squares.push_back(0);
+      for (double const each : kinetic_errors(v.back(), km.back(), size)) squares.back() += each * each;
+      least = std::min(least, squares.back());
+    }
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    double const weight = std::pow(squares[k] / least, -20) * (km[k] + 2) / v[k];
+    std::vector<double> const here = {v[k], km[k]};
+    sum += weight;
+    for (std::size_t p = 0; p < 2; ++p) mean[p] += weight * here[p], square[p] += weight * here[p] * here[p];
+  }
+  std::vector<double> sds;
+  for (std::size_t p = 0; p < 2; ++p) sds.push_back(std::sqrt(square[p] / sum - mean[p] * mean[p] / (sum * sum)));
+  return sds;
+}
+
 Finding const* widths_finding(FitResult const& result) {
   auto const found = std::find_if(result.findings.begin(), result.findings.end(),
                                   [](Finding const& each) { return each.code == FindingCode::widths_not_normal; });
@@ -116,6 +179,25 @@ TEST_CASE("map fails where the posterior is far wider than its normal distributi
   CHECK(widths_finding(wide)->severity == Severity::error);
   CHECK(widths_finding(optimum::run_map(straight_line(), Settings{}, near.context)) == nullptr);
   CHECK(widths_finding(optimum::run_map(sample_of(few_rows(200), 0.01, 10), Settings{}, many.context)) == nullptr);
+}
+
+TEST_CASE("a tail that weighted draws miss is found by walkers, and map fails") {
+  for (double const size : {0.03, 0.04}) {
+    CAPTURE(size);
+    TestTarget const target = kinetics(size);
+    std::vector<double> const truth = kinetic_sds(size);
+    Bench bench, other;
+    FitResult const fitted = optimum::run_map(target, Settings{}, bench.context);
+    for (std::size_t p = 0; p < 2; ++p) REQUIRE(truth[p] > 1.6 * fitted.modes.front().sd[p]);
+    REQUIRE(widths_finding(fitted) != nullptr);
+    CHECK(widths_finding(fitted)->severity == Severity::error);
+    CHECK(widths_finding(fitted)->names.size() == 2);
+    std::vector<Mode> const modes = search(target, ObjectiveKind::posterior, other.context).modes;
+    WeightedDraws const draws = weighted_draws(target, modes, 1, other.ledger, {}, true);
+    CHECK(draws.walked);
+    CHECK(draws.confirmed);
+    for (std::size_t p = 0; p < 2; ++p) CHECK(draws.sd[p] == doctest::Approx(truth[p]).epsilon(0.25));
+  }
 }
 
 TEST_CASE("a mode close to a bound has an evidence") {

@@ -1,0 +1,117 @@
+// Rounds of walking, fitting and weighting.
+#include "inference/evidence/walked_draws.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/generalised_pareto.hpp"
+#include "core/numeric/not_finite.hpp"
+#include "inference/evidence/ensemble_walk.hpp"
+#include "inference/evidence/mixture.hpp"
+#include "search/laplace.hpp"
+
+namespace sysid::marginal {
+namespace {
+
+constexpr int most_walks = 5, draws_per_walk = 400;
+constexpr double worst_k = 0.7, least_effective = 100;  // effective draws
+constexpr double as_wide = 0.25;                // of the logarithm of a ratio of sds; of so many walkers it scatters by a tenth
+constexpr std::uint64_t steps_of_round = 1000;  // of the key; more than a round walks
+
+LaneArray appended(LaneArray const& left, LaneArray const& right) {
+  LaneArray out(right.rows(), left.width() + right.width());
+  for (int i = 0; i < right.rows(); ++i) {
+    if (left.width() > 0) std::ranges::copy(left.row(i), out.row(i).begin());
+    std::ranges::copy(right.row(i), out.row(i).begin() + left.width());
+  }
+  return out;
+}
+
+/// Log densities under the mixture of all, each of which gave as many draws.
+std::vector<double> log_mixed(std::vector<Mixture> const& mixtures, ConstLanes theta) {
+  std::vector<double> mixed(static_cast<std::size_t>(theta.width()), -infinity);
+  for (Mixture const& mixture : mixtures) {
+    std::vector<double> const one = mixture.log_density(mixture.log_terms(theta));
+    for (std::size_t d = 0; d < mixed.size(); ++d) {
+      double const more = std::max(mixed[d], one[d]), less = std::min(mixed[d], one[d]);
+      if (std::isfinite(more)) mixed[d] = more + elementary::log1p(elementary::exp(less - more));
+    }
+  }
+  double const count = elementary::log(static_cast<double>(mixtures.size()));
+  for (double& each : mixed) each -= count;
+  return mixed;
+}
+
+/// Of one coordinate, with weights that do not sum to anything; empty: all alike.
+double sd_of(std::span<double const> values, std::vector<double> const& weights) {
+  double sum = 0, mean = 0, square = 0;
+  auto const weight = [&](std::size_t k) { return weights.empty() ? 1.0 : weights[k]; };
+  for (std::size_t k = 0; k < values.size(); ++k) sum += weight(k), mean += weight(k) * values[k];
+  mean /= sum;
+  for (std::size_t k = 0; k < values.size(); ++k) square += weight(k) * (values[k] - mean) * (values[k] - mean);
+  return std::sqrt(square / sum);
+}
+
+/// Means of all coordinates with such weights are to be believed.
+void judge(WalkedDraws& draws) {
+  double const largest = *std::max_element(draws.log_weights.begin(), draws.log_weights.end());
+  draws.confirmed = false;
+  draws.effective = 0;
+  if (!std::isfinite(largest)) return;
+  std::vector<double> weights;
+  double sum = 0, square = 0;
+  for (double const each : draws.log_weights) {
+    weights.push_back(elementary::exp(each - largest));
+    sum += weights.back();
+    square += weights.back() * weights.back();
+  }
+  draws.effective = sum * sum / square;
+  double const k = smooth_weights(draws.log_weights, pareto_tail_length(draws.theta.width(), 1)).k;
+  draws.confirmed = draws.effective >= least_effective && k < worst_k;
+  for (int i = 0; i < draws.walked.rows() && draws.confirmed; ++i)
+    draws.confirmed = std::fabs(elementary::log(sd_of(draws.theta.row(i), weights) / sd_of(draws.walked.row(i), {}))) < as_wide;
+}
+
+LaneArray last_of(LaneArray const& states, int count) {
+  LaneArray out(states.rows(), count);
+  ConstLanes const last = states.view().columns(states.width() - count, count);
+  for (int i = 0; i < out.rows(); ++i) std::ranges::copy(last.row(i), out.row(i).begin());
+  return out;
+}
+
+}  // namespace
+
+WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uint64_t most, StreamKey key, Ledger& ledger,
+                         std::function<bool()> const& stop) {
+  auto const stopped = [&] { return stop && stop(); };
+  int const steps = 24 + 4 * objective.dimension();
+  std::uint64_t const cost = static_cast<std::uint64_t>(steps + 1) * static_cast<std::uint64_t>(walkers.width()) + draws_per_walk;
+  WalkedDraws found;
+  std::vector<double> log_density;
+  std::vector<Mixture> mixtures;
+  for (int round = 0; round < most_walks && !found.confirmed; ++round) {
+    if (static_cast<std::uint64_t>(round + 1) * cost > most) break;
+    StreamKey const here = key.with_step(key.step + static_cast<std::uint64_t>(round) * steps_of_round);
+    LaneArray states = walk(objective, walkers, steps, here, ledger, stopped);
+    Mixture mixture = fit_mixture({}, states, key.seed, stopped);
+    if (mixture.empty() || stopped()) break;
+    walkers = last_of(states, walkers.width());
+    LaneArray more(objective.dimension(), draws_per_walk);
+    StreamKey const drawn = here.with_step(here.step + steps_of_round - 1);
+    for (int d = 0; d < draws_per_walk; ++d) mixture.draw(drawn.with_index(static_cast<std::uint64_t>(d)), more, d);
+    std::vector<double> const density = log_density_in_blocks(objective, more, ledger, stopped);
+    log_density.insert(log_density.end(), density.begin(), density.end());
+    found.theta = appended(found.theta, more);
+    mixtures.push_back(std::move(mixture));
+    found.log_weights = log_density;
+    std::vector<double> const mixed = log_mixed(mixtures, found.theta);
+    for (std::size_t d = 0; d < mixed.size(); ++d)
+      found.log_weights[d] = std::isfinite(mixed[d]) ? found.log_weights[d] - mixed[d] : -infinity;
+    found.walked = std::move(states);
+    judge(found);
+  }
+  return found;
+}
+
+}  // namespace sysid::marginal
