@@ -129,6 +129,7 @@ class Columns {
   std::vector<double> input(InputRequest const& asked) {
     InputRequest const column = with_unit_of_file(file_, asked);
     note_unit(column);
+    if (!asked.unit && column.unit) file_units_.emplace_back(column.column, *column.unit);
     std::vector<double> values = complete(file_.numbers(column.column, column.mention), column, "an input");
     to_si(values, column);
     return values;
@@ -136,6 +137,7 @@ class Columns {
   std::vector<double> measured(ColumnRequest const& asked) {
     ColumnRequest const column = with_unit_of_file(file_, asked);
     note_unit(column);
+    if (!asked.unit && column.unit) file_units_.emplace_back(column.column, *column.unit);
     std::vector<double> values = of_one_length(file_.numbers(column.column, column.mention), column);
     for (std::size_t i = 0; i < values.size() && column.counts; ++i)
       if (!std::isnan(values[i]) && (values[i] < 0 || values[i] != std::floor(values[i]) || std::isinf(values[i])))
@@ -145,6 +147,7 @@ class Columns {
   }
   std::optional<Unit> const& time_unit() const { return time_unit_; }
   std::vector<UnitInName> const& other_units() const { return other_units_; }
+  std::vector<std::pair<std::string, Unit>> const& file_units() const { return file_units_; }
   std::optional<RoundedSteps> const& rounded() const { return rounded_; }
 
  private:
@@ -200,6 +203,7 @@ class Columns {
   std::string first_;  // the column that has them
   std::optional<Unit> time_unit_;
   std::vector<UnitInName> other_units_;
+  std::vector<std::pair<std::string, Unit>> file_units_;
   std::optional<RoundedSteps> rounded_;
 };
 
@@ -288,6 +292,7 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
   record.time = std::move(*time);
   record.time_unit = file.has_stamps() && request.time ? request.time->unit : columns.time_unit();
   record.other_units = columns.other_units();
+  record.file_units = columns.file_units();
   record.rounded = columns.rounded();
   return record;
 }

@@ -44,6 +44,9 @@ std::vector<std::string> remarks(ColumnLook const& column) {
   if (!column.unread.empty()) return {column.unread};
   if (column.dead) all.push_back(fmt::format("is {} in all rows: a dead channel", six_digits(column.smallest)));
   if (column.missing > 0) all.push_back(fmt::format("misses {}", counted(column.missing, "sample")));
+  if (column.frozen_first > 0)
+    all.push_back(fmt::format("does not change in rows {} to {}, but from sample to sample elsewhere: frozen?", column.frozen_first,
+                              column.frozen_last));
   for (auto const& [count, end, value] :
        {std::tuple(column.at_largest, "largest", column.largest), std::tuple(column.at_smallest, "smallest", column.smallest)})
     if (count > 0)

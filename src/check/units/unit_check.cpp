@@ -168,7 +168,8 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   conflict.wanted = words(wanted);
   conflict.found = words(operands[shown].value.unit);
   missing_.push_back(quotient(wanted.dimension, dimension_of(operands[shown])));
-  conflict.help = declared_.cure(operands[shown].tree, conflict.wanted, missing_.back(), false);
+  conflict.help = declared_.cure(operands[shown].tree, {conflict.wanted, missing_.back(), false,
+                                                        dimension_of(operands[shown]) == Dimension{} && wanted.offset == 0});
   // Against other terms of its own sum a term is shown as such, whatever the sum is for.
   bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
   report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));
@@ -186,7 +187,7 @@ bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, b
   }
   missing_.push_back(inverse(unit.dimension));
   report(errors::pure_argument({argument.value.span, "[" + words(unit) + "]"}, function,
-                               declared_.cure(argument.tree, "-", inverse(unit.dimension), true)));
+                               declared_.cure(argument.tree, {"-", inverse(unit.dimension), true})));
   return false;
 }
 
@@ -194,7 +195,7 @@ bool UnitCheck::power(UnitOperand const& base, UnitOperand const& exponent, std:
   if (is_known(exponent) && !exponent.value.unit.dimensionless()) {
     missing_.push_back(inverse(exponent.value.unit.dimension));
     report(errors::exponent_with_unit({exponent.value.span, "[" + words(exponent.value.unit) + "]"},
-                                      declared_.cure(exponent.tree, "-", inverse(exponent.value.unit.dimension), true)));
+                                      declared_.cure(exponent.tree, {"-", inverse(exponent.value.unit.dimension), true})));
     return false;
   }
   if (!is_known(base) || base.value.unit.dimensionless()) return true;
