@@ -154,6 +154,7 @@ class Columns {
   std::vector<double> input(InputRequest const& asked, std::size_t index, bool whole) {
     InputRequest const column = with_unit_of_file(file_, asked);
     note_unit(column);
+    if (!asked.unit && column.unit) file_units_.emplace_back(column.column, *column.unit);
     std::vector<double> values = file_.numbers(column.column, column.mention);
     bool const empty = std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
     values = whole && !empty ? of_one_length(std::move(values), column) : complete(std::move(values), column, "an input");
@@ -170,6 +171,7 @@ class Columns {
   std::vector<double> measured(ColumnRequest const& asked) {
     ColumnRequest const column = with_unit_of_file(file_, asked);
     note_unit(column);
+    if (!asked.unit && column.unit) file_units_.emplace_back(column.column, *column.unit);
     std::vector<double> values = of_one_length(file_.numbers(column.column, column.mention), column);
     for (std::size_t i = 0; i < values.size() && column.counts; ++i)
       if (!std::isnan(values[i]) && (values[i] < 0 || values[i] != std::floor(values[i]) || std::isinf(values[i])))
@@ -179,6 +181,7 @@ class Columns {
   }
   std::optional<Unit> const& time_unit() const { return time_unit_; }
   std::vector<UnitInName> const& other_units() const { return other_units_; }
+  std::vector<std::pair<std::string, Unit>> const& file_units() const { return file_units_; }
   std::optional<RoundedSteps> const& rounded() const { return rounded_; }
   std::vector<InputGap> const& gaps() const { return gaps_; }
 
@@ -235,6 +238,7 @@ class Columns {
   std::string first_;  // the column that has them
   std::optional<Unit> time_unit_;
   std::vector<UnitInName> other_units_;
+  std::vector<std::pair<std::string, Unit>> file_units_;
   std::optional<RoundedSteps> rounded_;
   std::vector<InputGap> gaps_;
 };
@@ -325,6 +329,7 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
   record.time = std::move(*time);
   record.time_unit = file.has_stamps() && request.time ? request.time->unit : columns.time_unit();
   record.other_units = columns.other_units();
+  record.file_units = columns.file_units();
   record.rounded = columns.rounded();
   record.gaps = columns.gaps();
   if (whole) {

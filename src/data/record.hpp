@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/numeric/unit.hpp"
@@ -68,7 +69,8 @@ struct Record {
   std::vector<std::vector<double>> measured;  // [N] each, NaN where missing; empty: not in this data
   std::vector<std::string> comments;          // before the header of the file
   std::vector<UnitInName> other_units;
-  std::optional<RoundedSteps> rounded;  // of times that are read as they stand
+  std::vector<std::pair<std::string, Unit>> file_units;  // of columns whose numbers were read in the unit that the file states
+  std::optional<RoundedSteps> rounded;                   // of times that are read as they stand
   std::optional<UnusedTime> unused_time;
   std::string measured_time;                // a measured column that is called and looks like the time; empty: none
   std::vector<std::string> unused_columns;  // of the file

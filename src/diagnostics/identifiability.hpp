@@ -62,7 +62,8 @@ struct ParameterWords {
   std::string name, unit;
   double scale = 1;  // SI per declared unit
 };
-std::string direction_words(NullDirection const& direction, std::span<ParameterWords const> parameters, std::string const& output);
+std::string direction_words(NullDirection const& direction, std::span<ParameterWords const> parameters, std::string const& output,
+                            bool driven = true);
 
 /// "k + A", "k - 2 A", "m*c^2": what two confounded parameters leave determined.
 std::string determined_combination(NullDirection const& direction, std::span<ParameterWords const> parameters);

@@ -101,10 +101,11 @@ std::string determined_combination(NullDirection const& direction, Words paramet
   return fmt::format("{} {} {}{}", left, v > 0 ? "+" : "-", equal(size, 1) ? "" : fmt::format("{:.4g}*", size), right);
 }
 
-std::string direction_words(NullDirection const& direction, Words parameters, std::string const& output) {
+std::string direction_words(NullDirection const& direction, Words parameters, std::string const& output, bool driven) {
   switch (direction.kind) {
     case NullDirection::Kind::no_influence:
-      return fmt::format("{} has no influence on {} with this input", name(parameters, direction.parts[0]), output);
+      return fmt::format("{} has no influence on {}{}", name(parameters, direction.parts[0]), output,
+                         driven ? " with this input" : "");
     case NullDirection::Kind::scaling:
       return scaling(direction, parameters, output);
     case NullDirection::Kind::sum:

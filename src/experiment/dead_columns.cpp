@@ -1,16 +1,15 @@
-// A cable that came off gives a constant, a recorder that was stopped a gap; neither is an error of the table.
+// A cable that came off gives a constant, which is no error of the table.
 #include "experiment/dead_columns.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "experiment/placeholders.hpp"
 
 namespace sysid {
 namespace {
@@ -25,12 +24,12 @@ std::optional<double> only_number(std::vector<double> const& values) {
 }
 
 // As the file has it.
-std::string number_in(ColumnUse const& column, Quantity const& quantity, double si) {
+std::string number_in(ExperimentData const& data, ColumnUse const& column, Quantity const& quantity, double si) {
   double value = quantity.from_si(si);
   std::string unit = quantity.unit_text();
-  if (column.unit && quantity.unit) {
-    value = convert(value, *quantity.unit, *column.unit);
-    unit = column.unit->text;
+  if (auto const in_file = unit_in_file(data, column); in_file && quantity.unit) {
+    value = convert(value, *quantity.unit, *in_file);
+    unit = in_file->text;
   }
   return fmt::format("{:.6g}", value) + unit_after_number(unit);
 }
@@ -41,7 +40,7 @@ Finding constant_channel(ExperimentData const& data, ColumnUse const& column, Ch
           Severity::warning,
           {channel.name, data.experiment.name},
           fmt::format("{}, column `{}` of {}, is {} in all {} scored samples: was the sensor connected?", channel.name,
-                      column.column, data.experiment.name, number_in(column, channel, value), samples),
+                      column.column, data.experiment.name, number_in(data, column, channel, value), samples),
           "check the column and the sensor; a channel that does not change gives no information about the dynamics"};
 }
 
@@ -50,7 +49,7 @@ Finding constant_input(ExperimentData const& data, ColumnUse const& column, Quan
           whole_file ? Severity::warning : Severity::note,
           {input.name, data.experiment.name},
           fmt::format("input {}, column `{}` of {}, is {} in {}{}", input.name, column.column, data.experiment.name,
-                      number_in(column, input, value), whole_file ? "all rows of its file" : "all rows that are used",
+                      number_in(data, column, input, value), whole_file ? "all rows of its file" : "all rows that are used",
                       whole_file ? ": was the sensor connected?" : ""),
           "check the column; if the input was not measured, or is a constant of the test, make it a parameter or "
           "`constant` of the model"};
@@ -86,38 +85,6 @@ Findings find_constant_columns(CheckedFile const& file, ExperimentData const& da
         findings.push_back(constant_channel(data, column, channel, *value, values.size()));
     }
   return findings;
-}
-
-Findings find_time_gaps(CheckedFile const& file, ExperimentData const& data, Model const& model) {
-  constexpr double wide = 10, regular = 0.1, most = 0.9;
-  if (model.dynamics != Dynamics::continuous) return {};
-  Experiment const& experiment = data.experiment;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < experiment.time.size(); ++i) steps.push_back(experiment.time[i] - experiment.time[i - 1]);
-  if (steps.size() < enough_samples) return {};
-  double const usual = median(steps);
-  auto const alike =
-      std::count_if(steps.begin(), steps.end(), [&](double each) { return std::fabs(each - usual) <= regular * usual; });
-  auto const longest = std::max_element(steps.begin(), steps.end());
-  if (static_cast<double>(alike) < most * static_cast<double>(steps.size()) || *longest <= wide * usual) return {};
-  auto const gaps = std::count_if(steps.begin(), steps.end(), [&](double each) { return each > wide * usual; });
-  double const scale = experiment.time_unit ? experiment.time_unit->scale : 1;
-  std::string const unit = experiment.time_unit ? experiment.time_unit->text : "s";
-  int const row = experiment.first_row + static_cast<int>(longest - steps.begin());
-  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
-  std::string const others = gaps > 1 ? fmt::format(" (and {} more)", gaps - 1) : "";
-  return {{FindingCode::time_gap,
-           Severity::warning,
-           {data.experiment.name},
-           fmt::format("the time of {} has a gap of {:.3g} {} between rows {} and {}{}; the usual step is {:.3g} {}",
-                       experiment.name, *longest / scale, unit, row, row + 1, others, usual / scale, unit),
-           model.inputs.empty()
-               ? fmt::format("the simulation continues through the gap; if the recording was restarted there, give the "
-                             "rows after it a range of their own in `split` of `{}`",
-                             block.name)
-               : fmt::format("the input during the gap is unknown: give the rows before and after the gap "
-                             "ranges of their own in `split` of `{}`, and fit both",
-                             block.name)}};
 }
 
 }  // namespace sysid

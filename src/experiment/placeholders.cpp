@@ -14,9 +14,14 @@
 #include "data/table/reading_rules.hpp"
 
 namespace sysid {
-namespace {
 
-/// "write `read missing = "-9999"`": what the block has is kept.
+std::optional<Unit> unit_in_file(ExperimentData const& data, ColumnUse const& column) {
+  if (column.unit) return column.unit;
+  for (auto const& [name, unit] : data.record.file_units)
+    if (name == column.column) return unit;
+  return std::nullopt;
+}
+
 std::string missing_with(ReadingRules const& rules, double value) {
   std::string number = fmt::format("{:.12g}", value);
   std::replace(number.begin(), number.end(), '.', rules.decimal);
@@ -25,6 +30,8 @@ std::string missing_with(ReadingRules const& rules, double value) {
   for (std::string const& each : rules.missing) list += quoted_text(each) + ", ";
   return fmt::format("write `missing = ({}{})` after `read`", list, quoted_text(number));
 }
+
+namespace {
 
 Finding finding(ExperimentData const& data, ColumnUse const& column, std::string const& unit, DoubtfulNumber const& suspect,
                 bool input, ReadingRules const& rules) {
@@ -53,9 +60,9 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
   auto const look = [&](ColumnUse const& column, Quantity const& quantity, std::vector<double> values, bool input) {
     std::string unit = quantity.unit_text();
     for (double& value : values) value = quantity.from_si(value);
-    if (column.unit && quantity.unit) {
-      unit = column.unit->text;
-      for (double& value : values) value = convert(value, *quantity.unit, *column.unit);
+    if (auto const in_file = unit_in_file(data, column); in_file && quantity.unit) {
+      unit = in_file->text;
+      for (double& value : values) value = convert(value, *quantity.unit, *in_file);
     }
     for (DoubtfulNumber const& suspect : doubtful_numbers(values))
       findings.push_back(finding(data, column, unit, suspect, input, block.rules));

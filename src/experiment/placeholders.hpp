@@ -1,5 +1,8 @@
 // Numbers in a record that mark missing measurements.
 #pragma once
+#include <optional>
+#include <string>
+
 #include "experiment/experiments.hpp"
 #include "result/finding.hpp"
 
@@ -10,5 +13,11 @@ namespace sysid {
 /// no `read`, about marks beside those that `missing` lists, and about those that stand out of a part of the rows alone. Of
 /// channels only rows that are scored, or that a model in discrete time may go on from. None where the block has `missing = none`.
 Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, Model const& model);
+
+/// The unit in which the numbers of a column stand in the file; nothing where they are in that of the quantity.
+std::optional<Unit> unit_in_file(ExperimentData const& data, ColumnUse const& column);
+
+/// "write `read missing = "-9999"`", for a number of the file: what the block has is kept.
+std::string missing_with(ReadingRules const& rules, double value);
 
 }  // namespace sysid

@@ -50,6 +50,13 @@ bool reads_own_parameters(Model const& model, NodeId root) {
   });
 }
 
+bool is_standardised(Model const& model, Parameter const& parameter) {
+  if (!parameter.per_experiment || !parameter.prior || !parameter.prior->row->gaussian) return false;
+  Distribution const& prior = *parameter.prior;
+  return !prior.lower && !prior.upper && prior.arguments.size() == 2 && model.graph.constant_value(prior.arguments[0]) == 0.0 &&
+         model.graph.constant_value(prior.arguments[1]) == 1.0;
+}
+
 ParameterSpace::ParameterSpace(Model model, std::vector<ExperimentMember> experiments, std::vector<MemberCoordinate> standardised)
     : model_(std::move(model)), experiments_(std::move(experiments)), standardised_(std::move(standardised)) {
   lay_out();

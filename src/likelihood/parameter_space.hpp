@@ -34,6 +34,10 @@ std::string member_name(std::string const& name, std::string const& experiment);
 /// Whether an expression of the model reads a parameter that every experiment has for itself.
 bool reads_own_parameters(Model const& model, NodeId root);
 
+/// normal(0, sd = 1) in every experiment: z of a hierarchy that is written as `mean + spread*z`. The data know the sums alone, and
+/// the priors of z how they divide.
+bool is_standardised(Model const& model, Parameter const& parameter);
+
 /// Immutable. Rows are in the user's order, a per-experiment parameter taking one row per experiment in its place, in the order of
 /// the experiments. Coordinates u [D] are those of the sampled rows; `declared` [D] their values in declared units; `values` [rows]
 /// all of them in SI.

@@ -106,6 +106,7 @@ struct InformationPage {
   std::string exact;                                  // one that makes no error, in use or not; empty: there is none
   std::optional<double> found_move;  // of a mode that was found from the nearest draws, with the stated solver, when refined [sd]
   std::string advised;               // the first that no longer moves the result; empty: none that was tried
+  bool prior_overflows = false;      // explicit steps do on a large part of the prior: `advised` is an implicit method
   std::optional<double> response_move;  // of a candidate: of the middle response, as a part of its sd, when refined
 };
 

@@ -15,6 +15,12 @@ std::string const names =
     "parameter f [Hz] = 3\nparameter w [rad/s] = 3\nparameter n = 2\nobserve d ~ normal(y, sd = 1e-3)\n";
 std::string const equation = "m*y'' + c*y' + k*y + k3*y^3 = x\n";
 
+std::string with_text(std::string text, std::string const& from, std::string const& to) {
+  auto const place = text.find(from);
+  REQUIRE(place != std::string::npos);
+  return text.replace(place, from.size(), to);
+}
+
 struct Said {
   std::string code, primary, secondary, message, help;  // of the first message; texts under the marks
   std::size_t count = 0;
@@ -294,6 +300,28 @@ TEST_CASE("Bouc-Wen with units checks for each whole exponent, and only with the
     CHECK(bouc_wen(n, n).empty());
     CHECK(bouc_wen(n, n + 1).find("error[E2103]") != std::string::npos);
   }
+}
+
+TEST_CASE("names that help proposes as a factor are in scope and not circular") {
+  auto const help = [](std::string const& statements) {
+    return said_of("model m {\n" + names + equation + statements + "\n}\n").help;
+  };
+  std::string const hierarchy = "parameter mu ~ normal(0, sd = 1)\n";
+  // What is being defined, a `derive`, and a `let` that reads what is being defined.
+  std::string const circular = hierarchy + "let q [1/s] = exp(mu)\nlet twice [1/s] = 2*q\nderive fast [1/s] = 3*q\n";
+  std::string const said = help(circular);
+  for (std::string const name : {"`q`", "`twice`", "`fast`"}) CHECK(said.find(name) == std::string::npos);
+  std::string const only = "model m {\nstate y [m]\ninitial y = 1\n" + hierarchy +
+                           "let q [1/s] = exp(mu)\ny' = -q*y\nobserve d ~ normal(y, sd = 1e-3)\nderive fast [1/s] = 3*q\n}\n";
+  CHECK(said_of(only).help == "multiply it by a rate, such as `1 [1/s]`");
+  CHECK(said_of(with_text(only, "exp(mu)", "exp(mu)*1 [1/s]")).count == 0);
+  // A parameter of the same unit may stand there.
+  CHECK(said_of(with_text(only, "state y", "parameter rate [1/s] ~ log_uniform(1, 2)\nstate y")).help ==
+        "multiply it by a rate, such as `rate`");
+  // An initial value reads nothing that varies along the record.
+  CHECK(said_of("model m {\ninput u [m]\nstate y [m]\nparameter a ~ normal(1, sd = 1)\ninitial y = a\ny' = 1 [1/s]*(u - y)\n"
+                "observe d ~ normal(y, sd = 1e-3)\n}\n")
+            .help == "multiply it by a length, such as `1 [m]`");
 }
 
 TEST_CASE("an option that has one number takes it once") {

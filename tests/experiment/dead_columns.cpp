@@ -1,4 +1,4 @@
-// Columns that do not change and gaps in the time, as `check` and runs tell of them.
+// Columns that do not change, as `check` and runs tell of them.
 #include "experiment/dead_columns.hpp"
 
 #include <doctest/doctest.h>
@@ -48,12 +48,11 @@ void nothing(int, Row&) {}
 
 }  // namespace
 
-TEST_CASE("a record that moves and has equal steps is no finding, nor is a zero now and then") {
+TEST_CASE("a record that moves is no finding, nor is a zero now and then") {
   CheckResult const sound = check_of([](int row, Row& all) {
     if (row % 3 == 0) all.force = all.level = 0;
   });
   CHECK(messages(sound, "column_constant").empty());
-  CHECK(messages(sound, "time_gap").empty());
 }
 
 TEST_CASE("a channel that is one number in its scored samples is a warning, whatever it does outside of them") {
@@ -85,19 +84,6 @@ TEST_CASE("an input that is constant in its file is a warning, one that is so in
   CHECK(severity(over) == Severity::note);
 }
 
-TEST_CASE("ten seconds in which nothing was recorded are named by their rows; steps that vary are not") {
-  CheckResult const gap = check_of([](int row, Row& all) {
-    if (row > 150) all.time += 10;
-  });
-  CHECK(messages(gap, "time_gap") ==
-        Messages{"the time of record.middle has a gap of 10.1 s between rows 150 and 151; the usual step is 0.1 s"});
-  CheckResult const uneven = check_of([](int row, Row& all) { all.time = 0.001 * row * row; });
-  CHECK(messages(uneven, "time_gap").empty());
-  CheckResult const two = check_of([](int row, Row& all) { all.time += row > 110 ? (row > 150 ? 10 : 5) : 0; });
-  REQUIRE(messages(two, "time_gap").size() == 1);
-  CHECK(messages(two, "time_gap")[0].find("(and 1 more)") != std::string::npos);
-}
-
 TEST_CASE("a run tells of a dead column before it searches and in its verdict") {
   CaseRun const run(still_text, {{"record.csv", dead_table([](int, Row& all) { all.force = 0; })}});
   CHECK(run.result.notices.find("warning: input u, column `force`") != std::string::npos);
@@ -114,6 +100,18 @@ TEST_CASE("a model that nothing moves is named with what should move it") {
   CHECK(messages(still, "prior_at_rest")[0].starts_with("z is constant in the simulation of every prior draw"));
   CHECK(messages(check_of(nothing, at_zero), "prior_at_rest").empty());
   CHECK(messages(check_of(nothing), "prior_at_rest").empty());
+}
+
+TEST_CASE("an input that no draw lets through is not said to be missing from the equations") {
+  std::string const closed = with(with(still_text, "initial y = 0.003", "initial y = 0"), "b*u", "b*max(u - 1 [kN], 0 [N])");
+  auto const help = [](CheckResult const& result) {
+    for (Finding const& each : preflight(result, "posterior").findings)
+      if (each.code == FindingCode::prior_at_rest) return each.help;
+    return std::string();
+  };
+  CHECK(help(check_of(nothing, closed)).starts_with("an input enters the equations, but does not move this channel"));
+  CHECK(help(check_of(nothing, with(closed, "b*max(u - 1 [kN], 0 [N])", "0*b*u"))) ==
+        "check that an equation of this state contains an input");
 }
 
 TEST_CASE("a level of which the model says that it is constant may be measured with noise") {

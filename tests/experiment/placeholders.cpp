@@ -134,3 +134,23 @@ TEST_CASE("a fit says so before it begins and in its verdict, and check once for
   std::string const twice = text + "again = fit m to record.middle with map, seed = 2\n";
   CHECK(messages(checked(folder.path() / "m.sysid", twice), "looks_missing").size() == 1);
 }
+
+TEST_CASE("a mark in a column whose unit the file states is named in that unit, and the cure for it works") {
+  std::string const stated = replaced(
+      replaced(replaced(replaced(text, "read missing = \"NaN\"", "read units = 2, missing = \"NaN\""), "time t [s]", "time t"),
+               "force [mN]", "force"),
+      "level [mm]", "level");
+  auto const check = [](std::string const& file) {
+    std::string table_with_units = table([](int row, double&, double& level) {
+      if (row > 180) level = -9999;
+    });
+    table_with_units.insert(table_with_units.find('\n') + 1, "s,mN,mm\n");
+    TemporaryFolder folder;
+    write_file(folder.path() / "record.csv", table_with_units);
+    return messages(checked(folder.path() / "m.sysid", file), "looks_missing");
+  };
+  auto const found = check(stated);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].find("column `level` of record is -9999 mm in rows 181, ") != std::string::npos);
+  CHECK(check(replaced(stated, "missing = \"NaN\"", "missing = (\"NaN\", \"-9999\")")).empty());
+}

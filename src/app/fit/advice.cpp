@@ -24,12 +24,19 @@ void add_other_solver(FitSituation const& fit, Finding& finding) {
   if (std::string const advice = solver_advice(fit.solver, fit.ledger); !advice.empty()) finding.help += "; " + advice;
 }
 
-bool stiff(FitSituation const& fit) { return fit.search != nullptr && fit.search->stiff(); }
+bool stiff(FitSituation const& fit) { return fit.scales == nullptr && fit.search != nullptr && fit.search->stiff(); }
 
 void add_stiffness(FitSituation const& fit, Finding& finding) {
   Finding const what = stiff_prior(*fit.search).front();
   finding.message += "; " + what.message;
   finding.help = what.help;
+}
+
+bool time_apart(FitSituation const& fit) { return fit.scales != nullptr; }
+
+void add_scales(FitSituation const& fit, Finding& finding) {
+  finding.message += "; " + fit.scales->message;
+  finding.help = fit.scales->help;
 }
 
 // Where the motion sticks, an error control makes its steps smaller without an end, and of finer solvers there is none either.
@@ -45,8 +52,11 @@ void add_sticking(FitSituation const& fit, Finding& finding) { finding.help = st
 
 // Each that applies is added, in this order: the surest last.
 constexpr AdviceRow reasons[] = {
-    {FindingCode::no_finite_start, &integrated, &add_other_solver},        {FindingCode::no_finite_start, &stiff, &add_stiffness},
-    {FindingCode::no_finite_start, &runs_out_of_steps, &add_sticking},     {FindingCode::step_not_settled, &sticks, &add_sticking},
+    {FindingCode::no_finite_start, &integrated, &add_other_solver},
+    {FindingCode::no_finite_start, &stiff, &add_stiffness},
+    {FindingCode::no_finite_start, &runs_out_of_steps, &add_sticking},
+    {FindingCode::step_not_settled, &sticks, &add_sticking},
+    {FindingCode::no_finite_start, &time_apart, &add_scales},
     {FindingCode::optimum_not_reached, &runs_out_of_steps, &add_sticking},
 };
 
@@ -55,17 +65,6 @@ constexpr AdviceRow reasons[] = {
 void advise(FitSituation const& situation, Finding& finding) {
   for (AdviceRow const& row : reasons)
     if (row.about == finding.code && row.applies(situation)) row.add(situation, finding);
-}
-
-Findings stiff_prior(SearchSolver const& search) {
-  if (!search.stiff()) return {};
-  return {{FindingCode::stiff_prior,
-           Severity::warning,
-           {},
-           fmt::format("{:.0f} % of the prior draws overflow even with {}; {} of these were simulated with {}, {} of them without "
-                       "failure: the model is stiff there, and the search ignores that part of the prior",
-                       100 * search.failed, accuracy(search.solver), search.tried, stiff_solver().name, search.followed),
-           fmt::format("fit with `solver = {}`, or narrow the priors if such fast motion is not intended", stiff_solver().name)}};
 }
 
 }  // namespace sysid

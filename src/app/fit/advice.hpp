@@ -16,12 +16,10 @@ struct FitSituation {
   SolverSettings const& solver;
   Ledger const& ledger;                  // of the solves behind the finding
   SearchSolver const* search = nullptr;  // how the search's solver was chosen, where it was
+  Finding const* scales = nullptr;       // `time_scales_apart`, where it was found
 };
 
 /// Adds to message and help of the finding what may stand behind it; of several reasons the surest has the last word.
 void advise(FitSituation const& situation, Finding& finding);
-
-/// Of the prior draws that the search cannot see, where a solver for stiff equations follows them.
-Findings stiff_prior(SearchSolver const& search);
 
 }  // namespace sysid

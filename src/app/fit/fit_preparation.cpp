@@ -8,6 +8,7 @@
 #include "app/fit/advice.hpp"
 #include "app/fit/hierarchies.hpp"
 #include "app/preflight/check_file.hpp"
+#include "app/preflight/time_scales.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
@@ -53,6 +54,8 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   Model const& model = likelihood_.model();
   Findings ahead = check_method(session_, what_);
   for (Finding& each : check_prior_size(session_, what_, data_)) ahead.push_back(std::move(each));
+  std::optional<Finding> const scales = time_scales_apart(session_.file, model, likelihood_.space(), data_);
+  if (scales) ahead.push_back(*scales);
   print_data_findings(session_, task_, data_, model);
   print_findings(session_, task_, ahead);
 
@@ -63,7 +66,8 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
     solver = choose_search_solver(context, preparation);
     if (!solver) return false;
   }
-  FitSituation const situation{model, data_, preparation.solver, preparation.ledger, solver ? &*solver : nullptr};
+  FitSituation const situation{
+      model, data_, preparation.solver, preparation.ledger, solver ? &*solver : nullptr, scales ? &*scales : nullptr};
   if (ParameterSpace const* const space = hierarchies()) likelihood_.standardise(non_centred(*space));
   auto const searched = target(preparation.solver);
   SearchResult found = what_.near ? search_near(session_, *what_.near, *searched, objective_kind_, context)
@@ -82,12 +86,13 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   preparation.modes = std::move(found.modes);
   preparation.findings = std::move(found.findings);
   preparation.findings.insert(preparation.findings.end(), ahead.begin(), ahead.end());
-  if (solver)
+  if (solver && !scales)
     for (Finding& each : stiff_prior(*solver)) preparation.findings.push_back(std::move(each));
   print_findings(session_, task_, likelihood_.check_ranges(preparation.modes.front().declared, preparation.solver));
   MakeTarget const make = [this](SolverSettings const& tried) { return target(tried); };
   if (what_.refine_solver && !refine_solver(session_, task_, make, objective_kind_, from, preparation, context)) return false;
   for (Finding& each : preparation.findings) advise(situation, each);
+  if (objective_kind_ != ObjectiveKind::likelihood) excuse_hierarchies(likelihood_.space(), preparation.findings);
   return true;
 }
 

@@ -35,4 +35,25 @@ std::string standardised_notice(std::vector<std::string> const& names) {
                      one ? "it" : "them");
 }
 
+void excuse_hierarchies(ParameterSpace const& space, Findings& findings) {
+  auto const infos = space.infos();
+  for (Finding& each : findings) {
+    if (each.code != FindingCode::flat_direction) continue;
+    std::size_t members = 0;
+    bool proper = true;
+    for (std::string const& name : each.names) {
+      auto const info = std::find_if(infos.begin(), infos.end(), [&](ParameterInfo const& known) { return known.name == name; });
+      if (info == infos.end()) continue;  // an unknown function
+      int const row = space.sampled()[static_cast<std::size_t>(info - infos.begin())];
+      int const parameter = space.rows()[static_cast<std::size_t>(row)].parameter;
+      proper = proper && info->improper == Improper::no;
+      members += is_standardised(space.model(), space.model().parameters[static_cast<std::size_t>(parameter)]);
+    }
+    if (members == 0 || members == each.names.size() || !proper) continue;
+    each.severity = Severity::note;
+    each.message += "; only their priors separate them, as is usual in a hierarchy `mean + spread*z`";
+    each.help = "nothing: the data determine `mean + spread*z` of each experiment, which `derive` reports";
+  }
+}
+
 }  // namespace sysid

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "likelihood/parameter_space.hpp"
+#include "result/finding.hpp"
 
 namespace sysid {
 
@@ -15,5 +16,9 @@ std::vector<std::string> declared_names(std::vector<std::string> const& paramete
 
 /// The notice about them; a whole line.
 std::string standardised_notice(std::vector<std::string> const& names);
+
+/// A `flat_direction` of a hierarchy that is written as `mean + spread*z` becomes a note: its proper priors separate these
+/// parameters, as they are meant to.
+void excuse_hierarchies(ParameterSpace const& space, Findings& findings);
 
 }  // namespace sysid

@@ -84,7 +84,7 @@ void run_preflight(Session& session, FitTask const& what, std::vector<Experiment
   if (preflight.shortened) page.information->rows = static_cast<int>(Preflight::most_scored);
   std::vector<LocalSlopes> locals;
   for (LocalResponse const& each : responses) locals.push_back(each.slopes);
-  describe_information(prior.coordinates, locals, measured_channels(preflight), page);
+  describe_information(prior.coordinates, locals, measured_channels(preflight), !preflight.model().inputs.empty(), page);
   describe_solvers(preflight, prior, responses);
 }
 

@@ -17,8 +17,8 @@ constexpr double still_unknown = 0.25;  // of the prior's sd: what a confounded 
 class Description {
  public:
   Description(std::vector<AssessedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
-              std::string const& channels, PreflightPage& page)
-      : coordinates_(coordinates), locals_(locals), channels_(channels), page_(page) {
+              std::string const& channels, bool driven, PreflightPage& page)
+      : coordinates_(coordinates), locals_(locals), channels_(channels), driven_(driven), page_(page) {
     for (AssessedParameter const& each : coordinates)
       if (each.role == ParameterRole::response) {
         asked_.push_back(each.words);
@@ -84,7 +84,7 @@ class Description {
     for (LocalSlopes const& local : locals_) locals.push_back(without_coefficients(local));
     NullSpace const space = find_null_space(locals);
     for (NullDirection const& direction : space.directions) {
-      std::string const text = direction_words(direction, asked_, channels_);
+      std::string const text = direction_words(direction, asked_, channels_, driven_);
       if (prior_separates(direction)) {
         page_.information->ridges.push_back(
             fmt::format("{}: only their priors separate them, as is usual in a hierarchy `mean + spread*z`", text));
@@ -98,8 +98,9 @@ class Description {
       add(FindingCode::not_identifiable, Severity::error, std::move(names),
           fmt::format("{} (at {} of {} prior draws)", text, space.draws, space.draws),
           direction.kind == NullDirection::Kind::no_influence
-              ? "fix it to a value (`=` in place of `~`), measure a quantity that it affects, or use an input that excites the "
-                "motion on which it acts"
+              ? std::string("fix it to a value (`=` in place of `~`)") +
+                    (driven_ ? ", measure a quantity that it affects, or use an input that excites the motion on which it acts"
+                             : ", or measure a quantity that it affects")
               : "fix one of them to a known value (`=` in place of `~`), or measure a quantity that distinguishes them");
     }
     int const size = static_cast<int>(named_);
@@ -199,6 +200,7 @@ class Description {
   std::vector<AssessedParameter> const& coordinates_;
   std::vector<LocalSlopes> const& locals_;
   std::string const& channels_;
+  bool driven_;
   PreflightPage& page_;
   std::vector<ParameterWords> asked_;  // those that may show in the response
   std::size_t named_ = 0;              // of them, that are no coefficients
@@ -211,8 +213,8 @@ class Description {
 }  // namespace
 
 void describe_information(std::vector<AssessedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
-                          std::string const& channels, PreflightPage& page) {
-  Description(coordinates, locals, channels, page).fill();
+                          std::string const& channels, bool driven, PreflightPage& page) {
+  Description(coordinates, locals, channels, driven, page).fill();
 }
 
 }  // namespace sysid

@@ -19,8 +19,8 @@ struct AssessedParameter {
 };
 
 /// Fills lines, rank and null directions of `page.information` and adds findings. locals: at two draws or more, with respect to the
-/// coordinates whose role is `response`, in their order. channels: "displacement", for sentences.
+/// coordinates whose role is `response`, in their order. channels: "displacement", for sentences; driven: the model has an input.
 void describe_information(std::vector<AssessedParameter> const& coordinates, std::vector<LocalSlopes> const& locals,
-                          std::string const& channels, PreflightPage& page);
+                          std::string const& channels, bool driven, PreflightPage& page);
 
 }  // namespace sysid

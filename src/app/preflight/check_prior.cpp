@@ -7,22 +7,16 @@
 #include <optional>
 
 #include "app/preflight/preflight.hpp"
+#include "app/session/solver_refinement.hpp"
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "diagnostics/prior_checks.hpp"
+#include "likelihood/parameter_space.hpp"
 
 namespace sysid {
 namespace {
-
-/// normal(0, sd = 1) in every experiment.
-bool is_standardised(Model const& model, Parameter const& parameter) {
-  if (!parameter.per_experiment || !parameter.prior || !parameter.prior->row->gaussian) return false;
-  Distribution const& prior = *parameter.prior;
-  return !prior.lower && !prior.upper && prior.arguments.size() == 2 && model.graph.constant_value(prior.arguments[0]) == 0.0 &&
-         model.graph.constant_value(prior.arguments[1]) == 1.0;
-}
 
 constexpr double many_wild = 0.5;     // share of the draws
 constexpr double bare_mention = 3.2;  // a Bayes factor "not worth more than a bare mention" (Kass and Raftery 1995)
@@ -108,8 +102,25 @@ std::string finer_advice(SolverSettings const& solver) {
   return "use shorter steps, or " + solver.other_methods();
 }
 
+// With the steps that a fit would choose for its search; nothing where trying them would take long.
+void check_search(Preflight const& preflight) {
+  constexpr double affordable = 5e9, all_steps = 256.0 * (1 + 4 + 16 + 64);
+  PriorPage const& page = *preflight.page.prior;
+  bool const refines = preflight.refines_solver() && preflight.what.solver.fixed_step();
+  if (!refines || page.failed_as_stated <= many_failures * page.draws) return;
+  if (preflight.step_work * preflight.solver_work() * all_steps > affordable) return;
+  auto const make = [&](SolverSettings const& solver) {
+    return make_fit_target(preflight.session, preflight.what, preflight.session.compiled(preflight.what, solver.method),
+                           preflight.space, preflight.experiments, solver, preflight.session.abandonable());
+  };
+  std::uint64_t const seed = preflight.session.options.seed.value_or(preflight.what.seed.value_or(1));
+  for (Finding const& each : stiff_prior(search_solver(make, preflight.what.solver, seed)))
+    preflight.add(each.code, each.severity, each.names, each.message, each.help);
+}
+
 void check_failures(Preflight const& preflight) {
   PriorPage const& page = *preflight.page.prior;
+  if (preflight.scales) preflight.page.findings.push_back(*preflight.scales);
   SolverSettings const& solver = preflight.what.solver;
   double const share = static_cast<double>(page.failed) / page.draws;
   double const stiff = static_cast<double>(page.failed_explicit - page.failed) / page.draws;
@@ -127,7 +138,9 @@ void check_failures(Preflight const& preflight) {
                         ? fmt::format(": this lowers the probability of the candidate by a factor of {:.2g}", 1 / (1 - share))
                         : ""),
         unit_of_time_first(preflight) + "narrow the priors, or check the named part of the equation");
+  if (preflight.scales) return;  // no solver mends that
   check_stiffness(preflight, stiff);
+  if (stiff <= many_failures) check_search(preflight);
   if (preflight.refines_solver() && solver.fixed_step()) return;
   if (lost > many_failures)
     preflight.add(
@@ -145,6 +158,14 @@ bool follows_states(Model const& model, Channel const& channel) {
     return model.graph.depends(argument, [](Node const& node) {
       return node.operation == Operation::leaf && (node.leaf_kind == LeafKind::state || node.leaf_kind == LeafKind::unknown);
     });
+  });
+}
+
+// Whether an equation of the states reads an input.
+bool drives(Model const& model) {
+  return std::any_of(model.states.begin(), model.states.end(), [&](State const& state) {
+    return model.graph.depends(
+        state.derivative, [](Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::input; });
   });
 }
 
@@ -167,7 +188,10 @@ void check_motion(Preflight const& preflight, PriorPage::Channel const& line, Ch
                             significant(line.measured, 2), unit_after_number(line.unit)),
                 dead     ? fmt::format("{} constant in the data: check the column, or give initial values other than zero",
                                        quoted(still) + (still.size() == 1 ? " is" : " are"))
-                : driven ? "check that an equation of this state contains an input"
+                : driven ? (drives(preflight.model())
+                                ? "an input enters the equations, but does not move this channel at any prior draw: check the size "
+                                  "and the unit of the input against thresholds such as a dead zone and their priors"
+                                : "check that an equation of this state contains an input")
                          : "the model has no input: give initial values other than zero, or the input that drove the motion");
 }
 

@@ -123,6 +123,25 @@ void confirm(Preflight const& preflight, PriorDraws const& prior, double suggest
   }
 }
 
+// What is sufficient at the draws that were examined need not be at the others, of which the findings tell.
+void judge_by_prior(Preflight const& preflight) {
+  constexpr std::size_t slow = 4;  // a method of order 4 gains a factor of 16 by each halving, where nothing jumps
+  InformationPage& information = *preflight.page.information;
+  Findings const& found = preflight.page.findings;
+  if (std::any_of(found.begin(), found.end(), [](Finding const& each) { return each.code == FindingCode::stiff_prior; })) {
+    information.advised = stiff_solver().name;
+    information.prior_overflows = true;
+  } else if (!preflight.sticking.empty() && information.moves.size() > slow) {
+    auto const& [solver, move] = information.moves[slow - 1];
+    information.advised.clear();
+    preflight.add(
+        FindingCode::integration_step, preflight.what.solver.as_model ? Severity::note : Severity::warning, {},
+        fmt::format("with {}, parameters still change by {} sd for {}: the equations jump where a velocity changes its sign",
+                    information.refinement, move > 5 ? "many" : fmt::format("{:.2g}", move), solver),
+        preflight.sticking);
+  }
+}
+
 }  // namespace
 
 Findings check_method(Session const& session, FitTask const& what) {
@@ -158,6 +177,7 @@ void describe_solvers(Preflight const& preflight, PriorDraws const& prior, std::
     information.advised = preflight.solvers[level].text();
     break;
   }
+  judge_by_prior(preflight);
   if (!preflight.what.refine_solver && !preflight.candidate() && moves.front() > tolerable_move)
     confirm(preflight, prior, moves.front());
   if (preflight.candidate()) describe_distances(preflight, prior, middle(std::move(response_moves)), middle(std::move(shifts)));

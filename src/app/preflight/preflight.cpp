@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "app/preflight/time_scales.hpp"
 #include "experiment/sticking.hpp"
 #include "expression/switching.hpp"
 #include "simulate/thread_pool.hpp"
@@ -70,6 +71,7 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
       page(page),
       compiled(session.compiled(what, what.solver.method)),
       space(parameter_space(compiled->model, what.experiments)),
+      scales(time_scales_apart(session.file, compiled->model, *space, data)),
       sticking(sticking_advice(compiled->model, data)) {
   std::size_t longest = 0;
   for (ExperimentData const& each : data) {

@@ -1,6 +1,7 @@
 // One model of a task while `check` looks ahead: its data, its solvers from coarse to fine, and how much work that may be.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,7 +33,8 @@ class Preflight {
   PreflightPage& page;
   std::shared_ptr<CompiledModel const> compiled;
   std::shared_ptr<ParameterSpace const> space;
-  std::string sticking;  // what to do about dry friction, in place of advice on solvers; empty without
+  std::optional<Finding> scales;  // `time_scales_apart`: then no advice on solvers
+  std::string sticking;           // what to do about dry friction, in place of advice on solvers; empty without
   std::vector<Experiment> experiments;
   bool exact_steps = true;  // suit all experiments, whole
   bool shortened = false;   // to their first `most_scored` scored rows

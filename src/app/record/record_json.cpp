@@ -22,6 +22,7 @@ nlohmann::ordered_json json_of(ColumnLook const& column) {
   out["dead"] = column.dead;
   out["at_smallest"] = column.at_smallest;
   out["at_largest"] = column.at_largest;
+  if (column.frozen_first > 0) out["frozen_rows"] = {column.frozen_first, column.frozen_last};
   out["quantum"] = column.quantum;
   out["levels"] = column.levels;
   out["drift"] = column.drift;

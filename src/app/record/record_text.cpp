@@ -46,6 +46,9 @@ std::vector<std::string> remarks(ColumnLook const& column) {
   if (column.unit == "g" || column.unit == "mg" || column.unit == "ug")
     all.push_back(fmt::format("is read as a mass, [{0}]; if it is an acceleration, write `[{0}_n]`", column.unit));
   if (column.missing > 0) all.push_back(fmt::format("misses {}", counted(column.missing, "sample")));
+  if (column.frozen_first > 0)
+    all.push_back(fmt::format("does not change in rows {} to {}, but from sample to sample elsewhere: frozen?", column.frozen_first,
+                              column.frozen_last));
   for (auto const& [count, end, value] :
        {std::tuple(column.at_largest, "largest", column.largest), std::tuple(column.at_smallest, "smallest", column.smallest)})
     if (count > 0)

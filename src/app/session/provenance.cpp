@@ -12,6 +12,8 @@
 #include "experiment/dead_columns.hpp"
 #include "experiment/doubtful_columns.hpp"
 #include "experiment/placeholders.hpp"
+#include "experiment/stuck_sensors.hpp"
+#include "experiment/time_gaps.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/lags.hpp"
 
@@ -95,8 +97,9 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
 Findings data_findings(CheckedFile const& file, ExperimentData const& data, Model const& model) {
   Findings all = find_placeholders(file, data, model);
   for (Findings const& more :
-       {find_constant_columns(file, data, model), find_time_gaps(file, data, model), find_other_units(data),
-        find_rounded_times(file, data, model), find_contradicted_rate(file, data, model), find_shared_columns(file, data, model)})
+       {find_constant_columns(file, data, model), find_time_gaps(file, data, model), find_stuck_sensors(file, data, model),
+        find_other_units(data), find_rounded_times(file, data, model), find_contradicted_rate(file, data, model),
+        find_shared_columns(file, data, model)})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -122,8 +125,8 @@ std::string samples_digest(Experiment const& experiment, Model const& model) {
 
 bool tells_of_data(FindingCode code) {
   return code == FindingCode::looks_missing || code == FindingCode::column_constant || code == FindingCode::time_gap ||
-         code == FindingCode::times_rounded || code == FindingCode::rate_contradicted || code == FindingCode::column_used_twice ||
-         code == FindingCode::unit_in_name;
+         code == FindingCode::sensor_stuck || code == FindingCode::times_rounded || code == FindingCode::rate_contradicted ||
+         code == FindingCode::column_used_twice || code == FindingCode::unit_in_name;
 }
 
 void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings) {

@@ -97,4 +97,15 @@ std::string solver_advice(SolverSettings const& solver, Ledger const& ledger) {
   return solver.fixed_step() ? "or let the solver choose its steps: " + other : "or use " + other;
 }
 
+Findings stiff_prior(SearchSolver const& search) {
+  if (!search.stiff()) return {};
+  return {{FindingCode::stiff_prior,
+           Severity::warning,
+           {},
+           fmt::format("{:.0f} % of the prior draws overflow even with {}; {} of these were simulated with {}, {} of them without "
+                       "failure: the model is stiff there, and the search ignores that part of the prior",
+                       100 * search.failed, accuracy(search.solver), search.tried, stiff_solver().name, search.followed),
+           fmt::format("fit with `solver = {}`, or narrow the priors if such fast motion is not intended", stiff_solver().name)}};
+}
+
 }  // namespace sysid

@@ -9,6 +9,7 @@
 #include "check/message/errors.hpp"
 #include "check/message/errors_disturbances.hpp"
 #include "check/units/units.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 
@@ -29,9 +30,26 @@ Scope::Scope(Graph& graph, Diagnostics& diagnostics, std::vector<ast::FunctionDe
   for (auto const* function : shared_functions) functions_.emplace(function->name.text, function);
 }
 
+namespace {
+
+DeclaredRole role_of(Symbol const& symbol) {
+  using Kind = DeclaredRole::Kind;
+  if (std::holds_alternative<ParameterSymbol>(symbol.what)) return {Kind::fixed, {}};
+  auto const* known = std::get_if<DefinitionSymbol>(&symbol.what);
+  if (known == nullptr) return {Kind::varying, {}};
+  DeclaredRole role{Kind::local, {}};
+  if (known->definition->kind == ast::DefinitionKind::constant) role.kind = Kind::constant;
+  if (known->definition->kind == ast::DefinitionKind::derived) role.kind = Kind::reported;
+  each_reference(known->definition->value, [&](ast::Reference const& read) { role.reads.push_back(read.name.text); });
+  return role;
+}
+
+}  // namespace
+
 bool Scope::declare(ast::Name const& name, Symbol symbol) {
   auto const [place, fresh] = symbols_.emplace(name.text, std::move(symbol));
   Symbol const& declared = place->second;
+  if (fresh) units_.declare(name.text, role_of(declared));
   if (fresh && declared.unit) {
     bool const moves = std::holds_alternative<StateSymbol>(declared.what) || std::holds_alternative<InputSymbol>(declared.what);
     units_.declare({name.text, *declared.unit, moves});

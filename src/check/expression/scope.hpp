@@ -138,6 +138,9 @@ class Scope {
   Typed built_in(FunctionRow const& row, std::span<UnitOperand const> arguments);
   std::optional<Typed> choice(ast::Conditional const& conditional);
 
+  std::optional<Typed> agreeing_with(std::optional<Unit> const& unit, Span place, ast::Expression const& tree,
+                                     Occasion const& occasion);
+
   // past.cpp
   bool is_lag_call(ast::Call const& call) const;
   std::optional<Typed> lag_call(ast::Call const& call);

@@ -56,7 +56,14 @@ std::optional<Typed> Scope::expression(ast::Expression const& tree) {
 
 std::optional<Typed> Scope::expression_in(std::optional<Unit> const& unit, Span place, ast::Expression const& tree,
                                           Occasion const& occasion) {
-  if (!unit) return expression(tree);
+  std::string outer = units_.enter(occasion.kind == Occasion::Kind::distribution ? occasion.of : occasion.what);
+  std::optional<Typed> value = unit ? agreeing_with(unit, place, tree, occasion) : expression(tree);
+  units_.enter(std::move(outer));
+  return value;
+}
+
+std::optional<Typed> Scope::agreeing_with(std::optional<Unit> const& unit, Span place, ast::Expression const& tree,
+                                          Occasion const& occasion) {
   std::vector<UnitOperand> terms;
   std::optional<Typed> value = sum(tree, terms);
   UnitOperand const declared{with_unit(0, unit, place)};

@@ -91,13 +91,33 @@ std::string DeclaredUnits::words(Unit const& unit) const {
   return unit_words(unit, names_in_use_);
 }
 
+bool DeclaredUnits::may_stand_here(std::string const& name) const {
+  using Kind = DeclaredRole::Kind;
+  auto const is = [&](std::string const& whose, auto... kinds) {
+    auto const found = roles_.find(whose);
+    return found != roles_.end() && ((found->second.kind == kinds) || ...);
+  };
+  if (is(name, Kind::reported)) return false;
+  if (is(place_, Kind::constant) && !is(name, Kind::constant)) return false;
+  bool const one_value = is(place_, Kind::fixed, Kind::varying);  // of a parameter, or an initial value
+  std::vector<std::string> names = {name};                        // and all that it reads
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == place_ || (one_value && is(names[i], Kind::varying))) return false;
+    auto const read = roles_.find(names[i]);
+    if (read == roles_.end()) continue;
+    for (std::string const& each : read->second.reads)
+      if (std::find(names.begin(), names.end(), each) == names.end()) names.push_back(each);
+  }
+  return true;
+}
+
 std::string DeclaredUnits::named(Dimension const& dimension, std::vector<std::string> const& but) const {
   Unit second;
   second.dimension[2] = {1, 1};
   std::string text;
   int count = 0;
   for (DeclaredUnit const& each : declared_) {
-    if (std::find(but.begin(), but.end(), each.name) != but.end()) continue;
+    if (std::find(but.begin(), but.end(), each.name) != but.end() || !may_stand_here(each.name)) continue;
     std::string name;
     if (each.unit.dimension == dimension)
       name = each.name;
@@ -109,8 +129,9 @@ std::string DeclaredUnits::named(Dimension const& dimension, std::vector<std::st
   return text;
 }
 
-std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& wanted, Dimension const& missing, bool pure,
-                                bool is_term) const {
+std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted) const {
+  Dimension const& missing = wanted.missing;
+  bool const pure = wanted.pure, is_term = wanted.is_term;
   std::vector<std::string> but;
   if (pure && odd != nullptr) but = names_in(*odd);
   if (odd != nullptr && !pure) {
@@ -138,7 +159,7 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& w
                                   coefficient ? coefficient->name : "", other);
     }
   }
-  std::string cure = factor_cure(wanted, missing, but);
+  std::string cure = factor_cure(wanted, odd != nullptr, but);
   if (odd != nullptr && !pure)
     if (auto const declared = declared_otherwise(*odd, missing, is_term)) {
       std::string const other = errors::declare_in(declared->name, words(declared->unit));
@@ -148,15 +169,17 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, std::string const& w
 }
 
 // The term as it is declared, with another factor.
-std::string DeclaredUnits::factor_cure(std::string const& wanted, Dimension const& missing,
-                                       std::vector<std::string> const& but) const {
+std::string DeclaredUnits::factor_cure(Wanted const& wanted, bool in_text, std::vector<std::string> const& but) const {
+  Dimension const& missing = wanted.missing;
   if (std::string const names = named(missing, but); !names.empty())
     return errors::multiply_by(kind_words(missing, names_in_use_), names);
   if (std::string const names = named(inverse(missing), but); !names.empty())
     return errors::divide_by(kind_words(inverse(missing), names_in_use_), names);
+  if (wanted.of_a_number && in_text)
+    return errors::multiply_by(kind_words(missing, names_in_use_), "`1 [" + wanted.unit + "]`");
   if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing, names_in_use_), "");
   if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing), names_in_use_), "");
-  return errors::should_be_in(wanted);
+  return errors::should_be_in(wanted.unit);
 }
 
 bool DeclaredUnits::is_power_of_moving(ast::Expression const& odd, Dimension const& missing) const {

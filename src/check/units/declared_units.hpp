@@ -1,7 +1,9 @@
 // The units that a file declares, and units written with the file's own names.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "check/message/unit_words.hpp"
@@ -16,17 +18,41 @@ struct DeclaredUnit {
   bool moves = false;
 };
 
+/// What a declared name may read and be read by.
+struct DeclaredRole {
+  enum class Kind {
+    varying,   // state, input, disturbance, time
+    fixed,     // parameter
+    constant,  // `constant`: reads constants alone
+    local,     // `let`
+    reported,  // `derive`: nothing reads it
+  };
+  Kind kind = Kind::fixed;
+  std::vector<std::string> reads;  // names in the expression of a definition
+};
+
 class DeclaredUnits {
  public:
   void declare(DeclaredUnit declared);
+  /// Of every declared name, with a unit or without one.
+  void declare(std::string const& name, DeclaredRole role) { roles_.emplace(name, std::move(role)); }
 
   /// A unit as the text has it, else in the names that it uses.
   std::string words(Unit const& unit) const;
-  /// How an expression that lacks the factor `missing` could be mended ("multiply it by a length, such as `y`"); odd: null where it
-  /// is a declaration; wanted: the unit it should have; pure: a pure number is wanted; is_term: of a sum
-  /// or an equation, whose coefficient is its own.
-  std::string cure(ast::Expression const* odd, std::string const& wanted, Dimension const& missing, bool pure,
-                   bool is_term = false) const;
+  /// From now on expressions are those of this declared name; empty: of an equation. The place before, to go back to.
+  std::string enter(std::string place) { return std::exchange(place_, std::move(place)); }
+
+  /// What is wanted where a unit is not as it should be.
+  struct Wanted {
+    std::string unit;          // as the text would have it
+    Dimension missing;         // the factor that the expression lacks
+    bool pure = false;         // a pure number is wanted
+    bool of_a_number = false;  // the expression is one
+    bool is_term = false;      // of a sum or an equation, whose coefficient is its own
+  };
+  /// How an expression could be mended ("multiply it by a length, such as `y`"); odd: null where it is a declaration. Names are
+  /// those that may stand in its place.
+  std::string cure(ast::Expression const* odd, Wanted const& wanted) const;
 
   /// Whether `cycles` holds a frequency in Hz where `other`, which counts neither cycles nor radians, asks for an angular one: as a
   /// square (k = m omega^2), or as the factor of something else that moves beside a derivative in time (y'' + omega^2 y, y' =
@@ -37,15 +63,21 @@ class DeclaredUnits {
   std::string frequency_in(ast::Expression const& tree) const;
 
  private:
-  std::string factor_cure(std::string const& wanted, Dimension const& missing, std::vector<std::string> const& but) const;
+  // The term as it is declared, with another factor; in_text: it is an expression, no declaration; but: names that it must not be.
+  std::string factor_cure(Wanted const& wanted, bool in_text, std::vector<std::string> const& but) const;
   // The one coefficient of a term, in the unit that it should have been declared in; nothing where something else is likelier.
   std::optional<DeclaredUnit> declared_otherwise(ast::Expression const& odd, Dimension const& missing, bool is_term) const;
   // Whether one power of something that moves in a term is what it lacks, or has too much.
   bool is_power_of_moving(ast::Expression const& odd, Dimension const& missing) const;
   // "`y`", "`y` or `l`": declared names of this dimension.
   std::string named(Dimension const& dimension, std::vector<std::string> const& but) const;
+  // Whether the name may stand where expressions are checked: what is being defined must not read itself, nor what has one value
+  // for a whole record something that varies in it.
+  bool may_stand_here(std::string const& name) const;
 
   std::vector<DeclaredUnit> declared_;
+  std::map<std::string, DeclaredRole> roles_;
+  std::string place_;
   UnitNames names_in_use_;
 };
 

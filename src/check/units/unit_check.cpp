@@ -226,10 +226,11 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   auto const cure = std::find_if(occasion.cures.begin(), occasion.cures.end(), [&](auto const& each) {
     return terms_alike(groups, operands) && each.first == dimension_of(operands[shown]);
   });
-  bool const terms = occasion.kind == Occasion::Kind::terms;
+  bool const of_a_number = dimension_of(operands[shown]) == Dimension{} && wanted.offset == 0;
+  bool const is_term = occasion.kind == Occasion::Kind::terms;
   conflict.help = cure != occasion.cures.end()
                       ? cure->second
-                      : declared_.cure(operands[shown].tree, conflict.wanted, missing_.back(), false, terms);
+                      : declared_.cure(operands[shown].tree, {conflict.wanted, missing_.back(), false, of_a_number, is_term});
   // Against other terms of its own sum a term is shown as such, whatever the sum is for.
   bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
   report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));
@@ -247,7 +248,7 @@ bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, b
   }
   missing_.push_back(inverse(unit.dimension));
   report(errors::pure_argument({argument.value.span, "[" + words(unit) + "]"}, function,
-                               declared_.cure(argument.tree, "-", inverse(unit.dimension), true)));
+                               declared_.cure(argument.tree, {"-", inverse(unit.dimension), true})));
   return false;
 }
 
@@ -255,7 +256,7 @@ bool UnitCheck::power(UnitOperand const& base, UnitOperand const& exponent, std:
   if (is_known(exponent) && !exponent.value.unit.dimensionless()) {
     missing_.push_back(inverse(exponent.value.unit.dimension));
     report(errors::exponent_with_unit({exponent.value.span, "[" + words(exponent.value.unit) + "]"},
-                                      declared_.cure(exponent.tree, "-", inverse(exponent.value.unit.dimension), true)));
+                                      declared_.cure(exponent.tree, {"-", inverse(exponent.value.unit.dimension), true})));
     return false;
   }
   if (!is_known(base) || base.value.unit.dimensionless()) return true;

@@ -40,6 +40,10 @@ class UnitCheck {
 
   /// Known to the help lines ("multiply it by a length, such as `y`").
   void declare(DeclaredUnit declared) { declared_.declare(std::move(declared)); }
+  void declare(std::string const& name, DeclaredRole role) { declared_.declare(name, std::move(role)); }
+
+  /// Whose expression is checked from now on; see DeclaredUnits::enter.
+  std::string enter(std::string place) { return declared_.enter(std::move(place)); }
 
   /// False, with a diagnostic, when the known units differ. The odd ones out are those that the majority does not share.
   bool agree(Occasion const& occasion, std::span<UnitOperand const> operands);

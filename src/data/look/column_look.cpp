@@ -9,6 +9,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/fourier.hpp"
 #include "core/system/interrupt.hpp"
+#include "data/cell/stuck_sensor.hpp"
 
 namespace sysid {
 namespace {
@@ -147,6 +148,10 @@ ColumnLook look_at_column(std::string name, std::vector<double> const& values, d
   if (look.levels > few_levels) {
     look.at_smallest = in_runs_at(values, look.smallest);
     look.at_largest = in_runs_at(values, look.largest);
+    if (auto const run = frozen_run(values)) {
+      look.frozen_first = run->first + 1;
+      look.frozen_last = run->last + 1;
+    }
   }
   look.quantum = quantum_of(levels);
   Line const line = line_through(values);

@@ -167,11 +167,12 @@ std::string information_text(InformationPage const& page) {
   for (auto const& [solver, move] : page.moves)
     moves += fmt::format("{}{} sd for {}", moves.empty() ? "" : ", ", move > 5 ? "more than 5" : significant(move, 2), solver);
   if (!moves.empty())
-    out +=
-        entry("solver", {fmt::format("with {}, parameters change by {}", page.refinement, moves),
-                         page.advised.empty() ? "none of these is accurate enough"
-                         : page.taken.empty() ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
-                                              : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
+    out += entry("solver",
+                 {fmt::format("with {}, parameters change by {}", page.refinement, moves),
+                  page.advised.empty()   ? "none of these is accurate enough"
+                  : page.prior_overflows ? fmt::format("{}: explicit steps overflow on a large part of the prior", page.advised)
+                  : page.taken.empty()   ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
+                                         : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
   if (!page.exact.empty() && page.exact == page.taken) out += entry("solver", {fmt::format("{} is exact", page.exact)});
   if (!page.exact.empty() && page.exact != page.taken)
     out += entry(moves.empty() ? "solver" : "",

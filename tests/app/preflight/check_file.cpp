@@ -6,6 +6,7 @@
 #include "report/page/check_page.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 
 #include "app/checking.hpp"
 #include "app/running.hpp"
+#include "core/numeric/elementary.hpp"
 
 using namespace sysid;
 
@@ -635,4 +637,28 @@ TEST_CASE("the page for programs holds the messages, each as it is printed for a
   CHECK(object.at("messages").at(0) == nlohmann::json::parse(render_json(diagnostics.all()[0], source)));
   CHECK(object.at("messages").at(1).at("severity") == "warning");
   CHECK(object.at("tasks").empty());
+}
+
+TEST_CASE("check judges a solver by all prior draws, as the fit does, not by those that it follows") {
+  // A fast state that the slow one leads: at most prior draws it overflows with any steps that a fit would try.
+  std::string const fast =
+      "model fastslow {\n input u [-]\n state a [-], b [-]\n initial a = 0, b = 0\n parameter eps [s] ~ log_uniform(1e-5, 0.1)\n"
+      " parameter g [1/s] ~ log_uniform(0.05, 5)\n parameter c [-] ~ log_uniform(0.1, 10)\n eps*a' = b - a - c*a^3\n"
+      " b' = -g*b + u*1 [1/s]\n observe out ~ normal(a, sd = 0.02)\n}\n"
+      "data rec { file \"record.csv\"; time t [s]; input u = u hold zero_order; measure out = a }\n"
+      "post = fit fastslow to rec with map, seed = 1\n";
+  auto const check = [](std::string const& text) {
+    std::string rows = "t,u,a\n";
+    for (int row = 0; row < 250; ++row)
+      rows += fmt::format("{:.6g},{},{:.6g}\n", 0.05 * row, row / 10 % 2 == 0 ? 1 : -1, 0.5 * elementary::sin(0.3 * row));
+    TemporaryFolder folder;
+    write_file(folder.path() / "record.csv", rows);
+    return checked(folder.path() / "m.sysid", text);
+  };
+  CheckResult const result = check(fast);
+  CHECK(messages(result, "stiff_prior").size() == 1);
+  CHECK(check_text(result.page).find("is sufficient") == std::string::npos);
+  CheckResult const cured = check(with(fast, "with map", "with map, solver = cvode"));
+  CHECK(messages(cured, "stiff_prior").empty());
+  CHECK(messages(cured, "prior_fails").empty());
 }

@@ -1,0 +1,178 @@
+// The slowest rate is one over the spectral radius of the Jacobian's inverse, found by squaring: units of states cancel in it.
+#include "app/preflight/time_scales.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/unit.hpp"
+#include "core/text/number.hpp"
+#include "core/text/words.hpp"
+#include "linear_algebra/decompositions.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int scale_draws = 64;
+constexpr std::size_t most_states = 12;
+constexpr double part_of_record = 1e-5;
+
+/// The Jacobian of the derivatives by the states, as expressions.
+class Linearisation {
+ public:
+  explicit Linearisation(Model const& model) : model_(model), graph_(model.graph) {
+    for (State const& by : model.states) initial_.push_back(by.initial);
+    for (State const& of : model.states)
+      for (std::size_t j = 0; j < model.states.size(); ++j)
+        slopes_.push_back(graph_.differentiate(of.derivative, graph_.leaf(LeafKind::state, static_cast<int>(j))));
+  }
+
+  /// [1/s] of the slowest motion at the start; 0 where there is none. parameters [SI], inputs [SI], time [s].
+  double slowest_rate(std::vector<double> const& parameters, std::vector<double> const& inputs, double time) const {
+    std::vector<double> state;
+    auto const value = [&](NodeId leaf) {
+      Node const& node = graph_[leaf];
+      auto const index = static_cast<std::size_t>(node.index);
+      switch (node.leaf_kind) {
+        case LeafKind::parameter:
+          return parameters[index];
+        case LeafKind::state:
+          return state[index];
+        case LeafKind::input:
+          return inputs[index];
+        case LeafKind::time:
+          return time;
+        case LeafKind::input_rate:
+        case LeafKind::disturbance:
+          return 0.0;
+        default:
+          return std::numeric_limits<double>::quiet_NaN();
+      }
+    };
+    state = graph_.evaluate(initial_, value);
+    std::vector<double> const slopes = graph_.evaluate(slopes_, value);
+    auto const n = static_cast<Eigen::Index>(state.size());
+    Eigen::MatrixXd jacobian(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j) jacobian(i, j) = slopes[static_cast<std::size_t>(i * n + j)];
+    if (!jacobian.allFinite() || !std::isfinite(log_absolute_determinant(jacobian))) return 0;
+    Eigen::MatrixXd power = inverse(jacobian);
+    constexpr int squarings = 7;
+    double log_size = 0, exponent = 1;  // of the inverse to the power of `exponent`, which is `power` times exp(log_size)
+    for (int k = 0; k < squarings; ++k) {
+      double const norm = power.norm();
+      if (!std::isfinite(norm) || norm == 0) return 0;
+      power /= norm;
+      log_size = 2 * (log_size + elementary::log(norm));
+      exponent *= 2;
+      power = (power * power).eval();
+    }
+    double const norm = power.norm();
+    return std::isfinite(norm) && norm > 0 ? elementary::exp(-(log_size + elementary::log(norm)) / exponent) : 0;
+  }
+
+ private:
+  Model const& model_;
+  Graph graph_;
+  std::vector<NodeId> initial_, slopes_;
+};
+
+struct Rates {
+  double least = std::numeric_limits<double>::infinity(), most = 0;  // [1/s] of the slowest motion, over draws
+};
+
+Rates rates_of(Linearisation const& linear, ParameterSpace const& space, LaneArray const& values, int experiment,
+               Experiment const& along) {
+  LaneArray parameters(static_cast<int>(space.model().parameters.size()), values.width());
+  space.select(values, experiment, parameters);
+  std::vector<double> inputs;
+  for (InputSignal const& input : along.inputs) inputs.push_back(input.sample(0));
+  Rates rates;
+  for (int w = 0; w < values.width(); ++w) {
+    std::vector<double> own;
+    for (int p = 0; p < parameters.rows(); ++p) own.push_back(parameters(p, w));
+    double const rate = linear.slowest_rate(own, inputs, along.time.front());
+    rates.least = std::min(rates.least, rate);
+    rates.most = std::max(rates.most, rate);
+  }
+  return rates;
+}
+
+/// "1/year" of a rate, "year" of a time, where the dimension is a power of time alone; else empty.
+std::string unit_per(Unit const& unit, std::string const& of_time) {
+  Dimension others = unit.dimension;
+  auto const power = others[2];
+  others[2] = {};
+  if (others != Dimension{} || power.denominator != 1 || power.numerator == 0) return {};
+  std::string const factor = std::abs(power.numerator) == 1 ? of_time : fmt::format("{}^{}", of_time, std::abs(power.numerator));
+  if (power.numerator > 0) return factor;
+  return fmt::format("{}/{}", unit.radian.numerator != 0 ? "rad" : "1", factor);
+}
+
+/// Sampled parameters with the unit that they have if their numbers are per unit of the record's time.
+std::vector<std::string> declared_in(Model const& model, std::string const& of_time) {
+  std::vector<std::string> all;
+  for (Parameter const& parameter : model.parameters) {
+    if (!parameter.prior || !parameter.unit) continue;
+    std::string const unit = unit_per(*parameter.unit, of_time);
+    if (!unit.empty() && unit != parameter.unit->text) all.push_back(fmt::format("parameter {} [{}]", parameter.name, unit));
+  }
+  return all;
+}
+
+std::string in_seconds(double seconds) { return significant(seconds, 2) + " s"; }
+
+Finding apart_finding(CheckedFile const& file, Model const& model, ExperimentData const& data, Rates const& rates) {
+  Experiment const& experiment = data.experiment;
+  double const length = experiment.time.back() - experiment.time.front();
+  double const scale = experiment.time_unit ? experiment.time_unit->scale : 1;
+  std::string const unit = experiment.time_unit ? experiment.time_unit->text : "s";
+  std::string const words =
+      scale == 1 ? in_seconds(length) : fmt::format("{} {}, which is {}", significant(length / scale, 3), unit, in_seconds(length));
+  std::vector<std::string> const declared = scale == 1 ? std::vector<std::string>{} : declared_in(model, unit);
+  std::string const block = file.data[static_cast<std::size_t>(data.use.data)].name;
+  return {
+      FindingCode::time_scales_apart,
+      Severity::warning,
+      {experiment.name},
+      fmt::format("{} lasts {}, but at every prior draw even the slowest motion of `{}` takes only {} to {}: the unit of time or "
+                  "the units of the rates are wrong",
+                  experiment.name, words, model.name, in_seconds(1 / rates.most), in_seconds(1 / rates.least)),
+      declared.empty()
+          ? fmt::format("correct the unit of `time` in `{}`, or the units of the parameters that contain a time", block)
+          : fmt::format("write {}{}; or correct the unit of `time` in `{}`", quoted(declared),
+                        declared.size() == 1 ? fmt::format(" if the numbers of its prior are per {}", unit)
+                                             : fmt::format(" where the numbers of the prior are in [{}]", unit),
+                        block)};
+}
+
+}  // namespace
+
+std::optional<Finding> time_scales_apart(CheckedFile const& file, Model const& model, ParameterSpace const& space,
+                                         std::vector<ExperimentData> const& data) {
+  if (!model.integrated() || model.implicit || model.states.empty() || model.states.size() > most_states) return std::nullopt;
+  if (!improper_coordinates(space.infos()).empty()) return std::nullopt;
+  try {
+    Linearisation const linear(model);
+    LaneArray theta(space.dimension(), scale_draws);
+    space.sample_prior({1, Purpose::start, 0, 0}, theta);
+    LaneArray const values = space.values(theta);
+    for (std::size_t e = 0; e < data.size(); ++e) {
+      std::vector<double> const& time = data[e].experiment.time;
+      if (time.size() < 3) continue;
+      double shortest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 1; i < time.size(); ++i) shortest = std::min(shortest, time[i] - time[i - 1]);
+      Rates const rates = rates_of(linear, space, values, static_cast<int>(e), data[e].experiment);
+      if (rates.least * (time.back() - time.front()) * part_of_record > 1 && rates.least * shortest > 1)
+        return apart_finding(file, model, data[e], rates);
+    }
+  } catch (InternalError const&) {  // a function without a derivative
+  }
+  return std::nullopt;
+}
+
+}  // namespace sysid

@@ -1,0 +1,98 @@
+// Rows that a frozen sensor wrote are left out by ranges, numbers at the end of a sensor's range as missing ones.
+#include "experiment/stuck_sensors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/text/number.hpp"
+#include "core/text/words.hpp"
+#include "data/cell/stuck_sensor.hpp"
+#include "experiment/new_ranges.hpp"
+#include "experiment/placeholders.hpp"
+
+namespace sysid {
+namespace {
+
+/// The rows of the task before and after these; the first of the equal samples is one that the sensor measured.
+std::string ranges_without(FrozenRun const& run, ExperimentData const& data, DataBlock const& block) {
+  constexpr int fewest = 10;
+  Experiment const& experiment = data.experiment;
+  auto const row = [&](std::size_t index) { return experiment.first_row + static_cast<int>(index); };
+  auto const first = std::find(experiment.scored.begin(), experiment.scored.end(), 1);
+  auto const last = std::find(experiment.scored.rbegin(), experiment.scored.rend(), 1);
+  std::vector<RowRange> ranges;
+  for (RowRange const each : {RowRange{row(static_cast<std::size_t>(first - experiment.scored.begin())), row(run.first)},
+                              RowRange{row(run.last) + 1, row(static_cast<std::size_t>(experiment.scored.rend() - last)) - 1}})
+    if (each.last - each.first + 1 >= fewest) ranges.push_back(each);
+  return ranges.empty() ? "use another record" : "if so, " + new_ranges(block, data.use.part, ranges);
+}
+
+/// Whether the model says where the channel ends, as in `normal(min(level, rim), sd = s)`.
+bool has_own_end(Model const& model, Channel const& channel) {
+  std::vector<NodeId> const nodes = model.graph.reachable(channel.noise.arguments);
+  return std::any_of(nodes.begin(), nodes.end(), [&](NodeId id) {
+    Operation const operation = model.graph[id].operation;
+    return operation == Operation::minimum || operation == Operation::maximum || operation == Operation::select;
+  });
+}
+
+struct InFile {
+  Quantity const& quantity;
+  std::optional<Unit> unit;
+
+  double value(double si) const {
+    double const declared = quantity.from_si(si);
+    return unit && quantity.unit ? convert(declared, *quantity.unit, *unit) : declared;
+  }
+  std::string text(double si) const {
+    return fmt::format("{:.6g}", value(si)) + unit_after_number(unit && quantity.unit ? unit->text : quantity.unit_text());
+  }
+};
+
+}  // namespace
+
+Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data, Model const& model) {
+  if (model.dynamics == Dynamics::none) return {};
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  Experiment const& experiment = data.experiment;
+  Findings findings;
+  for (DataMeasureUse const& column : block.measured)
+    for (std::size_t c = 0; c < model.channels.size(); ++c) {
+      Channel const& channel = model.channels[c];
+      if (channel.name != column.channel || (channel.noise.row != nullptr && channel.noise.row->discrete)) continue;
+      std::vector<double> values = experiment.measured[c];
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (!experiment.is_scored(c, i)) values[i] = std::nan("");
+      InFile const in_file{channel, unit_in_file(data, column)};
+      std::string const subject = fmt::format("{}, column `{}` of {},", channel.name, column.column, experiment.name);
+      auto const clipped = has_own_end(model, channel) ? std::nullopt : clipped_samples(values);
+      auto const run = frozen_run(values);
+      if (clipped)  // first: a long part at an end of the range is both
+        findings.push_back(
+            {FindingCode::sensor_stuck,
+             Severity::warning,
+             {channel.name, experiment.name},
+             fmt::format("{} stays at its {} value, {}, in {} samples, three and more in a row: clipped?", subject,
+                         clipped->largest ? "largest" : "smallest", in_file.text(clipped->value), clipped->places.size()),
+             fmt::format("if the range of the sensor ended there, {} in the data block: these samples are then not scored",
+                         missing_with(block.rules, in_file.value(clipped->value)))});
+      else if (run && !has_own_end(model, channel))
+        findings.push_back(
+            {FindingCode::sensor_stuck,
+             Severity::warning,
+             {channel.name, experiment.name},
+             fmt::format("{} is {} in all {} samples of rows {} to {}, but changes from sample to sample elsewhere: "
+                         "was the sensor frozen?",
+                         subject, in_file.text(run->value), run->samples, experiment.first_row + static_cast<int>(run->first),
+                         experiment.first_row + static_cast<int>(run->last)),
+             ranges_without(*run, data, block)});
+    }
+  return findings;
+}
+
+}  // namespace sysid

@@ -1,0 +1,79 @@
+// A time in years beside rates per second, and models that are stiff or slow, which are something else.
+#include "app/preflight/time_scales.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <regex>
+
+#include "app/checking.hpp"
+#include "app/running.hpp"
+#include "core/numeric/elementary.hpp"
+
+using namespace sysid;
+
+namespace {
+
+std::string const population =
+    "model grow {\n state N [-]\n parameter N0 [-] ~ log_uniform(0.1, 100)\n initial N = N0\n"
+    " parameter r [1/s] ~ log_uniform(0.01, 10)\n parameter K [-] ~ log_uniform(1, 1000)\n"
+    " N' = r*N*(1 - N/K)\n observe count ~ log_normal(N, sd = 0.05)\n}\n"
+    "data rec { file \"record.csv\"; time year [year]; measure count = N }\n"
+    "post = fit grow to rec with map, seed = 1\n";
+
+CheckResult check_population(std::string const& text) {
+  std::string table = "year,N\n";
+  for (int row = 0; row < 40; ++row) table += fmt::format("{},{:.6g}\n", 0.5 * row, 80 / (1 + 15 * elementary::exp(-0.5 * row)));
+  TemporaryFolder folder;
+  write_file(folder.path() / "record.csv", table);
+  return checked(folder.path() / "m.sysid", text);
+}
+
+Finding const* apart(CheckResult const& result) {
+  for (Finding const& each : preflight(result, "post").findings)
+    if (each.code == FindingCode::time_scales_apart) return &each;
+  return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("rates per second beside a time in years are named, and neither stiffness nor an input is") {
+  CheckResult const result = check_population(population);
+  Finding const* const found = apart(result);
+  REQUIRE(found != nullptr);
+  CHECK(found->message.starts_with("rec lasts 19.5 year, which is 6.2e+08 s, but at every prior draw even the slowest motion"));
+  CHECK(messages(result, "stiff_prior").empty());
+  for (Finding const& each : preflight(result, "post").findings) CHECK(each.help.find("input") == std::string::npos);
+
+  std::smatch line;
+  REQUIRE(std::regex_search(found->help, line, std::regex("`(parameter r [^`]*)`")));
+  CheckResult const cured = check_population(with(population, "parameter r [1/s]", line[1].str()));
+  CHECK(apart(cured) == nullptr);
+  CHECK(messages(cured, "stiff_prior").empty());
+  CHECK(messages(cured, "prior_fails").empty());
+}
+
+TEST_CASE("the same time read in seconds is the other cure") {
+  CHECK(apart(check_population(with(population, "year [year]", "year [s]"))) == nullptr);
+}
+
+TEST_CASE("a model with one fast motion and one as slow as the record is stiff, not in another unit") {
+  std::string const stiff =
+      "model fastslow {\n state a [-], b [-]\n initial a = 0, b = 1\n parameter eps [s] ~ log_uniform(1e-6, 1e-5)\n"
+      " parameter g [1/s] ~ log_uniform(0.05, 5)\n eps*a' = b - a - a^3\n b' = -g*b\n"
+      " observe count ~ normal(a, sd = 0.05)\n}\ndata rec { file \"record.csv\"; time year [s]; measure count = N }\n"
+      "post = fit fastslow to rec with map, seed = 1\n";
+  CheckResult const result = check_population(stiff);
+  CHECK(apart(result) == nullptr);
+  CHECK_FALSE(messages(result, "stiff_prior").empty());
+}
+
+TEST_CASE("a run names the units where it finds no start") {
+  CaseRun const run(population, {{"record.csv", [] {
+                                    std::string table = "year,N\n";
+                                    for (int row = 0; row < 40; ++row) table += fmt::format("{},{}\n", 0.5 * row, 5 + 2 * row);
+                                    return table;
+                                  }()}});
+  CHECK((run.result.notices + run.result.messages).find("units of the rates are wrong") != std::string::npos);
+  CHECK(run.result.messages.find("stiff") == std::string::npos);
+}

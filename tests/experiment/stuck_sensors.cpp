@@ -1,0 +1,120 @@
+// Sensors that froze or were clipped, as `check` tells of them, and what resembles them.
+#include "experiment/stuck_sensors.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <regex>
+
+#include "app/checking.hpp"
+#include "app/running.hpp"
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/random.hpp"
+
+using namespace sysid;
+
+namespace {
+
+std::string const stuck_text =
+    "model m {\n input u [N]\n state y [m]\n initial y = 0\n parameter c [1/s] ~ log_uniform(0.1, 10)\n"
+    " parameter b [m/(N s)] ~ log_uniform(0.01, 10)\n y' = b*u - c*y\n observe z [m] ~ normal(y, sd = 0.001 [m])\n}\n"
+    "data record { file \"record.csv\"; time t [s]; input u = force [N] hold linear; measure z = level [mm] }\n"
+    "posterior = fit m to record with map, seed = 1\n";
+
+// level(row, noise) from row 0, noise of sd 1.
+CheckResult check_level(std::function<double(int, double)> const& level, std::string const& text = stuck_text) {
+  Stream stream({7, Purpose::test, 0, 0});
+  std::string table = "t,force,level\n";
+  for (int row = 0; row < 300; ++row)
+    table += fmt::format("{:.6g},{:.6g},{:.8g}\n", 0.1 * row, elementary::sin(0.05 * row), level(row, stream.normal()));
+  TemporaryFolder folder;
+  write_file(folder.path() / "record.csv", table);
+  return checked(folder.path() / "m.sysid", text);
+}
+
+double wave(int row) { return 3 * elementary::sin(0.05 * row - 0.4); }
+double noisy(int row, double noise) { return wave(row) + 0.05 * noise; }
+
+std::string stuck_help(CheckResult const& result) {
+  for (Finding const& each : task(result, "posterior").findings)
+    if (each.code == FindingCode::sensor_stuck) return each.help;
+  return {};
+}
+
+std::vector<std::string> stuck(std::function<double(int, double)> const& level) {
+  return messages(check_level(level), "sensor_stuck");
+}
+
+}  // namespace
+
+TEST_CASE("a sensor that froze for half of the record is named by its rows, and the ranges of the help leave them out") {
+  auto const frozen = [](int row, double noise) { return row < 150 ? noisy(row, noise) : 1.25; };
+  CheckResult const result = check_level(frozen);
+  CHECK(messages(result, "sensor_stuck") ==
+        std::vector<std::string>{
+            "z, column `level` of record, is 1.25 mm in all 150 samples of rows 151 to 300, but changes from sample "
+            "to sample elsewhere: was the sensor frozen?"});
+  std::smatch lines;
+  std::string const help = stuck_help(result);
+  REQUIRE(std::regex_search(help, lines, std::regex("`(split [^`]*)` in `record`, and fit to `([^`]*)`")));
+  std::string text = with(stuck_text, "[mm] }", "[mm]; " + lines[1].str() + " }");
+  CHECK(messages(check_level(frozen, with(text, "to record", "to " + lines[2].str())), "sensor_stuck").empty());
+}
+
+TEST_CASE("a part in the middle leaves a range on both sides") {
+  auto const frozen = [](int row, double noise) { return row < 100 || row >= 160 ? noisy(row, noise) : 1.25; };
+  std::string const help = stuck_help(check_level(frozen));
+  std::smatch lines;
+  REQUIRE(std::regex_search(help, lines, std::regex("`(split [^`]*)` in `record`, and fit to `([^`]*)`")));
+  CHECK(lines[1] == "split part_1 = rows 1..101, part_2 = rows 161..300");
+  std::string text = with(stuck_text, "[mm] }", "[mm]; " + lines[1].str() + " }");
+  CHECK(messages(check_level(frozen, with(text, "to record", "to " + lines[2].str())), "sensor_stuck").empty());
+}
+
+TEST_CASE("a sensor whose range ends below the signal is named, and its marks are read as missing") {
+  for (double const sign : {1.0, -1.0}) {
+    auto const clipped = [sign](int row, double noise) { return sign * std::min(noisy(row, noise), 2.1); };
+    CheckResult const result = check_level(clipped);
+    auto const found = messages(result, "sensor_stuck");
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].find(sign > 0 ? "largest value, 2.1 mm" : "smallest value, -2.1 mm") != std::string::npos);
+    std::smatch line;
+    std::string const help = stuck_help(result);
+    REQUIRE(std::regex_search(help, line, std::regex("`(read missing = [^`]*)`")));
+    CHECK(messages(check_level(clipped, with(stuck_text, "time t [s]", line[1].str() + "; time t [s]")), "sensor_stuck").empty());
+  }
+}
+
+TEST_CASE("what repeats its samples for a reason is no stuck sensor") {
+  CHECK(stuck(noisy).empty());
+  // In coarse steps: slow, rough, and both while it rests.
+  CHECK(stuck([](int row, double) { return std::round(4 * wave(row)) / 4; }).empty());
+  CHECK(stuck([](int row, double noise) { return std::round(5 * noisy(row, noise)) / 5; }).empty());
+  CHECK(stuck([](int row, double) { return row % 100 < 50 ? 0.0 : 1.0; }).empty());                     // a switch
+  CHECK(stuck([](int row, double) { return row < 150 ? 0.0 : 2.0; }).empty());                          // a step
+  CHECK(stuck([](int row, double noise) { return row < 120 ? 1.0 : 1 + noisy(row, noise); }).empty());  // at rest, then moved
+  CHECK(stuck([](int row, double noise) { return std::max(0.0, noisy(row, noise)); }).empty());         // never below 0
+  // A decay that ends below the last digit.
+  CHECK(stuck([](int row, double noise) {
+          return std::round(1000 * elementary::exp(-0.08 * row) * (elementary::cos(2.1 * row) + 0.1 * noise)) / 1000;
+        }).empty());
+  // Without noise, at the end of its way.
+  CHECK(stuck([](int row, double) { return std::min(0.01 * row, 1.5); }).empty());
+}
+
+TEST_CASE("a model that says where its channel ends is not asked about it") {
+  auto const clipped = [](int row, double noise) { return std::min(noisy(row, noise), 2.1); };
+  CHECK(messages(check_level(clipped), "sensor_stuck").size() == 1);
+  CHECK(messages(check_level(clipped, with(stuck_text, "normal(y,", "normal(min(y, 2.1 [mm]),")), "sensor_stuck").empty());
+}
+
+TEST_CASE("a frozen part of counts is left alone") {
+  std::string const counts = with(
+      with(stuck_text, "observe z [m] ~ normal(y, sd = 0.001 [m])", "observe z ~ poisson(exp(y*1 [1/m]))"), "level [mm]", "level");
+  CHECK(messages(check_level([](int row, double noise) { return row < 150 ? std::floor(20 + 3 * std::fabs(noise) + row % 9) : 4; },
+                             counts),
+                 "sensor_stuck")
+            .empty());
+}
