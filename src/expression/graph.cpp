@@ -17,6 +17,8 @@
 namespace sysid {
 namespace {
 
+constexpr NodeId free_place = std::numeric_limits<NodeId>::max();
+
 std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
   hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
   return hash ^ (hash >> 29);
@@ -52,14 +54,24 @@ NodeId Graph::intern(Node node) {
     return constant(
         apply(node, nodes_[node.a].value, operands > 1 ? nodes_[node.b].value : 0, operands > 2 ? nodes_[node.c].value : 0));
 
-  std::vector<NodeId>& bucket = index_[hash_of(node)];
-  for (NodeId const id : bucket)
-    if (same(nodes_[id], node)) return id;
+  if (2 * nodes_.size() >= index_.size()) grow_index();
+  std::size_t place = hash_of(node) & (index_.size() - 1);
+  for (; index_[place] != free_place; place = (place + 1) & (index_.size() - 1))
+    if (same(nodes_[index_[place]], node)) return index_[place];
   NodeId const id = static_cast<NodeId>(nodes_.size());
   nodes_.push_back(node);
   spans_.push_back({});
-  bucket.push_back(id);
+  index_[place] = id;
   return id;
+}
+
+void Graph::grow_index() {
+  index_.assign(std::bit_ceil(std::max<std::size_t>(64, 4 * nodes_.size())), free_place);
+  for (NodeId id = 0; id < nodes_.size(); ++id) {
+    std::size_t place = hash_of(nodes_[id]) & (index_.size() - 1);
+    while (index_[place] != free_place) place = (place + 1) & (index_.size() - 1);
+    index_[place] = id;
+  }
 }
 
 NodeId Graph::constant(double value) {

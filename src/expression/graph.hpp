@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "core/text/source.hpp"
@@ -137,7 +136,9 @@ class Graph {
   NodeId intern(Node node);
   std::vector<Node> nodes_;
   std::vector<Span> spans_;  // begin == end: none
-  std::unordered_map<std::uint64_t, std::vector<NodeId>> index_;
+  void grow_index();
+  // Nodes by their hash, with free places between, so that a copy of a graph is three blocks of memory. A power of two of them.
+  std::vector<NodeId> index_;
 };
 
 /// 0 to 3.
