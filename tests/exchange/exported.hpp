@@ -1,5 +1,11 @@
 // Results of a text, exported as the command line would, and what other programs say of them.
 #pragma once
+#include <sys/stat.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
 #include "app/running.hpp"
 #include "exchange/export_netcdf.hpp"
 #include "said_by.hpp"
@@ -48,11 +54,50 @@ class ExportedRun {
 /// Debian's own, which has the packages that tests/run installs; another one of the PATH need not.
 inline std::string const python = "/usr/bin/python3";
 
-// Asked once, as that takes a second of a processor.
-inline bool has_xarray() {
-  static bool const found = said_by(python + " -c 'import xarray, netCDF4'").exit == 0;
-  return found;
+/// A Python with xarray, which is imported once for all that it is asked: that takes more than a second of a processor.
+class PreparedPython {
+ public:
+  PreparedPython() {
+    if (mkfifo(answers().c_str(), 0600) != 0) throw std::runtime_error("cannot make a pipe for the answers of Python");
+    std::string const script = "'" + (scripts / "prepared.py").string() + "' '" + answers().string() + "'";
+    // Where it cannot begin, the shell answers in its place.
+    process_ = popen((python + " " + script + " 2>/dev/null || echo 1 > '" + answers().string() + "'").c_str(), "w");
+    if (process_ == nullptr) throw std::runtime_error("cannot start " + python);
+    began_ = answer().exit == 0;
+  }
+  ~PreparedPython() { pclose(process_); }
+  PreparedPython(PreparedPython const&) = delete;
+  PreparedPython& operator=(PreparedPython const&) = delete;
+  bool began() const { return began_; }
+  /// As `python ARGUMENTS` of a shell.
+  Said ask(std::string const& arguments) {
+    std::fputs((nlohmann::json(arguments).dump() + "\n").c_str(), process_);
+    std::fflush(process_);
+    return answer();
+  }
+
+ private:
+  std::filesystem::path answers() const { return folder_.path() / "answers"; }
+  Said answer() const {
+    std::ifstream in(answers());  // waits until somebody writes
+    Said said;
+    in >> said.exit;
+    in.get();
+    said.text.assign(std::istreambuf_iterator<char>(in), {});
+    return said;
+  }
+  TemporaryFolder folder_;
+  FILE* process_ = nullptr;
+  bool began_ = false;
+};
+
+inline PreparedPython& prepared_python() {
+  static PreparedPython python;
+  return python;
 }
+inline bool has_xarray() { return prepared_python().began(); }
+inline Said said_by_python(std::string const& arguments) { return prepared_python().ask(arguments); }
+
 inline bool has_posterior() {
   static bool const found = said_by("Rscript --vanilla -e 'library(posterior)'").exit == 0;
   return found;

@@ -14,8 +14,8 @@ namespace {
 
 /// Has xarray compare FILE.nc with its folder; further arguments as the script takes them.
 void compare(std::filesystem::path const& file, std::string const& arguments) {
-  Said const said = said_by(python + " '" + (scripts / "read_netcdf.py").string() + "' '" + file.string() + "' '" +
-                            file.parent_path().string() + "' " + arguments);
+  Said const said = said_by_python("'" + (scripts / "read_netcdf.py").string() + "' '" + file.string() + "' '" +
+                                   file.parent_path().string() + "' " + arguments);
   CHECK_MESSAGE(said.exit == 0, said.text);
   MESSAGE(said.text);
 }
@@ -92,12 +92,12 @@ TEST_CASE(
   if (skipped()) return;
   compare(run.results() / "best/best.nc", "");
   Said const said =
-      said_by(python + " -c \"import xarray as x; f = '" + (run.results() / "posterior/posterior.nc").string() +
-              "'\nd = x.open_dataset(f, group='posterior')\n"
-              "print(d.gain.dims, d.gain_dim_0.values, d.days.dtype, d.days.units, d['chain_'].attrs['long_name'])\n"
-              "l = x.open_dataset(f, group='log_likelihood')\nprint(l.left.shape, l.right.shape, l.draw.values[:2])\n"
-              "p = x.open_dataset(f, group='predictions')\nprint(sorted(p.data_vars))\nprint(p['right[again]'].shape)\n"
-              "print(x.open_dataset(f, group='predictions_short')['right[short]'].shape)\"");
+      said_by_python("-c \"import xarray as x; f = '" + (run.results() / "posterior/posterior.nc").string() +
+                     "'\nd = x.open_dataset(f, group='posterior')\n"
+                     "print(d.gain.dims, d.gain_dim_0.values, d.days.dtype, d.days.units, d['chain_'].attrs['long_name'])\n"
+                     "l = x.open_dataset(f, group='log_likelihood')\nprint(l.left.shape, l.right.shape, l.draw.values[:2])\n"
+                     "p = x.open_dataset(f, group='predictions')\nprint(sorted(p.data_vars))\nprint(p['right[again]'].shape)\n"
+                     "print(x.open_dataset(f, group='predictions_short')['right[short]'].shape)\"");
   CHECK(said.text ==
         "('chain', 'draw', 'gain_dim_0') [1 2] float64 day chain\n(3, 20, 27) (3, 20, 30) [ 7 22]\n"
         "['left[again]', 'left[forecast]', 'left_response[again]', 'left_response[forecast]', 'right[again]', 'right[forecast]', "
@@ -122,25 +122,25 @@ TEST_CASE("each living candidate of a selection has a file with its particles, w
                   "predictions_constant_data") != std::string::npos);
   REQUIRE(std::filesystem::exists(file));
   if (skipped()) return;
-  Said const read =
-      said_by(python + " -c \"import xarray as x, json, csv\nf = '" + file.string() +
-              "'\nw = x.open_dataset(f, group='weighted_posterior'); s = x.open_dataset(f, group='weighted_sample_stats')\n"
-              "p = x.open_dataset(f, group='posterior'); j = json.load(open('" +
-              (run.results() / "selection/summary.json").string() +
-              "'))['models']['bouc_wen(n = 2)']['parameters']\n"
-              "c = list(csv.DictReader(l for l in open('" +
-              (run.results() / "selection/particles_bouc_wen(n=2).csv").string() +
-              "') if l[0] != '#'))\n"
-              "assert [float(r['weight__']) for r in c] == list(s.weight.values[0])\n"
-              "assert [float(r['distance__']) for r in c] == list(s.distance.values[0])\n"
-              "for k in j:\n  assert [float(r[k]) for r in c] == list(w[k].values[0]), k\n"
-              "  mean = float((w[k] * s.weight).sum() / s.weight.sum()); assert abs(mean - j[k]['mean']) < 1e-12 * abs(mean), k\n"
-              "  assert set(p[k].values[0]) <= set(w[k].values[0]), k\nprint(len(j), p.sizes['draw'] == len(c), "
-              "abs(float(s.weight.sum()) - 1) < 1e-12)\"");
+  Said const read = said_by_python(
+      "-c \"import xarray as x, json, csv\nf = '" + file.string() +
+      "'\nw = x.open_dataset(f, group='weighted_posterior'); s = x.open_dataset(f, group='weighted_sample_stats')\n"
+      "p = x.open_dataset(f, group='posterior'); j = json.load(open('" +
+      (run.results() / "selection/summary.json").string() +
+      "'))['models']['bouc_wen(n = 2)']['parameters']\n"
+      "c = list(csv.DictReader(l for l in open('" +
+      (run.results() / "selection/particles_bouc_wen(n=2).csv").string() +
+      "') if l[0] != '#'))\n"
+      "assert [float(r['weight__']) for r in c] == list(s.weight.values[0])\n"
+      "assert [float(r['distance__']) for r in c] == list(s.distance.values[0])\n"
+      "for k in j:\n  assert [float(r[k]) for r in c] == list(w[k].values[0]), k\n"
+      "  mean = float((w[k] * s.weight).sum() / s.weight.sum()); assert abs(mean - j[k]['mean']) < 1e-12 * abs(mean), k\n"
+      "  assert set(p[k].values[0]) <= set(w[k].values[0]), k\nprint(len(j), p.sizes['draw'] == len(c), "
+      "abs(float(s.weight.sum()) - 1) < 1e-12)\"");
   CHECK(read.text == "5 True True\n");
   // The trajectories of all candidates are those of the bands.
-  Said const predicted = said_by(
-      python + " -c \"import xarray as x, netCDF4, numpy as n, csv, glob\nr = '" + run.results().string() +
+  Said const predicted = said_by_python(
+      "-c \"import xarray as x, netCDF4, numpy as n, csv, glob\nr = '" + run.results().string() +
       "'\na = [x.open_dataset(f, group='predictions').displacement_response.values[0] for f in glob.glob(r + '/selection/*.nc') "
       "if 'predictions' in netCDF4.Dataset(f).groups]\n"
       "c = list(csv.DictReader(l for l in open(r + '/forecast/predict.csv') if l[0] != '#'))\n"
@@ -166,12 +166,12 @@ TEST_CASE("constants of data blocks stand beside the inputs, with their units") 
                         with(text, "samples = 20000, burn_in = 5000, thin = 10", "samples = 200, burn_in = 100, thin = 1"));
   run.export_all(10);
   if (skipped()) return;
-  Said const said = said_by(python +
-                            " -c \"import xarray as x\nfor g in 'constant_data', 'predictions_constant_data':\n"
-                            "  d = x.open_dataset('" +
-                            (run.results() / "together/together.nc").string() +
-                            "', group=g)\n"
-                            "  print(sorted((n, float(v), v.units) for n, v in d.data_vars.items() if v.ndim == 0))\"");
+  Said const said = said_by_python(
+      "-c \"import xarray as x\nfor g in 'constant_data', 'predictions_constant_data':\n"
+      "  d = x.open_dataset('" +
+      (run.results() / "together/together.nc").string() +
+      "', group=g)\n"
+      "  print(sorted((n, float(v), v.units) for n, v in d.data_vars.items() if v.ndim == 0))\"");
   CHECK(said.text == "[('added[loaded.train]', 0.5, 'kg')]\n[('added[loaded.test]', 0.5, 'kg')]\n");
 }
 

@@ -550,7 +550,7 @@ TEST_CASE("a prior that explicit steps cannot follow is called stiff, and the so
 
 TEST_CASE("a solver for implicit equations is noted where they are explicit") {
   auto const with_solver = [](std::string const& solver) {
-    std::string const text = with(shipped("duffing/duffing.sysid"), "rows 1..500, test", "rows 1..60, test");
+    std::string const text = with(shipped("duffing/duffing.sysid"), "rows 1..500, test", "rows 1..25, test");
     return checked(models / "duffing/solver.sysid", with(text, "chains = 4), seed", "chains = 4), solver = " + solver + ", seed"));
   };
   CHECK(messages(with_solver("ida"), "slower_solver").size() == 1);

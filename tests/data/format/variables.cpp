@@ -148,9 +148,11 @@ void damage(std::string const& path, int trials) {
     std::ofstream(file.path, std::ios::binary) << bytes;
     try {
       auto const record = open_record(file.path, {});
-      for (std::string const& column : record->columns()) {
+      // Each column is read in a process of its own, which takes most of the time: every third of a file, the others of later ones.
+      std::vector<std::string> const columns = record->columns();
+      for (std::size_t k = static_cast<std::size_t>(trial % 3); k < columns.size(); k += 3) {
         try {
-          (void)record->numbers(column);
+          (void)record->numbers(columns[k]);
         } catch (UserError const&) {
           ++refused;
         }
