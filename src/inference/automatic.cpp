@@ -34,7 +34,8 @@ double worth_of_normals(Target const& target, std::vector<Mode> const& modes, st
 }  // namespace
 
 Choice choose(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger) {
-  if (target.is_estimated()) return {"mh", "the likelihood is estimated by particles, and mh samples exactly with estimates"};
+  if (target.is_estimated())
+    return {"mh", "the likelihood is estimated by particles, and mh with unbiased estimates samples the exact posterior"};
   auto const notable = std::count_if(modes.begin(), modes.end(), [](Mode const& each) { return each.share > notable_share; });
   int const count = target.dimension();
   if (notable > 1) {

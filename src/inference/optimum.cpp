@@ -37,7 +37,7 @@ Finding at_bounds(Target const& target, Mode const& best, std::vector<ModeAtBoun
       endless.push_back(fmt::format("`{}` approaches {:.4g}", parameter.name, each.upper ? parameter.upper : parameter.lower));
   }
   std::string const others = bounds.size() < best.declared.size()
-                                 ? fmt::format(", and the other sds are those with {} kept there", quoted(names))
+                                 ? fmt::format(", and the other sds are computed with {} fixed there", quoted(names))
                                  : std::string();
   std::string const sds = fmt::format("{} not meaningful{}", names.size() == 1 ? "its sd is" : "their sds are", others);
   std::string message = fmt::format("the optimum lies at a bound of the prior: {}; {}", fmt::join(values, ", "), sds);
@@ -123,7 +123,7 @@ std::optional<Finding> check_widths(Target const& target, std::vector<Mode> cons
   auto const stop = [&] { return context.stop_requested(); };
   std::vector<Mode> const sampled = sampled_modes(target, ObjectiveKind::declared_posterior, modes, context.seed, extra, stop);
   if (sampled.size() != 1) return std::nullopt;
-  WeightedDraws const draws = weighted_draws(target, sampled, context.seed, extra, stop, true);
+  WeightedDraws const draws = weighted_draws(target, sampled, context.seed, extra, stop, &modes.front());
   if (draws.draws == 0 || draws.sd.empty()) return std::nullopt;
   std::vector<Misfit> const found = misfits(modes.front(), draws, at_bound);
   bool const some = !found.empty() && (draws.confirmed || draws.walked || found.front().wrong());

@@ -14,9 +14,10 @@
 namespace sysid::marginal {
 namespace {
 
-constexpr int most_walks = 5, draws_per_walk = 400;
-constexpr double worst_k = 0.7, least_effective = 100;  // effective draws
-constexpr double as_wide = 0.25;                // of the logarithm of a ratio of sds; of so many walkers it scatters by a tenth
+constexpr int most_walks = 8, draws_per_walk = 1200;
+constexpr double worst_k = 0.7, least_effective = 400;  // effective draws
+// Of the logarithm of a ratio of sds: of so many walkers it scatters by a tenth, of the draws of two rounds by less.
+constexpr double as_wide = 0.25, as_before = 0.1;
 constexpr std::uint64_t steps_of_round = 1000;  // of the key; more than a round walks
 
 LaneArray appended(LaneArray const& left, LaneArray const& right) {
@@ -43,18 +44,37 @@ std::vector<double> log_mixed(std::vector<Mixture> const& mixtures, ConstLanes t
   return mixed;
 }
 
-/// Of one coordinate, with weights that do not sum to anything; empty: all alike.
-double sd_of(std::span<double const> values, std::vector<double> const& weights) {
-  double sum = 0, mean = 0, square = 0;
+/// Of each row, with weights that do not sum to anything; empty: all alike.
+std::vector<double> sds_of(LaneArray const& values, std::vector<double> const& weights) {
   auto const weight = [&](std::size_t k) { return weights.empty() ? 1.0 : weights[k]; };
-  for (std::size_t k = 0; k < values.size(); ++k) sum += weight(k), mean += weight(k) * values[k];
-  mean /= sum;
-  for (std::size_t k = 0; k < values.size(); ++k) square += weight(k) * (values[k] - mean) * (values[k] - mean);
-  return std::sqrt(square / sum);
+  std::vector<double> sds;
+  for (int i = 0; i < values.rows(); ++i) {
+    auto const row = values.row(i);
+    double sum = 0, mean = 0, square = 0;
+    for (std::size_t k = 0; k < row.size(); ++k) sum += weight(k), mean += weight(k) * row[k];
+    mean /= sum;
+    for (std::size_t k = 0; k < row.size(); ++k) square += weight(k) * (row[k] - mean) * (row[k] - mean);
+    sds.push_back(std::sqrt(square / sum));
+  }
+  return sds;
 }
 
-/// Means of all coordinates with such weights are to be believed.
-void judge(WalkedDraws& draws) {
+bool agree(std::vector<double> const& one, std::vector<double> const& other, double apart) {
+  if (one.size() != other.size()) return false;  // there is no round before the first
+  for (std::size_t i = 0; i < one.size(); ++i)
+    if (!(std::fabs(elementary::log(one[i] / other[i])) < apart)) return false;
+  return true;
+}
+
+LaneArray declared(Target const& target, LaneArray const& theta) {
+  LaneArray values(theta.rows(), theta.width());
+  target.constrain(theta, values);
+  return values;
+}
+
+/// Whether means with such weights are to be believed. Widths are compared in declared values: a tail that is thin in a logarithm
+/// may hold most of a variance. `before`: the widths of the round before; changed to those of this one.
+void judge(Target const& target, WalkedDraws& draws, std::vector<double>& before) {
   double const largest = *std::max_element(draws.log_weights.begin(), draws.log_weights.end());
   draws.confirmed = false;
   draws.effective = 0;
@@ -68,9 +88,10 @@ void judge(WalkedDraws& draws) {
   }
   draws.effective = sum * sum / square;
   double const k = smooth_weights(draws.log_weights, pareto_tail_length(draws.theta.width(), 1)).k;
-  draws.confirmed = draws.effective >= least_effective && k < worst_k;
-  for (int i = 0; i < draws.walked.rows() && draws.confirmed; ++i)
-    draws.confirmed = std::fabs(elementary::log(sd_of(draws.theta.row(i), weights) / sd_of(draws.walked.row(i), {}))) < as_wide;
+  std::vector<double> const sds = sds_of(declared(target, draws.theta), weights);
+  draws.confirmed = draws.effective >= least_effective && k < worst_k && agree(sds, before, as_before) &&
+                    agree(sds, sds_of(declared(target, draws.walked), {}), as_wide);
+  before = sds;
 }
 
 LaneArray last_of(LaneArray const& states, int count) {
@@ -85,11 +106,12 @@ LaneArray last_of(LaneArray const& states, int count) {
 WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uint64_t most, StreamKey key, Ledger& ledger,
                          std::function<bool()> const& stop) {
   auto const stopped = [&] { return stop && stop(); };
-  int const steps = 24 + 4 * objective.dimension();
+  int const steps = 60 + 10 * objective.dimension();  // a few times what such walkers take to forget where they were
   std::uint64_t const cost = static_cast<std::uint64_t>(steps + 1) * static_cast<std::uint64_t>(walkers.width()) + draws_per_walk;
   WalkedDraws found;
   std::vector<double> log_density;
   std::vector<Mixture> mixtures;
+  std::vector<double> sds;
   for (int round = 0; round < most_walks && !found.confirmed; ++round) {
     if (static_cast<std::uint64_t>(round + 1) * cost > most) break;
     StreamKey const here = key.with_step(key.step + static_cast<std::uint64_t>(round) * steps_of_round);
@@ -109,7 +131,7 @@ WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uin
     for (std::size_t d = 0; d < mixed.size(); ++d)
       found.log_weights[d] = std::isfinite(mixed[d]) ? found.log_weights[d] - mixed[d] : -infinity;
     found.walked = std::move(states);
-    judge(found);
+    judge(objective.target, found, sds);
   }
   return found;
 }

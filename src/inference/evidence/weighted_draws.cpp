@@ -288,7 +288,7 @@ std::vector<Mode> sampled_modes(Target const& target, ObjectiveKind objective_ki
 }
 
 WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
-                             std::function<bool()> const& stop, bool further) {
+                             std::function<bool()> const& stop, Mode const* stated) {
   if (modes.empty() || target.dimension() == 0 || target.dimension() > most_parameters || target.is_expensive()) return {};
   Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, scale_step);
   double heaviest = -infinity;
@@ -310,8 +310,8 @@ WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& mode
     bool const enough = round == 0 ? result.effective > 0.3 * result.draws : result.effective > 4 * pairs / 1.5;
     if (enough) break;
   }
-  bool const in_doubt =
-      further && modes.size() == 1 && modes.front().flat.empty() && !(result.confirmed && as_wide_as(modes.front(), result));
+  bool const in_doubt = stated != nullptr && modes.size() == 1 && modes.front().flat.empty() &&
+                        !(result.confirmed && as_wide_as(modes.front(), result) && as_wide_as(*stated, result));
   if (in_doubt && !target.is_estimated() && !(stop && stop())) walk_on(objective, population, seed, ledger, stop, result);
   return result;
 }

@@ -35,12 +35,13 @@ struct WeightedDraws {
 ///
 /// 300 densities where the posterior is nearly normal, six times as many at most.
 ///
-/// further: where these are not confirmed, or give a width that the only mode does not have, draws of what walkers from there have
-/// reached stand in their place (`walked_draws`); where even those are not confirmed, mean and sd are those of the walkers. That
-/// takes 4,000 to 25,000 densities more: above some thousand rows less or nothing of it is done.
+/// stated: whose sds are in question; null: nobody's. Where the draws are not confirmed, or give a width that neither this nor the
+/// only mode has, draws of what walkers from there have reached stand in their place (`walked_draws`); where even those are not
+/// confirmed, mean and sd are those of the walkers. That takes 20,000 to 80,000 densities more: above some thousand rows fewer, or
+/// nothing of it is done.
 ///
 /// Nothing (no draws) above 40 parameters, without modes, and of a target with a gradient, whose densities are dear.
 WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
-                             std::function<bool()> const& stop, bool further = false);
+                             std::function<bool()> const& stop, Mode const* stated = nullptr);
 
 }  // namespace sysid

@@ -26,7 +26,7 @@ constexpr SettingRow rows[] = {
     {"thin", SettingKind::integer, "1", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "4", 1, 65536, "", "number of independent chains"},
     {"acceptance", SettingKind::real, "0.8", 0.1, 0.999, "",
-     "mean acceptance that the step is tuned to; higher: shorter steps, which follow sharper bends"},
+     "mean acceptance probability that the step is tuned to; higher: shorter steps, for densities of high curvature"},
     {"depth", SettingKind::integer, "10", 1, 15, "", "maximum number of doublings of a trajectory"},
     {"metric", SettingKind::word, "automatic", 0, 0, "automatic dense diagonal",
      "dense: the covariance of the posterior; diagonal: its variances alone; automatic: dense up to 100 parameters"},

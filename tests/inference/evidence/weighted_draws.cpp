@@ -193,7 +193,7 @@ TEST_CASE("a tail that weighted draws miss is found by walkers, and map fails") 
     CHECK(widths_finding(fitted)->severity == Severity::error);
     CHECK(widths_finding(fitted)->names.size() == 2);
     std::vector<Mode> const modes = search(target, ObjectiveKind::posterior, other.context).modes;
-    WeightedDraws const draws = weighted_draws(target, modes, 1, other.ledger, {}, true);
+    WeightedDraws const draws = weighted_draws(target, modes, 1, other.ledger, {}, &modes.front());
     CHECK(draws.walked);
     CHECK(draws.confirmed);
     for (std::size_t p = 0; p < 2; ++p) CHECK(draws.sd[p] == doctest::Approx(truth[p]).epsilon(0.25));
