@@ -15,11 +15,11 @@ Diagnostic candidate_twice(Span second, Span first, std::string const& model) {
 
 Diagnostic probabilities(ast::Name const& set, double sum, int open, int models) {
   if (open > 0)
-    return error(
-        "E6502", set.span,
-        fmt::format("the probabilities given here sum to {:.10g}: no probability remains for {}", sum,
-                    open == 1 ? std::string("the last model") : fmt::format("the {} models without a stated probability", open)),
-        "a probability written on a line applies to each model of that line; models without one share the rest");
+    return error("E6502", set.span,
+                 fmt::format("the probabilities given here sum to {:.10g}: no probability remains for {}", sum,
+                             open == 1 ? std::string("the model without a stated probability")
+                                       : fmt::format("the {} models without a stated probability", open)),
+                 "a probability written on a line applies to each model of that line; models without one share the rest");
   return error("E6502", set.span, fmt::format("the probabilities of these {} models sum to {:.10g}, not to 1", models, sum),
                "a probability written on a line applies to each model of that line; models without one share the rest");
 }
@@ -62,12 +62,11 @@ Diagnostic no_candidates(ast::Name const& set) {
 
 Diagnostic candidate_without_channel(Span candidate, std::string const& model, Span channel, std::string const& other,
                                      std::string const& name) {
-  return about(
-      {other, name, model},
-      conflict("E6507", candidate, "does not observe it", channel, fmt::format("of {}", other),
-               fmt::format("`{}` observes the measured channel `{}`, but `{}` does not: their distances cannot be compared", other,
-                           name, model),
-               fmt::format("add `observe {} ~ ...` to it, or remove the column from the data block", name)));
+  return about({other, name, model},
+               conflict("E6507", candidate, "does not observe it", channel, fmt::format("of {}", other),
+                        fmt::format("`{}` observes the measured channel `{}`, but `{}` does not: they cannot be compared", other,
+                                    name, model),
+                        fmt::format("add `observe {} ~ ...` to it, or remove the column from the data block", name)));
 }
 
 Diagnostic channel_of_two_units(Span one, std::string const& model, Unit const& unit, Span other, std::string const& other_model,

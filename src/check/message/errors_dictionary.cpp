@@ -155,7 +155,7 @@ Diagnostic target_of_discrete_time(Span target, std::string const& text, std::st
 
 Diagnostic present_in_term(Span term, std::string const& text, std::string const& state) {
   return about({text, state},
-               error("E6614", term, fmt::format("`{}` reads `{}` at the present sample, which is the target", text, state),
+               error("E6614", term, fmt::format("term `{}` uses the present sample of `{}`, which is the target", text, state),
                      fmt::format("use the samples before it: `lag({0}, 1)`, `lags({0}, 1..2)`", state)));
 }
 

@@ -64,8 +64,8 @@ Diagnostic unit_of_intensity(Span argument, std::string const& name, std::string
 
 Diagnostic law_reads(Span law, std::string const& name, std::string const& what) {
   return about({name}, error("E3303", law, fmt::format("the law of `{}` depends on {}", name, what),
-                             "its arguments are expressions of constants and parameters; put a factor that changes into the "
-                             "equation, as in `abs(y')*w`"));
+                             "its arguments are expressions of constants and parameters; if the size of the disturbance changes "
+                             "with time, multiply it by a factor in the equation, as in `abs(y')*w`"));
 }
 
 Diagnostic law_never_positive(Span declaration, std::string const& name, std::string const& argument, Names const& parameters) {
@@ -91,8 +91,9 @@ Diagnostic rate_of_disturbance(ast::Reference const& reference) {
 
 Diagnostic white_noise_observed(Span reader, Subject const& what, Span declaration, std::string const& disturbance) {
   Diagnostic diagnostic = error("E3306", reader, fmt::format("{} depends on white noise, which has no finite variance", what.words),
-                                fmt::format("give `{}` a memory, `ornstein_uhlenbeck(sd = s, time = T)`, or use a quantity that it "
-                                            "affects only through a state, such as a velocity in place of an acceleration",
+                                fmt::format("make `{}` correlated in time, `ornstein_uhlenbeck(sd = s, time = T)`, or use a "
+                                            "quantity that it affects only through a state, such as a velocity in place of an "
+                                            "acceleration",
                                             disturbance));
   diagnostic.secondary.push_back({declaration, "white noise"});
   Names names = what.names;
@@ -102,7 +103,7 @@ Diagnostic white_noise_observed(Span reader, Subject const& what, Span declarati
 
 Diagnostic not_linear_in_disturbance(Span declaration, std::string const& disturbance, std::optional<Span> const& part) {
   std::string const help = fmt::format(
-      "white noise may be multiplied by anything but white noise; for other functions give it a memory: `{} ~ "
+      "white noise may be multiplied by anything but white noise; for other functions make it correlated in time: `{} ~ "
       "ornstein_uhlenbeck(sd = "
       "s, "
       "time = T)`",

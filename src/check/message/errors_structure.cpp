@@ -41,7 +41,7 @@ Diagnostic initial_of_highest(ast::Reference const& reference, std::string const
   return about(
       {primed(reference), state},
       error("E3006", reference.span, fmt::format("`{}` follows from the equations and takes no initial value", primed(reference)),
-            fmt::format("`{}` is of order {}: give {}", state, order, quoted(components))));
+            fmt::format("`{}` is of order {}: give the initial values of {}", state, order, quoted(components))));
 }
 
 Diagnostic initial_missing(Span declaration, Names const& components) {

@@ -14,7 +14,7 @@ constexpr TaskOptionRow rows[] = {
     {"start", "start = estimated(rows = 50)", "how a simulation starts: at which row, and in which state", "record rest estimated"},
     {"solver", "solver = cvode(relative = 1e-8)", "integration method of the equations", {}},
     {"substeps", "substeps = 2", "steps of rk4 between two samples; if not given, the fit chooses it", "automatic"},
-    {"prediction", "prediction = free_run", "the past samples from which a discrete-time model predicts",
+    {"prediction", "prediction = free_run", "past samples from which a model in discrete time or with random states predicts",
      "as_written one_step free_run"},
     {"filter", "filter = unscented", "how the likelihood is computed where states are random: disturbances, random initial values",
      "auto kalman extended unscented particle"},

@@ -175,8 +175,7 @@ std::string DeclaredUnits::factor_cure(Wanted const& wanted, bool in_text, std::
     return errors::multiply_by(kind_words(missing, names_in_use_), names);
   if (std::string const names = named(inverse(missing), but); !names.empty())
     return errors::divide_by(kind_words(inverse(missing), names_in_use_), names);
-  if (wanted.of_a_number && in_text)
-    return errors::multiply_by(kind_words(missing, names_in_use_), "`1 [" + wanted.unit + "]`");
+  if (wanted.of_a_number && in_text) return errors::multiply_by(kind_words(missing, names_in_use_), "`1 [" + wanted.unit + "]`");
   if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing, names_in_use_), "");
   if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing), names_in_use_), "");
   return errors::should_be_in(wanted.unit);

@@ -329,14 +329,14 @@ Diagnostic times_are_clock(Cell const& cell, double before, double now, std::vec
           ? fmt::format("add one of these lines to the data block: {}; the last one where they are seconds", quoted(lines, "or"))
           : "save them as seconds: this file has no `read` line";
   return error("E4029", mention,
-               fmt::format("{}: {:.15g} after {:.15g} as a time in seconds looks like a time of day written in digits, {}",
+               fmt::format("{}: {:.15g} after {:.15g} looks like a time of day written in digits, {}, and not like seconds",
                            place(cell), now, before, quoted(digits, "or")),
                help);
 }
 
 Diagnostic times_are_counts(Cell const& cell, Mention mention) {
   return error("E4029", mention,
-               fmt::format("column `{}` of `{}` numbers the rows and has no unit, so it is not read as a time", shown(cell.column),
+               fmt::format("column `{}` of `{}` counts the rows and has no unit, so it is not read as a time", shown(cell.column),
                            cell.file),
                "write `rate` or `step` in place of `time` in the data block; if it counts seconds, write `[s]` after the column");
 }
@@ -415,8 +415,10 @@ Diagnostic gap_in_input(Cell const& first, GapEnd const& end, SimulatedRows cons
   bool const inside = first.row <= rows.last && end.last >= rows.first;
   std::string const why = inside ? fmt::format("rows {}..{} are simulated and need one", rows.first, rows.last)
                           : rows.around > 0
-                              ? fmt::format("its rule between samples reads up to {} rows around rows {}..{}, which are simulated",
-                                            rows.around, rows.first, rows.last)
+                              ? fmt::format(
+                                    "its rule between samples uses up to {} rows before and after rows {}..{}, which are "
+                                    "simulated",
+                                    rows.around, rows.first, rows.last)
                               : fmt::format("rows {}..{} are simulated and read earlier rows, too", rows.first, rows.last);
   std::string const what = count == 1 ? "has no value" : fmt::format("has no values up to row {} ({} rows)", end.last, count);
   std::string help = "fill the gap in the file";

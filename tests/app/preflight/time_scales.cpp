@@ -14,7 +14,7 @@ using namespace sysid;
 
 namespace {
 
-std::string const population =
+std::string const growth =
     "model grow {\n state N [-]\n parameter N0 [-] ~ log_uniform(0.1, 100)\n initial N = N0\n"
     " parameter r [1/s] ~ log_uniform(0.01, 10)\n parameter K [-] ~ log_uniform(1, 1000)\n"
     " N' = r*N*(1 - N/K)\n observe count ~ log_normal(N, sd = 0.05)\n}\n"
@@ -38,7 +38,7 @@ Finding const* apart(CheckResult const& result) {
 }  // namespace
 
 TEST_CASE("rates per second beside a time in years are named, and neither stiffness nor an input is") {
-  CheckResult const result = check_population(population);
+  CheckResult const result = check_population(growth);
   Finding const* const found = apart(result);
   REQUIRE(found != nullptr);
   CHECK(found->message.starts_with("rec lasts 19.5 year, which is 6.2e+08 s, but at every prior draw even the slowest motion"));
@@ -47,14 +47,14 @@ TEST_CASE("rates per second beside a time in years are named, and neither stiffn
 
   std::smatch line;
   REQUIRE(std::regex_search(found->help, line, std::regex("`(parameter r [^`]*)`")));
-  CheckResult const cured = check_population(with(population, "parameter r [1/s]", line[1].str()));
+  CheckResult const cured = check_population(with(growth, "parameter r [1/s]", line[1].str()));
   CHECK(apart(cured) == nullptr);
   CHECK(messages(cured, "stiff_prior").empty());
   CHECK(messages(cured, "prior_fails").empty());
 }
 
 TEST_CASE("the same time read in seconds is the other cure") {
-  CHECK(apart(check_population(with(population, "year [year]", "year [s]"))) == nullptr);
+  CHECK(apart(check_population(with(growth, "year [year]", "year [s]"))) == nullptr);
 }
 
 TEST_CASE("a model with one fast motion and one as slow as the record is stiff, not in another unit") {
@@ -69,11 +69,11 @@ TEST_CASE("a model with one fast motion and one as slow as the record is stiff, 
 }
 
 TEST_CASE("a run names the units where it finds no start") {
-  CaseRun const run(population, {{"record.csv", [] {
-                                    std::string table = "year,N\n";
-                                    for (int row = 0; row < 40; ++row) table += fmt::format("{},{}\n", 0.5 * row, 5 + 2 * row);
-                                    return table;
-                                  }()}});
-  CHECK((run.result.notices + run.result.messages).find("units of the rates are wrong") != std::string::npos);
-  CHECK(run.result.messages.find("stiff") == std::string::npos);
+  CaseRun const run(growth, {{"record.csv", [] {
+                                std::string table = "year,N\n";
+                                for (int row = 0; row < 40; ++row) table += fmt::format("{},{}\n", 0.5 * row, 5 + 2 * row);
+                                return table;
+                              }()}});
+  CHECK((run.result.out + run.result.notices).find("units of the rates are wrong") != std::string::npos);
+  CHECK((run.result.out + run.result.notices).find("stiff") == std::string::npos);
 }
