@@ -28,7 +28,8 @@ constexpr Command commands[] = {
      "sysid data bench.csv\nsysid data messung.mat --plot messung.svg"},
     {"check", files, "check a file, and report what its data can determine, before any sampling", &declare_check,
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
-    {"calibrate", files, "test how often intervals contain the true values, on records from the priors", &declare_calibrate,
+    {"calibrate", files, "test how often intervals contain the true values, on records simulated from the priors",
+     &declare_calibrate,
      "sysid calibrate duffing.sysid\nsysid calibrate duffing.sysid --task posterior --replications 500 --seed 1", true},
     {"crosscheck", files, "fit with two back ends and compare the results", &declare_crosscheck,
      "sysid crosscheck duffing.sysid\nsysid crosscheck duffing.sysid --task posterior --against tempering", true},
@@ -52,7 +53,7 @@ constexpr Command commands[] = {
     {"document", looking_up, "print a module of the standard library as a page", &declare_document, "sysid document hysteresis"},
     {"manual", looking_up, "print the manual page of a command, or write those of all", &declare_manual,
      "sysid manual fit | man -l -\nsysid manual -o ~/.local/share/man/man1"},
-    {"completion", looking_up, "print the completion of commands and options for a shell", &declare_completion,
+    {"completion", looking_up, "print a script with which a shell completes commands and options", &declare_completion,
      "source <(sysid completion bash)\nsysid completion fish > ~/.config/fish/completions/sysid.fish"},
     {"version", looking_up, "print version, instruction set and MPI library", &declare_version, ""},
 };

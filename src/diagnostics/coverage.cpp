@@ -52,7 +52,7 @@ std::string prediction_verdict(Report const& report, bool missed) {
   auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
                                       [](Finding const& each) { return each.severity == Severity::warning; });
   if (warnings > 0) return with_care(warnings);
-  return "the checks pass: all trajectories stay finite";
+  return "the checks pass (all trajectories stay finite)";
 }
 
 bool add_coverage(Report& report, bool fed_back) {

@@ -179,25 +179,24 @@ class InputCheck {
 
   Finding other_rule(Alternative const& other, std::size_t e, std::size_t i, int scored) const {
     std::string_view const stated = rule_name(experiments_[e].inputs[i].rule()), better = rule_name(*other.rule);
-    return {
-        FindingCode::input_rule,
-        Severity::warning,
-        {model_.inputs[i].name, experiments_[e].name, std::string(better)},
-        fmt::format("the fit is clearly better with `hold {}` than with `hold {}` for input {}{} (log posterior higher by {:.0f} "
-                    "for {} samples)",
-                    better, stated, model_.inputs[i].name, on(e), other.gain, scored),
-        fmt::format("write `hold {}` if {}; otherwise check the delay of the recording", better, row_of(*other.rule).summary)};
+    return {FindingCode::input_rule,
+            Severity::warning,
+            {model_.inputs[i].name, experiments_[e].name, std::string(better)},
+            fmt::format("the fit is clearly better with `hold {}` than with `hold {}` for input {}{} (log density higher by {:.0f} "
+                        "for {} samples)",
+                        better, stated, model_.inputs[i].name, on(e), other.gain, scored),
+            fmt::format("write `hold {}` if {}; otherwise check whether a channel was recorded with a delay", better,
+                        row_of(*other.rule).summary)};
   }
 
   Finding other_timing(Alternative const& other, std::size_t e, std::size_t i, int scored) const {
-    return {
-        FindingCode::input_timing,
-        Severity::warning,
-        {model_.inputs[i].name, experiments_[e].name},
-        fmt::format(
-            "the fit is much better with input {}{} shifted {} by half a sample (log posterior higher by {:.0f} for {} samples)",
-            model_.inputs[i].name, on(e), other.shift > 0 ? "later" : "earlier", other.gain, scored),
-        "check the delay of the recording: no other rule between input samples explains the record as well"};
+    return {FindingCode::input_timing,
+            Severity::warning,
+            {model_.inputs[i].name, experiments_[e].name},
+            fmt::format(
+                "the fit is much better with input {}{} shifted {} by half a sample (log density higher by {:.0f} for {} samples)",
+                model_.inputs[i].name, on(e), other.shift > 0 ? "later" : "earlier", other.gain, scored),
+            "check the delay of the recording: no other rule between input samples explains the record as well"};
   }
 
   FitOfExperiments const& fit_;

@@ -331,8 +331,9 @@ void name_held(Report const& report, Findings& findings) {
   for (Finding& each : findings)
     if (each.code == FindingCode::explains_little || each.code == FindingCode::worse_than_the_mean)
       each.help +=
-          fmt::format("; the {} of {} {} nearly as wide as the prior: check this prior",
-                      held.size() == 1 ? "posterior" : "posteriors", fmt::join(held, ", "), held.size() == 1 ? "is" : "are");
+          held.size() == 1
+              ? fmt::format("; the posterior of {} is nearly as wide as its prior: check this prior", held.front())
+              : fmt::format("; the posteriors of {} are nearly as wide as their priors: check these priors", fmt::join(held, ", "));
 }
 
 Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, std::string const& channel, double nmse,

@@ -157,7 +157,9 @@ std::string cure(Model const& model, Channel const& channel, bool several, doubl
                     declaration, name, whole.name);
   if (reads_samples(model, location))
     return fmt::format(
-        "if the equation lacks a constant term, {}; it holds what earlier samples do not carry on of a sensor's offset", added);
+        "if the equation lacks a constant term, {}; past samples already contain a part of a sensor's offset, and this parameter "
+        "is the rest of it",
+        added);
   return fmt::format(
       "if the sensor has an offset, estimate it: {}; otherwise look for an input with an offset, for a constant force that the "
       "model lacks, or for a law that is not the same in both directions",

@@ -96,8 +96,9 @@ std::string findings_list(Findings const& findings, Surface read_at, std::size_t
       std::all_of(findings.begin(), findings.end(), [&](Finding const& each) { return each.code == findings.front().code; });
   if (read_at == Surface::prompt)
     return list + (alike ? fmt::format("  more: help {}\n", word(findings.front().code))
-                         : "  more: `help WORD`, for each word in brackets\n");
-  return list + fmt::format("  more: sysid explain {}\n", alike ? word(findings.front().code) : "CODE, for each word in brackets");
+                         : "  more: `help WORD`, where WORD is a word in square brackets above\n");
+  return list + fmt::format("  more: sysid explain {}\n",
+                            alike ? word(findings.front().code) : "CODE, where CODE is a word in square brackets above");
 }
 
 Severity grade(Report const& report) {

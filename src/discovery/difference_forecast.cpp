@@ -249,7 +249,8 @@ Findings forecast_findings(CheckedDictionary const& dictionary, std::vector<Diff
           {FindingCode::draws_not_bounded,
            Severity::warning,
            {held_out},
-           fmt::format("{} of {} drawn free runs of `{}` on {} do not stay finite", each.diverging, drawn_runs, target, held_out),
+           fmt::format("{} of {} free runs of `{}` on {}, with drawn errors and coefficients, do not stay finite", each.diverging,
+                       drawn_runs, target, held_out),
            "a term destabilises the motion where the record has few samples: leave it out, or use a record of larger "
            "amplitude"});
     if (!each.free_run || !each.expected || !(*each.free_run > std::max(beyond_expected * *each.expected, worth_a_word * each.sd)))

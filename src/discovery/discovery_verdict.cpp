@@ -47,7 +47,7 @@ bool other_terms_are_as_probable(ValidationReport const& validation) {
 std::string form_clause(ValidationReport const& validation) {
   double const probability = validation.structures.front().probability;
   if (probability >= probable && other_terms_are_as_probable(validation))
-    return fmt::format("the form is decided among the terms of the dictionary (probability {}), but not against others",
+    return fmt::format("the form is decided among the terms of the dictionary (probability {}), but not against other terms",
                        probability_text(probability));
   return fmt::format("the form is {} (probability {})",
                      probability >= decided_probability ? "decided"

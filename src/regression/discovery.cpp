@@ -78,7 +78,7 @@ void add_interchangeable(Equation const& equation, Eigen::MatrixXd const& joint,
       Concern concern{.kind = Concern::Kind::interchangeable, .terms = {a, b}, .value = any};
       concern.clause = fmt::format(
           "{} can replace each other: one is needed with probability {:.2f}, but the data do not show which one "
-          "({:.2f} and {:.2f})",
+          "(inclusion probabilities {:.2f} and {:.2f})",
           names_of(equation, {a, b}), any, one, other);
       concerns.push_back(std::move(concern));
     }

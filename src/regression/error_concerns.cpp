@@ -58,7 +58,7 @@ Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::Vecto
     Concern concern{.kind = Concern::Kind::input_left, .input = trace->input, .value = trace->correlation};
     concern.clause =
         fmt::format("the residual is correlated with {} (correlation {:.2f})",
-                    fmt::format("{} {}", trace->square ? "its square" : "its sample",
+                    fmt::format("{} {}", trace->square ? "the square of this input" : "this input",
                                 trace->lag == 0 ? "in the same row"
                                                 : fmt::format("{} {} before", trace->lag, trace->lag == 1 ? "row" : "rows")),
                     trace->correlation);

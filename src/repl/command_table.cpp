@@ -16,7 +16,9 @@ std::span<CommandRow const> commands() {
       {"save", "save FILE", "writes the session as a file for `sysid run`", &command::save},
       {"columns", "columns FILE.csv", "shows the columns of a data file", &command::columns},
       {"list", "list, list TOPIC",
-       "lists the session; or functions, distributions, kernels, backends, discovery, solvers or modules", &command::list},
+       "lists the session; or functions, distributions, disturbances, kernels, backends, discovery, solvers, reading or "
+       "modules",
+       &command::list},
       {"show", "show, show NAME", "shows the text of the session or of one of its statements, or the result of a task",
        &command::show},
       {"check", "check", "checks what the data can determine, before any sampling", &command::check},

@@ -86,7 +86,7 @@ constexpr KeywordRow keyword_rows[] = {
      "named ranges of rows, for example one to fit and one to test; rows count from 1, and both ends are included"},
     {"rows", "split train = rows 1..500", "a range of rows of the file; rows count from 1, and both ends are included"},
     {"hold", "input x = force [N] hold zero_order", "the rule for an input between samples"},
-    {"error", "input x = force [N] hold zero_order error normal(sd = 0.5)", "how far the samples of an input lie from the truth"},
+    {"error", "input x = force [N] hold zero_order error normal(sd = 0.5)", "the measurement error of the samples of an input"},
     // candidates and dictionaries
     {"shared", "shared m, c", "parameters that have the same meaning in every candidate"},
     {"probability", "linear probability 0.5",

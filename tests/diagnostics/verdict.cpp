@@ -22,7 +22,7 @@ TEST_CASE("warnings and notes pass but are shown") {
   CHECK(verdict.headline == "use with care: 1 warning");
   CHECK(findings_list(findings, Surface::command_line) ==
         "  warning[second_mode]: a second mode\n    what to do: look at both\n"
-        "  note[reads_noise]: a note\n  more: sysid explain CODE, for each word in brackets\n");
+        "  note[reads_noise]: a note\n  more: sysid explain CODE, where CODE is a word in square brackets above\n");
 }
 
 TEST_CASE("an error fails the run and leads the list") {
@@ -34,7 +34,7 @@ TEST_CASE("an error fails the run and leads the list") {
   CHECK(verdict.headline == "do not use these numbers yet: a check failed");
   CHECK(findings_list(findings, Surface::command_line) ==
         "  failed[chain_did_not_move]: the chain did not move\n    what to do: adapt\n"
-        "  warning[second_mode]: a warning\n  more: sysid explain CODE, for each word in brackets\n");
+        "  warning[second_mode]: a warning\n  more: sysid explain CODE, where CODE is a word in square brackets above\n");
 }
 
 TEST_CASE("where all findings have one code the last line can be typed as it stands") {
@@ -72,7 +72,7 @@ TEST_CASE("a run that was interrupted is unfinished before anything else is said
   CHECK(verdict.headline == "unfinished: the run was interrupted");
   CHECK(findings_list(findings, Surface::command_line) ==
         "  failed[interrupted]: the run was interrupted\n    what to do: go on\n"
-        "  failed[ess_bulk_low]: too few\n  more: sysid explain CODE, for each word in brackets\n");
+        "  failed[ess_bulk_low]: too few\n  more: sysid explain CODE, where CODE is a word in square brackets above\n");
 }
 
 TEST_CASE("at the prompt an interrupted run is continued by what can be typed there, whatever its finding says") {

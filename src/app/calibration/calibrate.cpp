@@ -137,8 +137,8 @@ class Calibration {
                                  tried.failed, tried.draws),
                      Label{task_.span, {}},
                      {},
-                     "narrow the priors to what is possible, or use a solver that follows the fast end of the prior; `sysid check` "
-                     "shows where simulations fail"});
+                     "narrow the priors to what is possible, or use a solver that can integrate the fastest motions of the prior "
+                     "(`sysid check` shows where simulations fail)"});
   }
 
   void begin_progress() {

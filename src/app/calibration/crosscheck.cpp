@@ -129,7 +129,7 @@ class Crosscheck {
   void require_exact() const {
     if (own_.filter == FilterRule::particle)
       throw refused(
-          fmt::format("`{}` estimates its likelihood by particles, and no other back end samples with estimates", task_.name),
+          fmt::format("`{}` estimates its likelihood by particles, and no other back end can use such estimates", task_.name),
           "compare with a fit of the same model and `filter = unscented`, or with other seeds");
   }
   void require_another(std::string const& backend) const {
@@ -185,11 +185,11 @@ class Crosscheck {
     report.ledger.merge(second.report.ledger);
     double largest = 0;
     for (ComparedNumber const& each : numbers) largest = std::max(largest, std::fabs(each.z()));
-    report.verdict =
-        !agree         ? fmt::format("{} and {} differ", first.backend, second.backend)
-        : with_optimum ? fmt::format("the optimum by {} with its sds describes the posterior by {}", first.backend, second.backend)
-                       : fmt::format("{} and {} agree: the largest of {} differences is {:.1f} standard errors", first.backend,
-                                     second.backend, numbers.size(), largest);
+    report.verdict = !agree         ? fmt::format("{} and {} differ", first.backend, second.backend)
+                     : with_optimum ? fmt::format("the optimum and sds by {} agree with the posterior by {} to a fifth of its sds",
+                                                  first.backend, second.backend)
+                                    : fmt::format("{} and {} agree: the largest of {} differences is {:.1f} standard errors",
+                                                  first.backend, second.backend, numbers.size(), largest);
     if (agree && !verdict_of(report.findings).pass) report.verdict += ", but a fit failed its own checks";
     return report;
   }

@@ -205,7 +205,7 @@ std::vector<std::string> reasons_of_covariance(DerivedAround const& around, Targ
       if (std::find(finding.names.begin(), finding.names.end(), name) == finding.names.end()) continue;
       std::vector<bool> const read = around.read(p);
       for (std::size_t d = 0; d < quantities; ++d)
-        if (read[d] && reasons[d].empty()) reasons[d] = fmt::format("it reads `{}`, which {}", name, wrong);
+        if (read[d] && reasons[d].empty()) reasons[d] = fmt::format("it depends on `{}`, which {}", name, wrong);
     }
   }
   return reasons;

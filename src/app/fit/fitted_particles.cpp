@@ -138,8 +138,8 @@ std::unique_ptr<Target> FittedParticles::with_solver(std::shared_ptr<ParameterSp
 
 std::string FittedParticles::chosen() const {
   std::string const number = fmt::format(
-      "{} particles: repeated estimates of the log likelihood have an sd of {:.2g} at the mode, and of at most {:.2g} at three in "
-      "four points around it",
+      "{} particles: repeated estimates of the log likelihood have an sd of {:.2g} at the mode, and of at most {:.2g} at three "
+      "quarters of the points around it",
       need_.particles, need_.sd, around_);
   return what_.particles_because.empty() ? number
                                          : fmt::format("filter = particle, because {}; {}", what_.particles_because, number);
@@ -221,11 +221,11 @@ std::optional<Finding> FittedParticles::check_estimates(ConstLanes draws) const 
       FindingCode::likelihood_too_noisy,
       useless ? Severity::error : Severity::warning,
       {parameter.name},
-      fmt::format("with {} particles estimates of the log likelihood scatter with an sd above {} at {} of {} draws, up to "
-                  "{:.2g} where {} = {:.3g}{}: chains stay there for a long time",
+      fmt::format("with {} particles, estimates of the log likelihood have an sd above {} at {} of {} draws, up to "
+                  "{:.2g} where {} = {:.3g}{}: chains get stuck there",
                   need_.particles, large_sd, many, draws.width(), largest, parameter.name, draws(farthest, worst),
                   unit_after_number(parameter.unit)),
-      fmt::format("use more particles, `particles = {}` or more, or a prior without such places{}", 4 * need_.particles,
+      fmt::format("use more particles, `particles = {}` or more, or a prior that excludes such values{}", 4 * need_.particles,
                   all_normal ? "; if the noise of a sensor is small compared with the motion that a disturbance causes within a "
                                "sampling interval, "
                                "`filter = unscented` is the better filter"

@@ -52,7 +52,7 @@ void excuse_hierarchies(ParameterSpace const& space, Findings& findings) {
     if (members == 0 || members == each.names.size() || !proper) continue;
     each.severity = Severity::note;
     each.message += "; only their priors separate them, as is usual in a hierarchy `mean + spread*z`";
-    each.help = "nothing: the data determine `mean + spread*z` of each experiment, which `derive` reports";
+    each.help = "nothing: the data determine `mean + spread*z` of each experiment; to see its posterior, write it with `derive`";
   }
 }
 

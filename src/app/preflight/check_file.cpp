@@ -5,8 +5,8 @@
 
 #include "app/session/exact_steps.hpp"
 #include "app/session/preconditions.hpp"
-#include "app/session/resolved.hpp"
 #include "app/session/provenance.hpp"
+#include "app/session/resolved.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "experiment/experiments.hpp"
@@ -84,7 +84,8 @@ void check_rules(TaskPage& page) {
              fmt::format("{:.0f} % of the power of {} of {} is above 0.4 times the sampling rate: the samples do not determine how "
                          "the input varies between two samples",
                          100 * input.top, input.name, coverage.name),
-             "write `hold zero_order` if a generator held the input between its samples; else sample it faster"});
+             "write `hold zero_order` if a generator held the input between its samples; otherwise record it at a higher sampling "
+             "rate"});
     }
 }
 

@@ -187,7 +187,8 @@ class Description {
       return;
     }
     if (widest < still_unknown) {
-      page_.information->ridges.push_back(fmt::format("{}, but both are narrower than their priors: {}", pair, size));
+      page_.information->ridges.push_back(
+          fmt::format("{}, but both posteriors are expected to be narrower than the priors: {}", pair, size));
       return;
     }
     add(FindingCode::nearly_confounded, Severity::warning,

@@ -84,7 +84,7 @@ class ProcessPreflight {
           fmt::format("at {} of {} prior draws the likelihood of {} is not finite: {}", out.failed, draws, declared.name,
                       model_->model().integrated() ? "the simulation fails, or a hyper-parameter is not positive"
                                                    : "a hyper-parameter or the noise is not positive"),
-          "narrow the priors: amplitudes, lengths and noise are positive");
+          "narrow the priors: amplitudes, lengths and noise must be positive");
     if (drawn.empty()) return;
     Regression const& first = drawn.front();
     out.rows = static_cast<int>(first.observations.values.size());

@@ -136,7 +136,8 @@ void judge_by_prior(Preflight const& preflight) {
     information.advised.clear();
     preflight.add(
         FindingCode::integration_step, preflight.what.solver.as_model ? Severity::note : Severity::warning, {},
-        fmt::format("with {}, parameters still change by {} sd for {}: the equations jump where a velocity changes its sign",
+        fmt::format("with {}, parameters still move by {} sd from those with {}: the equations jump where a velocity changes "
+                    "its sign",
                     information.refinement, move > 5 ? "many" : fmt::format("{:.2g}", move), solver),
         preflight.sticking);
   }

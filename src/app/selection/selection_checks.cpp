@@ -153,7 +153,7 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
   return {{FindingCode::step_not_settled,
            Severity::warning,
            {selected.name},
-           fmt::format("with {} {}", solver.finer_words(), what),
+           fmt::format("with {}, {}", solver.finer_words(), what),
            fmt::format("use a finer solver: `{}`{}", solver.finer().option(), other.empty() ? "" : ", or " + other)}};
 }
 

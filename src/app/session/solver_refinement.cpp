@@ -45,7 +45,7 @@ Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& 
   return {FindingCode::step_not_settled,
           Severity::error,
           {},
-          fmt::format("the result has not converged with {}: with {} {}, almost as much as in the previous refinement, so still "
+          fmt::format("the result has not converged with {}: with {}, {}, almost as much as in the previous refinement, so still "
                       "finer settings were not tried",
                       accuracy(refined.solver), refined.solver.finer_words(), moved(refined.moves.back())),
           settling_advice(refined.solver)};
@@ -72,7 +72,7 @@ bool refine_solver(Session& session, Task const& task, MakeTarget const& make, O
   Findings const found = mode_findings(*make(refined.solver), objective_kind, preparation.modes);
   preparation.findings.insert(preparation.findings.begin(), found.begin(), found.end());
   if (refined.solver != stated)
-    session.notices << fmt::format("{}: {} (too coarse with {}: with {} {})\n", task.name, accuracy(refined.solver),
+    session.notices << fmt::format("{}: {} (too coarse with {}: with {}, {})\n", task.name, accuracy(refined.solver),
                                    accuracy(stated), stated.finer_words(), moved(preparation.moves.front()));
   if (!refined.converged)
     preparation.findings.push_back(not_converged(refined, objective_kind != ObjectiveKind::posterior, context.ledger));

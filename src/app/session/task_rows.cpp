@@ -170,7 +170,7 @@ std::optional<Diagnostic> refused(Session& session, Task const& task) {
     return Diagnostic{
         Severity::error,
         "E6705",
-        fmt::format("`{}` and `{}` are fitted to different samples: {} cannot give them weights", first.name, other.name,
+        fmt::format("`{}` and `{}` are fitted to different samples: no weights by {} can be computed", first.name, other.name,
                     title(what.weights)),
         Label{task.span, {}},
         {},

@@ -283,7 +283,7 @@ class Discover {
             {FindingCode::prior_contradicted,
              Severity::warning,
              {each.name},
-             fmt::format("the record gives {} = {}{}, where none of {} draws of its prior lies ({} to {})", each.name,
+             fmt::format("the record gives {} = {}{}, outside the range of {} draws of its prior ({} to {})", each.name,
                          significant(each.value, 3), unit_after_number(each.unit), draws,
                          significant(inner.quantity.from_si(prior.front()), 3),
                          significant(inner.quantity.from_si(prior.back()), 3)),

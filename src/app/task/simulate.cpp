@@ -49,7 +49,7 @@ void check_step(Session& session, Task const& task, SimulateTask const& what, st
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= fine.values[q][0][i];
     double const share = std::sqrt(population_variance(difference)) / std::sqrt(population_variance(fine.values[q][0]));
     if (share > tolerable)
-      session.notices << fmt::format("{}: {}with {} {} changes by {:.2g} % of its sd{}\n", task.name, severity,
+      session.notices << fmt::format("{}: {}with {}, {} changes by {:.2g} % of its sd{}\n", task.name, severity,
                                      what.solver.finer_words(), finer.quantities()[q].name, 100 * share,
                                      what.solver.as_model ? "; the solver is part of the model"
                                                           : fmt::format("; add `{}` or finer", what.solver.finer().option()));

@@ -43,9 +43,10 @@ ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
   ReportTable table{
       "changes",
       fmt::format("Changes of parameters found from the innovations: |z| above {:.2f}, by the union bound at most {:g} false "
-                  "alarms per row. After row: the last row before the change. Values with their sds.",
+                  "alarms per row. After row: the last row before the change. Values with their sds. Alternative: a parameter "
+                  "whose change would explain the innovations about as well.",
                   gathered.threshold, rate),
-      {"parameter", "after row", "before", "now", "found at row", "t [s]", "z", "or"},
+      {"parameter", "after row", "before", "now", "found at row", "t [s]", "z", "alternative"},
       {}};
   for (Alarm const& each : gathered.alarms) {
     std::size_t const q = gathered.states + static_cast<std::size_t>(each.parameter);

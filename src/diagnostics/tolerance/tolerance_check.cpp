@@ -297,10 +297,10 @@ Findings tolerance_findings(SolverCheck const& check, SolverSettings const& solv
   for (Moved const& each : check.moved) names.push_back(each.parameter);
   if (solver.as_model)
     return {{FindingCode::integration_step, Severity::note, std::move(names),
-             fmt::format("{} is part of the model: with {} {}", solver.text(), solver.finer_words(), what_happens(check, true)),
+             fmt::format("{} is part of the model: with {}, {}", solver.text(), solver.finer_words(), what_happens(check, true)),
              "use the estimates only with this integrator; for another one, fit again"}};
   return {{FindingCode::integration_step, Severity::error, std::move(names),
-           fmt::format("the integration {} changes the result: with {} {}", solver.fixed_step() ? "step" : "tolerance",
+           fmt::format("the integration {} changes the result: with {}, {}", solver.fixed_step() ? "step" : "tolerance",
                        solver.finer_words(), what_happens(check, false)),
            cure(check, solver, chosen)}};
 }
@@ -314,7 +314,7 @@ Findings linearisation_findings(SolverCheck const& check) {
   bool const severe = check.outcome == SolverCheck::Outcome::fails || (moves && std::fabs(check.largest()) > decides);
   return {
       {FindingCode::linearisation_matters, severe ? Severity::error : Severity::warning, std::move(names),
-       fmt::format("the linearisation of the filter changes the result: with `filter = unscented` {}", what_happens(check, false)),
+       fmt::format("the linearisation of the filter changes the result: with `filter = unscented`, {}", what_happens(check, false)),
        "fit with `filter = unscented`, which does not linearise; if the result then still depends on the filter, the "
        "disturbance is too large for a filter of mean and covariance"}};
 }

@@ -76,7 +76,7 @@ std::vector<Figure> figures(Report const& report) {
         if (report.verb == "track")
           out.back().caption =
               fmt::format("The parameter {} along the rows that were tracked, with its 95 % band.{}", quantity.name,
-                          quantity.alarms.empty() ? "" : " Upright lines: rows at which a change was found.");
+                          quantity.alarms.empty() ? "" : " Vertical lines: rows at which a change was found.");
       }
   for (Prediction const& states : report.states)
     for (PredictedQuantity const& quantity : states.quantities)

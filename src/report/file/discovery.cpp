@@ -105,14 +105,15 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
     if (equation.supports.size() > 1) tables.push_back(support_table(equation));
   }
   if (!discovery.excluded.empty()) {
-    ReportTable excluded{"not offered", "Terms that were left out of the dictionary before the record was used.", {"term", ""}, {}};
+    ReportTable excluded{
+        "excluded terms", "Terms that were left out of the dictionary before the record was used.", {"term", "reason"}, {}};
     for (DiscoveryReport::Excluded const& each : discovery.excluded) excluded.rows.push_back({each.term, each.reason});
     tables.push_back(std::move(excluded));
   }
   if (!discovery.forecasts.empty()) {
     ReportTable forecast{
         "errors of predictions on " + discovery.forecast_rows,
-        "Root mean squares. Expected: of a free run if the equation is right, by its errors and those of its coefficients.",
+        "Root mean squares. Expected: the free-run error that follows from the errors of the equation and of its coefficients.",
         {"target", "unit", "sd of the samples", "one sample ahead", "free run", "expected"},
         {}};
     auto const text = [](std::optional<double> const& error) {

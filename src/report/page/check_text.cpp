@@ -89,7 +89,7 @@ std::string input_text(CoveragePage const& data, CoveragePage::Input const& inpu
   std::string const what = input.rule.empty() ? input.name : input.name + ", " + input.rule;
   if (data.rate == 0) return fmt::format("input {}", what);
   if (input.constant) return fmt::format("input {}: constant", what);
-  return fmt::format("input {}: 99 % of its power between {} and {} {}, up to {} times the sampling rate", what,
+  return fmt::format("input {}: 99 % of its power is between {} and {} {} ({} times the sampling rate)", what,
                      significant(frequency(data, input.low), 3), significant(frequency(data, input.high), 3), frequency_unit(data),
                      fmt::format("{:.2f}", input.high / data.rate));
 }
@@ -158,6 +158,8 @@ std::string information_text(InformationPage const& page) {
   lines.push_back(fmt::format("computed at the {} prior draws whose response is closest in size to the data{}", page.draws,
                               page.noise.empty() ? std::string() : "; assumed noise: " + page.noise));
   lines.push_back("prior width: half the width of the central 68 % interval of the prior (the sd of a normal prior)");
+  if (std::any_of(page.lines.begin(), page.lines.end(), [](InformationPage::Line const& line) { return line.relative; }))
+    lines.push_back("percentages and factors are those of the logarithm: factor 5 means times or divided by 5");
   if (page.rows > 0)
     lines.push_back(fmt::format("over the first {} scored rows only; the whole record contains more information", page.rows));
   for (std::string const& direction : page.null_directions) lines.push_back(direction);
@@ -167,12 +169,13 @@ std::string information_text(InformationPage const& page) {
   for (auto const& [solver, move] : page.moves)
     moves += fmt::format("{}{} sd for {}", moves.empty() ? "" : ", ", move > 5 ? "more than 5" : significant(move, 2), solver);
   if (!moves.empty())
-    out += entry("solver",
-                 {fmt::format("with {}, parameters change by {}", page.refinement, moves),
-                  page.advised.empty()   ? "none of these is accurate enough"
-                  : page.prior_overflows ? fmt::format("{}: explicit steps overflow on a large part of the prior", page.advised)
-                  : page.taken.empty()   ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
-                                         : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
+    out +=
+        entry("solver", {fmt::format("with {}, parameters change by {}", page.refinement, moves),
+                         page.advised.empty() ? "none of these is accurate enough"
+                         : page.prior_overflows
+                             ? fmt::format("{} is needed: explicit steps overflow on a large part of the prior", page.advised)
+                         : page.taken.empty() ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
+                                              : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
   if (!page.exact.empty() && page.exact == page.taken) out += entry("solver", {fmt::format("{} is exact", page.exact)});
   if (!page.exact.empty() && page.exact != page.taken)
     out += entry(moves.empty() ? "solver" : "",

@@ -173,7 +173,8 @@ std::string modes_html(Report const& report) {
         {std::to_string(m + 1), pretty_number(significant(mode.share, 3)), pretty_number(significant(mode.log_density, 6))});
     for (double const value : mode.declared) table.rows.back().push_back(pretty_number(significant(value, 4)));
   }
-  return paragraph(mode_words(report)) + html(table) + paragraph("Share: fraction of the total Laplace mass of all modes.", "note");
+  return paragraph(mode_words(report)) + html(table) +
+         paragraph("Share: a mode's fraction of the integral over all modes, each by the Laplace approximation.", "note");
 }
 
 }  // namespace sysid

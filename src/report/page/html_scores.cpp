@@ -19,7 +19,7 @@ std::string score_title(std::string const& name, bool left_out) {
   if (left_out && (name == "rmse" || name == "coverage_95" || name == "chi_squared_per_sample"))
     return score_title(name, false) + ", leave-one-out";
   if (left_out && name == "nmse") return "NMSE of the fit [%]";
-  if (left_out && name == "coverage_3sd") return "share within 3 sd, of the fit";
+  if (left_out && name == "coverage_3sd") return "share of the residuals of the fit within 3 sd";
   if (name == "nmse") return "NMSE [%]";
   if (name == "nmse_left_out") return "NMSE, leave-one-out [%]";
   if (name == "rmse") return "RMSE";
