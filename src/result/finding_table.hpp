@@ -39,6 +39,7 @@ enum class FindingCode {
   times_rounded,
   rate_contradicted,
   column_used_twice,
+  samples_repeated,
   unit_in_name,
   samples_far_off,
   explains_little,

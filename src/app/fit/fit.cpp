@@ -335,7 +335,7 @@ class Fit {
         fmt::format("fit {} to {} with {}", model_.name, data_names(session_.file, what_.experiments), chosen_.backend), seed_);
     add_prediction_rule(model_, what_.prediction, report);
     report.priors = priors_of(likelihood_->space(), report.priors);
-    for (ExperimentData const& each : data_) add_data(session_.file, each, model_, report);
+    add_fitted_data(session_.file, data_, model_, report);
     report.findings.insert(report.findings.end(), result.findings.begin(), result.findings.end());
     if (!result.search_told)
       report.findings.insert(report.findings.end(), preparation_.findings.begin(), preparation_.findings.end());

@@ -35,10 +35,9 @@ std::optional<std::vector<ExperimentData>> cover(Session& session, TaskData cons
   }
   Model const& model = *task.model;
   std::vector<ExperimentData> data = load_experiments(session, there, model, task.start, task.prediction, task.solver);
-  for (ExperimentData const& each : data) {
+  for (ExperimentData const& each : data)
     page.coverage.push_back(describe_coverage(each, session.file.data[static_cast<std::size_t>(each.use.data)], task.start, model));
-    look_at_data(session.file, each, model, page.findings);
-  }
+  look_at_all_data(session.file, data, model, page.findings);
   if (!complete) return std::nullopt;
   return data;
 }
@@ -96,8 +95,7 @@ void preflight_candidates(Session& session, Task const& task, SelectTask const& 
     data.push_back(load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
                                     fit.prediction, fit.solver));
   for (std::size_t k = 0; k < data.size(); ++k)
-    for (ExperimentData const& each : data[k])
-      look_at_data(session.file, each, session.file.models[static_cast<std::size_t>(selection.fits[k].model)], page.findings);
+    look_at_all_data(session.file, data[k], session.file.models[static_cast<std::size_t>(selection.fits[k].model)], page.findings);
   if (refusal(task, selection, session.file.models, data)) return;
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(selection.candidates)];
   for (std::size_t k = 0; k < selection.fits.size(); ++k) {

@@ -53,13 +53,13 @@ Report begin_selection_report(Session& session, Task const& task, SelectTask con
   add_prediction_rule(leading.compiled->model, leading.fit->prediction, report);
   report.priors = priors_of(*leading.space, report.priors);
   report.findings = selection.result.findings;
-  for (ExperimentData const& each : first.data) add_data(session.file, each, first.compiled->model, report);
+  add_fitted_data(session.file, first.data, first.compiled->model, report);
   add_true_values(leading, report);
   for (std::string& name : noise_parameters(*leading.space))
     if (!selection.result.models[static_cast<std::size_t>(selection.leader())].is_absent(name))
       report.noise.push_back(std::move(name));
   for (Candidate const& candidate : candidates)
-    for (ExperimentData const& each : candidate.data) look_at_data(session.file, each, candidate.compiled->model, report.findings);
+    look_at_all_data(session.file, candidate.data, candidate.compiled->model, report.findings);
   return report;
 }
 

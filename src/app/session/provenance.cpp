@@ -12,6 +12,7 @@
 #include "experiment/dead_columns.hpp"
 #include "experiment/doubtful_columns.hpp"
 #include "experiment/placeholders.hpp"
+#include "experiment/repeated_samples.hpp"
 #include "experiment/stuck_sensors.hpp"
 #include "experiment/time_gaps.hpp"
 #include "experiment/true_parameters.hpp"
@@ -125,12 +126,23 @@ std::string samples_digest(Experiment const& experiment, Model const& model) {
 bool tells_of_data(FindingCode code) {
   return code == FindingCode::looks_missing || code == FindingCode::column_constant || code == FindingCode::time_gap ||
          code == FindingCode::sensor_stuck || code == FindingCode::times_rounded || code == FindingCode::rate_contradicted ||
-         code == FindingCode::column_used_twice || code == FindingCode::unit_in_name;
+         code == FindingCode::column_used_twice || code == FindingCode::samples_repeated || code == FindingCode::unit_in_name;
 }
 
 void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings) {
   for (Finding& each : data_findings(file, data, model))
     if (std::find(findings.begin(), findings.end(), each) == findings.end()) findings.push_back(std::move(each));
+}
+
+void look_at_all_data(CheckedFile const& file, std::vector<ExperimentData> const& data, Model const& model, Findings& findings) {
+  for (ExperimentData const& each : data) look_at_data(file, each, model, findings);
+  for (Finding& each : find_repeated_samples(file, data, model))
+    if (std::find(findings.begin(), findings.end(), each) == findings.end()) findings.push_back(std::move(each));
+}
+
+void add_fitted_data(CheckedFile const& file, std::vector<ExperimentData> const& data, Model const& model, Report& report) {
+  for (ExperimentData const& each : data) report.data.push_back(describe_data(file, each, model));
+  look_at_all_data(file, data, model, report.findings);
 }
 
 void add_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Report& report) {

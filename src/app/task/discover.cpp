@@ -221,7 +221,7 @@ class Discover {
                        {"random_numbers", std::string("Philox4x64-10")},
                        {"model_sha256", task_digest(session_, task_)},
                        {"statement_sha256", statement_digest(session_, task_)}};
-    for (ExperimentData const& each : data_) add_data(session_.file, each, dictionary_.measured, report);
+    add_fitted_data(session_.file, data_, dictionary_.measured, report);
     DiscoveryReport discovery = described_discovery({what_, dictionary_, inner_}, found, selector);
     add_findings(found, validation ? &validation->report : nullptr, report.findings);
     say_once(report.findings);
