@@ -28,7 +28,7 @@ constexpr Command commands[] = {
      "sysid data bench.csv\nsysid data messung.mat --plot messung.svg"},
     {"check", files, "check a file, and report what its data can determine, before any sampling", &declare_check,
      "sysid check duffing.sysid\nsysid check duffing.sysid --error-format json"},
-    {"calibrate", files, "test how often intervals contain the true values, on records simulated from the priors",
+    {"calibrate", files, "test how often intervals contain the true values, on simulated records",
      &declare_calibrate,
      "sysid calibrate duffing.sysid\nsysid calibrate duffing.sysid --task posterior --replications 500 --seed 1", true},
     {"crosscheck", files, "fit with two back ends and compare the results", &declare_crosscheck,

@@ -319,7 +319,7 @@ TEST_CASE("names that help proposes as a factor are in scope and not circular") 
   CHECK(said_of(with_text(only, "state y", "parameter rate [1/s] ~ log_uniform(1, 2)\nstate y")).help ==
         "multiply it by a rate, such as `rate`");
   // An initial value reads nothing that varies along the record.
-  CHECK(said_of("model m {\ninput u [m]\nstate y [m]\nparameter a ~ normal(1, sd = 1)\ninitial y = a\ny' = 1 [1/s]*(u - y)\n"
+  CHECK(said_of("model m {\ninput u [m]\nstate y [m]\nparameter a [-] ~ normal(1, sd = 1)\ninitial y = a\ny' = 1 [1/s]*(u - y)\n"
                 "observe d ~ normal(y, sd = 1e-3)\n}\n")
             .help == "multiply it by a length, such as `1 [m]`");
 }

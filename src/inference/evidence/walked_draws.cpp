@@ -14,7 +14,7 @@
 namespace sysid::marginal {
 namespace {
 
-constexpr int most_walks = 8, draws_per_walk = 1200;
+constexpr int most_walks = 8, draws_per_walk = 800;
 constexpr double worst_k = 0.7, least_effective = 400;  // effective draws
 // Of the logarithm of a ratio of sds: of so many walkers it scatters by a tenth, of the draws of two rounds by less.
 constexpr double as_wide = 0.25, as_before = 0.1;

@@ -148,7 +148,7 @@ TEST_CASE("a ridge along which both parameters are narrowed is told, not warned 
   CheckResult const result = checked(models / "robertson/robertson.sysid", shipped("robertson/robertson.sysid"));
   InformationPage const& information = *preflight(result, "estimate").information;
   REQUIRE(information.ridges.size() == 1);
-  CHECK(information.ridges[0].find("k1 and k3 are nearly confounded, but both are narrower than their priors") == 0);
+  CHECK(information.ridges[0].find("k1 and k3 are nearly confounded, but both posteriors are expected to be narrower than the priors") == 0);
 }
 
 TEST_CASE("a model of the library and the parts of one's own are shown with their equations and priors") {

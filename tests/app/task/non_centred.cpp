@@ -48,7 +48,7 @@ TEST_CASE("a non-centred hierarchy with proper priors is not told to fix one of 
 }
 
 TEST_CASE("two factors of which the data know the product are, in every experiment") {
-  CaseRun const run(hierarchy_text(" parameter a ~ log_normal(1, sd = 1)\n parameter b ~ log_normal(0.4, sd = 1)\n"
+  CaseRun const run(hierarchy_text(" parameter a ~ log_uniform(0.001, 1000)\n parameter b ~ log_uniform(0.001, 1000)\n"
                                    " let k [1/s] = a*b*1 [1/s]\n"),
                     decays());
   auto const found = severities(run.summary("post"), "flat_direction");
