@@ -32,7 +32,8 @@ Finding at_bounds(Target const& target, Mode const& best, std::vector<ModeAtBoun
     ParameterInfo const& parameter = target.parameters()[static_cast<std::size_t>(each.parameter)];
     double const value = best.declared[static_cast<std::size_t>(each.parameter)];
     names.push_back(parameter.name);
-    values.push_back(fmt::format("{} = {:.4g}{}", parameter.name, value, unit_after_number(parameter.unit)));
+    values.push_back(fmt::format("{} = {:.4g}{} ({} bound {})", parameter.name, value, unit_after_number(parameter.unit),
+                                 each.upper ? "upper" : "lower", shortest(each.upper ? parameter.upper : parameter.lower)));
     if (each.unbounded)
       endless.push_back(fmt::format("`{}` approaches {:.4g}", parameter.name, each.upper ? parameter.upper : parameter.lower));
   }

@@ -9,8 +9,19 @@
 
 namespace sysid {
 
-Fourier::Fourier(std::size_t size) : size_(size), cosine_(size), sine_(size) {
+namespace {
+
+/// Every quarter of a million steps of a loop, which take some hundredths of a second.
+void pause(Fourier::Between between, std::size_t step) {
+  constexpr std::size_t often = std::size_t{1} << 18;
+  if (between != nullptr && step % often == 0) between();
+}
+
+}  // namespace
+
+Fourier::Fourier(std::size_t size, Between between) : size_(size), cosine_(size), sine_(size) {
   for (std::size_t k = 0; k < size / 2; ++k) {
+    pause(between, k);
     double const angle = -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(size);
     cosine_[size / 2 + k] = elementary::cos(angle);
     sine_[size / 2 + k] = elementary::sin(angle);
@@ -55,9 +66,10 @@ std::size_t convolution_size(std::size_t size) { return std::max<std::size_t>(4,
 void add_harmonics(Fourier::Parts& re, Fourier::Parts& im, Fourier::Between between) {
   std::size_t const size = re.size(), padded = convolution_size(size);
   if (size == 0) return;
-  Fourier const fourier(padded);
+  Fourier const fourier(padded, between);
   Fourier::Parts chirp_re(size), chirp_im(size), a_re(padded), a_im(padded), b_re(padded), b_im(padded);
   for (std::size_t n = 0; n < size; ++n) {
+    pause(between, n);
     double const angle = std::numbers::pi * static_cast<double>(n * n % (2 * size)) / static_cast<double>(size);
     chirp_re[n] = elementary::cos(angle);
     chirp_im[n] = elementary::sin(angle);
@@ -71,12 +83,14 @@ void add_harmonics(Fourier::Parts& re, Fourier::Parts& im, Fourier::Between betw
   fourier.to_reversed(b_re, b_im, between);
   // The inverse transform is the transform of the conjugates, conjugated.
   for (std::size_t i = 0; i < padded; ++i) {
+    pause(between, i);
     double const product_re = a_re[i] * b_re[i] - a_im[i] * b_im[i], product_im = a_re[i] * b_im[i] + a_im[i] * b_re[i];
     a_re[i] = product_re;
     a_im[i] = -product_im;
   }
   fourier.from_reversed(a_re, a_im, between);
   for (std::size_t t = 0; t < size; ++t) {
+    pause(between, t);
     double const sum_re = a_re[t] / static_cast<double>(padded), sum_im = -a_im[t] / static_cast<double>(padded);
     re[t] = sum_re * chirp_re[t] - sum_im * chirp_im[t];
     im[t] = sum_re * chirp_im[t] + sum_im * chirp_re[t];

@@ -14,7 +14,8 @@ class Fourier {
   using Parts = std::vector<double>;
   using Between = void (*)();
 
-  explicit Fourier(std::size_t size);
+  /// between: called now and then while the factors are made.
+  explicit Fourier(std::size_t size, Between between = nullptr);
   std::size_t size() const { return size_; }
 
   /// sum_t x_t exp(-2 pi i k t / N), from natural order to bit-reversed order.
