@@ -53,15 +53,15 @@ Finding repeated(CheckedFile const& file, ExperimentData const& one, ExperimentD
   DataBlock const& first = file.data[static_cast<std::size_t>(one.use.data)];
   DataBlock const& second = file.data[static_cast<std::size_t>(other.use.data)];
   bool const one_file = first.path == second.path;
-  return {
-      FindingCode::samples_repeated,
-      Severity::error,
-      {one.use.name, other.use.name, channel},
-      fmt::format("{} and {} have {} of {} in common{}: each of these counts twice, and the sds come out too small", one.use.name,
-                  other.use.name, counted(count, "sample"), channel, one_file ? " (they read the same file)" : ""),
-      fmt::format("leave {} out of the task{}{}", other.use.name,
-                  one.use.part >= 0 || other.use.part >= 0 ? ", or choose ranges of rows that do not overlap" : "",
-                  one_file ? "" : fmt::format("; or correct the `file` of `{}`", second.name))};
+  return {FindingCode::samples_repeated,
+          Severity::error,
+          {one.experiment.name, other.experiment.name, channel},
+          fmt::format("{} and {} have {} of {} in common{}: each of these counts twice, and the sds come out too small",
+                      one.experiment.name, other.experiment.name, counted(count, "sample"), channel,
+                      one_file ? " (they read the same file)" : ""),
+          fmt::format("leave {} out of the task{}{}", other.experiment.name,
+                      one.use.part >= 0 || other.use.part >= 0 ? ", or choose ranges of rows that do not overlap" : "",
+                      one_file ? "" : fmt::format("; or correct the `file` of `{}`", second.name))};
 }
 
 }  // namespace

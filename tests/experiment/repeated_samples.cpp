@@ -3,7 +3,6 @@
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/checking.hpp"
 #include "core/numeric/random.hpp"
@@ -49,7 +48,6 @@ TEST_CASE("one file in two blocks, a copy of it, and ranges that overlap are cou
             "the sds come out too small"});
   CHECK(repeated(check_two(of_a, of_b, table, table)).size() == 1);
   CHECK(repeated(check_two(of_a, "file \"b.csv\"; time t [s]; measure z = y [um]", table, table)).empty());  // other numbers
-  MESSAGE(fmt::format("{}", fmt::join(repeated(check_two(of_a + "; split early = rows 1..30", of_a + "; split late = rows 21..60", table, table, "one.early, two.late")),"|")));
   CHECK(repeated(check_two(of_a + "; split early = rows 1..30", of_a + "; split late = rows 21..60", table, table,
                            "one.early, two.late"))
             .front()

@@ -16,8 +16,8 @@ struct Halves {
 
 class Walk {
  public:
-  Walk(Objective const& objective, LaneArray walkers, std::vector<double> log_density, StreamKey key)
-      : objective_(objective), walkers_(std::move(walkers)), log_density_(std::move(log_density)), key_(key) {}
+  Walk(Objective const& objective, LaneArray walkers, std::vector<double> log_density, StreamKey key, double power)
+      : objective_(objective), walkers_(std::move(walkers)), log_density_(std::move(log_density)), key_(key), power_(power) {}
 
   LaneArray const& walkers() const { return walkers_; }
 
@@ -47,7 +47,7 @@ class Walk {
     for (int w = 0; w < of.count; ++w) {
       auto const at = static_cast<std::size_t>(of.first + w), k = static_cast<std::size_t>(w);
       bool const lost = !std::isfinite(log_density_[at]);
-      if (!std::isfinite(density[k]) || !(lost || chance[k] < density[k] - log_density_[at])) continue;
+      if (!std::isfinite(density[k]) || !(lost || chance[k] < power_ * (density[k] - log_density_[at]))) continue;
       log_density_[at] = density[k];
       for (int i = 0; i < proposed.rows(); ++i) walkers_(i, of.first + w) = proposed(i, w);
     }
@@ -57,17 +57,18 @@ class Walk {
   LaneArray walkers_;
   std::vector<double> log_density_;
   StreamKey key_;
+  double power_;
 };
 
 }  // namespace
 
 LaneArray walk(Objective const& objective, LaneArray walkers, int steps, StreamKey key, Ledger& ledger,
-               std::function<bool()> const& stop) {
+               std::function<bool()> const& stop, double power) {
   constexpr int quarters = 4;
   int const width = walkers.width();
   LaneArray states(walkers.rows(), (quarters - 1) * width);
   std::vector<double> log_density = log_density_in_blocks(objective, walkers, ledger, stop);
-  Walk moved(objective, std::move(walkers), std::move(log_density), key);
+  Walk moved(objective, std::move(walkers), std::move(log_density), key, power);
   int number = 0;
   for (int quarter = 0; quarter < quarters; ++quarter) {
     for (int const end = steps * (quarter + 1) / quarters; number < end && !stop(); ++number)

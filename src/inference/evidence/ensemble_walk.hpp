@@ -12,8 +12,9 @@ namespace sysid::marginal {
 /// for a normal density and 1 once in ten moves. Each half moves in one batch. A walker at a place without a finite density takes
 /// the first step that has one.                                                           ter Braak 2006 (differential evolution)
 ///
+/// power: of the density, which below 1 spreads the walkers further than it does itself.
 /// Returns the states after two, three and four quarters of the `steps` side by side: [P x 3 W].
 LaneArray walk(Objective const& objective, LaneArray walkers, int steps, StreamKey key, Ledger& ledger,
-               std::function<bool()> const& stop);
+               std::function<bool()> const& stop, double power = 1);
 
 }  // namespace sysid::marginal

@@ -37,7 +37,7 @@ struct WeightedDraws {
 ///
 /// stated: whose sds are in question; null: nobody's. Where the draws are not confirmed, or give a width that neither this nor the
 /// only mode has, draws of what walkers from there have reached stand in their place (`walked_draws`); where even those are not
-/// confirmed, mean and sd are those of the walkers. That takes 20,000 to 80,000 densities more: above some thousand rows fewer, or
+/// confirmed, mean and sd are those of the walkers. That takes 10,000 to 60,000 densities more: above some thousand rows fewer, or
 /// nothing of it is done.
 ///
 /// Nothing (no draws) above 40 parameters, without modes, and of a target with a gradient, whose densities are dear.
