@@ -192,12 +192,13 @@ void settle_doubts(Objective const& objective, Eigen::VectorXd const& theta, boo
   }
 }
 
-/// Of a likelihood, directions that are measured as about as long as the prior is wide: the differences that measure them are taken
-/// on a straight line of that length, which leaves a ridge that bends, as p q = 1 does in the coordinates of an interval. They are
-/// flat if the ridge goes on, both ways, to where a normal density of this width has fallen by six nats.
+/// Directions that are measured as about as long as the prior is wide: the differences that measure them are taken on a straight
+/// line of that length, which leaves a ridge that bends, as p q = 1 does in the coordinates of an interval. They are flat if the
+/// ridge of the likelihood goes on, both ways, to where a normal density of this width has fallen by six nats. On the sampler's
+/// coordinates the prior bends with them, and what is flat there has been found at the optimum of the declared density.
 void follow_long_directions(Objective const& objective, Eigen::VectorXd const& theta, Spectrum& spectrum, Ledger& ledger) {
   constexpr double as_long = 0.5, sds = 3.5;
-  if (objective.objective_kind != ObjectiveKind::likelihood || objective.target.is_expensive()) return;
+  if (objective.objective_kind == ObjectiveKind::posterior || objective.target.is_expensive()) return;
   for (Eigen::Index k = 0; k < spectrum.values.size(); ++k) {
     if (std::find(spectrum.flat.begin(), spectrum.flat.end(), k) != spectrum.flat.end()) continue;
     Eigen::VectorXd const sd = spectrum.unit.cwiseProduct(spectrum.vectors.col(k)) / std::sqrt(spectrum.values(k));

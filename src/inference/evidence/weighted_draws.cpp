@@ -119,6 +119,12 @@ Moments moments_of(std::vector<Eigen::VectorXd> const& points, std::vector<doubl
   return moments;
 }
 
+std::vector<double> sds_of(Moments const& moments) {
+  std::vector<double> sds;
+  for (Eigen::Index p = 0; p < moments.mean.size(); ++p) sds.push_back(std::sqrt(moments.covariance(p, p)));
+  return sds;
+}
+
 /// Weights that stand out are cut, so that a single draw is no population (Ionides 2008).
 std::vector<double> cut_weights(Population const& population) {
   double mean = 0;
@@ -211,6 +217,7 @@ WeightedDraws summarised(Target const& target, std::vector<Mode> const& modes, P
   result.confirmed = result.tell() && k < largest_k;
   add_evidence(population, result);
   add_widths(target, modes, population, result);
+  result.coordinate_sd = sds_of(moments_of(population.places, population.weight));
   return result;
 }
 
@@ -237,12 +244,15 @@ LaneArray first_walkers(Population const& population) {
 void set_moments(Target const& target, LaneArray const& theta, std::vector<double> const& weight, WeightedDraws& result) {
   LaneArray declared(theta.rows(), theta.width());
   target.constrain(theta, declared);
-  std::vector<Eigen::VectorXd> values;
-  for (int w = 0; w < declared.width(); ++w) values.push_back(column(declared, w));
+  std::vector<Eigen::VectorXd> places, values;
+  for (int w = 0; w < declared.width(); ++w) {
+    places.push_back(column(theta, w));
+    values.push_back(column(declared, w));
+  }
   Moments const found = moments_of(values, weight);
   result.mean.assign(found.mean.begin(), found.mean.end());
-  result.sd.clear();
-  for (Eigen::Index p = 0; p < found.mean.size(); ++p) result.sd.push_back(std::sqrt(found.covariance(p, p)));
+  result.sd = sds_of(found);
+  result.coordinate_sd = sds_of(moments_of(places, weight));
 }
 
 /// What walkers make of it.
