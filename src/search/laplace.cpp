@@ -194,8 +194,9 @@ void settle_doubts(Objective const& objective, Eigen::VectorXd const& theta, boo
 
 /// Directions that are measured as about as long as the prior is wide: the differences that measure them are taken on a straight
 /// line of that length, which leaves a ridge that bends, as p q = 1 does in the coordinates of an interval. They are flat if the
-/// ridge of the likelihood goes on, both ways, to where a normal density of this width has fallen by six nats. On the sampler's
-/// coordinates the prior bends with them, and what is flat there has been found at the optimum of the declared density.
+/// ridge goes on, both ways, to where a normal density of this width has fallen by six nats: that of the likelihood, and of the
+/// density with its prior, so that a parameter whose prior alone has a width has it. On the sampler's coordinates the prior bends
+/// with them, and what is flat there has been found at the optimum of the declared density.
 void follow_long_directions(Objective const& objective, Eigen::VectorXd const& theta, Spectrum& spectrum, Ledger& ledger) {
   constexpr double as_long = 0.5, sds = 3.5;
   if (objective.objective_kind == ObjectiveKind::posterior || objective.target.is_expensive()) return;

@@ -79,10 +79,12 @@ bool reaches(Ridge const& ridge, Eigen::VectorXd const& move, Ledger& ledger) {
 }
 
 /// Whether the ridge goes on to the end of the move, or bends away from it by more than priors are wide: a p q that is known ends,
-/// along p, where q does. In steps that get shorter where the ridge bends more.
-bool goes_on(Ridge const& ridge, Eigen::VectorXd const& move, Ledger& ledger) {
+/// along p, where q does. In steps that get shorter where the ridge bends more. A prior that falls along the ridge ends it.
+bool goes_on(Objective const& objective, Ridge const& ridge, Eigen::VectorXd const& move, Ledger& ledger) {
   constexpr double longest = 1.0 / 8, shortest = longest / 16384, bent = 3;  // bent: widths of the prior
   constexpr int most_tries = 40;
+  bool const has_prior = objective.objective_kind != ObjectiveKind::likelihood;
+  double const top = has_prior ? objective.log_density(to_lanes({ridge.theta}), ledger).front() : 0;
   Eigen::VectorXd place = ridge.theta;
   double at = 0, step = longest;
   for (int tried = 0; tried < most_tries && at < 1; ++tried) {
@@ -94,6 +96,7 @@ bool goes_on(Ridge const& ridge, Eigen::VectorXd const& move, Ledger& ledger) {
     }
     place = *next;
     at += step;
+    if (has_prior && objective.log_density(to_lanes({place}), ledger).front() < top - tolerated) return false;
     Eigen::VectorXd const off = (place - ridge.theta - at * move).cwiseQuotient(ridge.likelihood.scale);
     if (off.cwiseAbs().maxCoeff() > bent) return true;
   }
@@ -109,7 +112,7 @@ bool is_ridge(Objective const& objective, Eigen::VectorXd const& theta, Eigen::V
 
 bool is_ridge_both_ways(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger) {
   Ridge const ridge(objective, theta, ledger);
-  return goes_on(ridge, move, ledger) && goes_on(ridge, -move, ledger);
+  return goes_on(objective, ridge, move, ledger) && goes_on(objective, ridge, -move, ledger);
 }
 
 }  // namespace sysid

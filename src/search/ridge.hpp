@@ -10,7 +10,7 @@ namespace sysid {
 /// at the end of the move Gauss-Newton steps across it, which do not go back along it, look for the top.
 bool is_ridge(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger);
 /// Whether it does so along `move` and against it, to the ends or to where it has left the straight line by three widths of the
-/// prior, as p q = 1 does towards p = 0.
+/// prior, as p q = 1 does towards p = 0. Where the objective has a prior, its density must stay as high, too.
 bool is_ridge_both_ways(Objective const& objective, Eigen::VectorXd const& theta, Eigen::VectorXd const& move, Ledger& ledger);
 
 }  // namespace sysid

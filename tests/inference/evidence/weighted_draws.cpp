@@ -195,11 +195,12 @@ TEST_CASE("a tail that weighted draws miss is found by walkers, and map fails") 
     std::vector<Mode> const modes = search(target, ObjectiveKind::posterior, other.context).modes;
     WeightedDraws const draws = weighted_draws(target, modes, 1, other.ledger, {}, &modes.front());
     CHECK(draws.walked);
-    // Of the larger noise the tail reaches the bound of the prior, at ten sds: too far to measure, and that is said.
-    bool const measured = size < 0.035;
-    CHECK(draws.confirmed == measured);
-    CHECK((widths_finding(fitted)->message.find("which may be larger still") == std::string::npos) == measured);
-    for (std::size_t p = 0; p < 2 && measured; ++p) CHECK(draws.sd[p] == doctest::Approx(truth[p]).epsilon(0.25));
+    // Of the larger noise the tail reaches the bound of the prior, ten sds away: too far to measure, but not to be missed.
+    for (std::size_t p = 0; p < 2; ++p)
+      if (size < 0.035)
+        CHECK(draws.sd[p] == doctest::Approx(truth[p]).epsilon(0.25));
+      else
+        CHECK(draws.sd[p] > 1.5 * fitted.modes.front().sd[p]);
   }
 }
 
