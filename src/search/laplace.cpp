@@ -192,6 +192,16 @@ void settle_doubts(Objective const& objective, Eigen::VectorXd const& theta, boo
   }
 }
 
+/// Whether all that moves much along `step`, in widths of the prior, lies between two bounds: a prior of another kind gives its own
+/// width to a ridge of the likelihood.
+bool is_between_bounds(Objective const& objective, Eigen::VectorXd const& step) {
+  for (Eigen::Index p = 0; p < step.size(); ++p) {
+    ParameterInfo const& info = objective.target.parameters()[static_cast<std::size_t>(p)];
+    if (std::fabs(step(p)) > 0.3 * step.norm() && !(std::isfinite(info.lower) && std::isfinite(info.upper))) return false;
+  }
+  return true;
+}
+
 /// Directions that are measured as about as long as the prior is wide: the differences that measure them are taken on a straight
 /// line of that length, which leaves a ridge that bends, as p q = 1 does in the coordinates of an interval. They are flat if the
 /// ridge goes on, both ways, to where a normal density of this width has fallen by six nats: that of the likelihood, and of the
@@ -203,7 +213,9 @@ void follow_long_directions(Objective const& objective, Eigen::VectorXd const& t
   for (Eigen::Index k = 0; k < spectrum.values.size(); ++k) {
     if (std::find(spectrum.flat.begin(), spectrum.flat.end(), k) != spectrum.flat.end()) continue;
     Eigen::VectorXd const sd = spectrum.unit.cwiseProduct(spectrum.vectors.col(k)) / std::sqrt(spectrum.values(k));
-    if (sd.cwiseQuotient(objective.scale).norm() < as_long) continue;
+    Eigen::VectorXd const in_widths = sd.cwiseQuotient(objective.scale);
+    if (in_widths.norm() < as_long) continue;
+    if (objective.objective_kind != ObjectiveKind::likelihood && !is_between_bounds(objective, in_widths)) continue;
     if (is_ridge_both_ways(objective, theta, sds * sd, ledger)) spectrum.flat.push_back(k);
   }
 }
