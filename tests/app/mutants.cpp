@@ -8,6 +8,7 @@
 
 #include "answer.hpp"
 #include "grammar/message/layout.hpp"
+#include "replications.hpp"
 #include "syntax/words.hpp"
 
 using namespace sysid;
@@ -188,9 +189,11 @@ class Mutator {
     doubled.insert(span.end, "\n" + statement);
     Span const both{span.begin, span.end + 1 + (span.end - span.begin)};
     // Equal terms are one, and so are equal shared names.
-    if (!tokens()[first].is("terms") && !tokens()[first].is("shared")) out_.push_back({"doubled statement", std::move(doubled), both, both, {}, {}});
-    // What is derived or shared may be left out.
-    if (tokens()[first].is("derive") || tokens()[first].is("shared") || !(declaration(first) || tokens()[first + 1].is("=")))
+    if (!tokens()[first].is("terms") && !tokens()[first].is("shared"))
+      out_.push_back({"doubled statement", std::move(doubled), both, both, {}, {}});
+    // What is derived or shared may be left out, and so may the time of a model whose samples do not depend on each other.
+    if (tokens()[first].is("derive") || tokens()[first].is("shared") || tokens()[first].is("time") ||
+        !(declaration(first) || tokens()[first + 1].is("=")))
       return;
     std::vector<std::string> names = {std::string(tokens()[first].text)};
     bool used = tokens()[first].is("initial") || tokens()[first].is("file");
@@ -225,7 +228,8 @@ TEST_CASE("mistakes planted in the shipped models are refused where they stand")
   for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / "models"))
     if (entry.path().extension() == ".sysid") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  constexpr std::size_t most_per_file = 400;
+  // A kind of mistake that is answered elsewhere, once in thirty times, is found with so many.
+  auto const most_per_file = static_cast<std::size_t>(replications(150, 400));
   for (std::filesystem::path const& path : files) {
     WorkingFolder const here(path.parent_path());
     std::string const text = content(path);
@@ -267,8 +271,8 @@ TEST_CASE("mistakes planted in the shipped models are refused where they stand")
       fmt::print("{:24} planted {:5} refused {:5} statement {:5} token {:5} alone {:5}\n", kind, tally.planted, tally.refused,
                  tally.statement, tally.token, tally.alone);
     CAPTURE(kind);
-    // A sign can go without a trace: `[1m]` is read as `[1 m]`, a sum of squares without a plus as another name. So can the name of a
-    // channel of a model that is only simulated. Nothing else can.
+    // A sign can go without a trace: `[1m]` is read as `[1 m]`, a sum of squares without a plus as another name. So can the name of
+    // a channel of a model that is only simulated. Nothing else can.
     double const least = kind == "deleted sign" ? 0.95 : kind == "misspelt declaration" ? 0.995 : 1.0;
     CHECK(tally.refused >= least * tally.planted);
     CHECK(tally.statement >= 0.99 * tally.refused);

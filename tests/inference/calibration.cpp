@@ -1,7 +1,8 @@
 // Simulation-based calibration: parameters drawn from the prior, data made with them, and the rank of each true value among the
 // draws of its posterior. Over many replications ranks are uniform if the sampler draws from the posterior (Talts, Betancourt,
-// Simpson, Vehtari and Gelman 2018), whatever the posterior is. SYSID_REPLICATIONS=1000 asks for more of them than a test run does,
-// which makes thirty where they are cheap: a posterior a sixth as wide as it should be is found with these. Ten find a gross error.
+// Simpson, Vehtari and Gelman 2018), whatever the posterior is. SYSID_REPLICATIONS=1000 asks for more of them, and a full run makes
+// 100; an ordinary one makes thirty where they are cheap: a posterior a sixth as wide as it should be is found with these. Ten find
+// a gross error.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -196,7 +197,7 @@ using Run = FitResult (*)(Target const&, Settings const&, RunContext&);
 
 /// The largest chi-square over the parameters of ranks in five bins: of 4 degrees of freedom.
 double worst_chi_square(Problem const& problem, Settings const& settings, Run run) {
-  int const count = replications(problem.replications);
+  int const count = replications(problem.replications, 100);
   constexpr std::size_t bins = 5;
   std::vector<std::vector<int>> ranks(static_cast<std::size_t>(problem.dimension), std::vector<int>(bins));
   for (int r = 0; r < count; ++r) {
@@ -236,12 +237,13 @@ TEST_CASE("ranks of true parameters in their posteriors are uniform") {
   for (Problem const* problem : {&correlated_problem, &valley_problem, &two_modes_problem, &hierarchy_problem, &funnel_problem}) {
     CAPTURE(problem->name);
     Settings chains(mh::settings());
-    chains.set("samples", std::int64_t{6000});
-    chains.set("burn_in", std::int64_t{1000});
+    bool const many = full_size();
+    chains.set("samples", std::int64_t{many ? 6000 : 3000});
+    chains.set("burn_in", std::int64_t{many ? 1000 : 700});
     CHECK(worst_chi_square(*problem, chains, &mh::run) < chi_square_limit);
     Settings replicas(tempering::settings());
-    replicas.set("samples", std::int64_t{2500});
-    replicas.set("burn_in", std::int64_t{500});
+    replicas.set("samples", std::int64_t{many ? 2500 : 1300});
+    replicas.set("burn_in", std::int64_t{many ? 500 : 400});
     replicas.set("temperatures", std::int64_t{6});
     CHECK(worst_chi_square(*problem, replicas, &tempering::run) < chi_square_limit);
   }

@@ -128,7 +128,7 @@ LinearSystem chain_system(Model const& model, double k, double c, double q, doub
 
 TEST_CASE("an exact filter of ten states is the joint normal density") {
   Model const model = with_disturbance(filtered_file(chain_text).models.front(), "w", "q");
-  FilterRecord const of = record(150, 2, true);
+  FilterRecord const of = record(100, 2, true);
   ModelTarget const target(compile(model, false, "exponential"), of.experiment, filter_options("exponential", 1));
   LinearSystem const system = chain_system(model, 300, 0.8, 0.02, 0.001);
   double const expected = joint_density(system, of.experiment.time, of.u, of.y);

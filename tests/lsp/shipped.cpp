@@ -11,6 +11,7 @@
 #include "client.hpp"
 #include "grammar/message/layout.hpp"
 #include "load/load.hpp"
+#include "replications.hpp"
 #include "syntax/format.hpp"
 #include "syntax/words.hpp"
 
@@ -37,7 +38,7 @@ std::string formatted_text(std::string const& text) {
 
 TEST_CASE(
     "each name of each shipped model can be renamed everywhere: the check still passes, the layout is stable, and back again") {
-  int renamed = 0, library = 0;
+  int renamed = 0, library = 0, met = 0;
   for (std::filesystem::path const& path : shipped_models()) {
     std::string const text = content(path);
     auto const reading = assist::read(path.string(), text);
@@ -48,6 +49,8 @@ TEST_CASE(
       if (reading->source.place(each.span.begin).file > 0) break;
       int const group = reading->names.group[static_cast<std::size_t>(each.symbol)];
       if (!renameable(reading->names.symbols[static_cast<std::size_t>(each.symbol)].kind) || !done.insert(group).second) continue;
+      // Of each kind of name there are dozens: a kind that is not renamed everywhere is found by a third of them.
+      if (++met % 3 != 0 && !full_size()) continue;
       CAPTURE(path.string());
       CAPTURE(reading->source.text(each.span));
       auto const result = assist::rename(path.string(), text, each.span.begin, "zz_renamed");
@@ -74,7 +77,7 @@ TEST_CASE(
     }
   }
   MESSAGE(renamed << " names renamed, " << library << " of the standard library refused");
-  CHECK(renamed > 300);
+  CHECK(renamed > (full_size() ? 300 : 100));
 }
 
 TEST_CASE("mistakes planted in every shipped model appear at the right range, and go when they are taken back") {
@@ -82,6 +85,7 @@ TEST_CASE("mistakes planted in every shipped model appear at the right range, an
     int planted = 0, covered = 0, exact = 0;
   };
   std::map<std::string, Tally> tallies;
+  std::map<std::string, int> met;
   std::mt19937 random(20260);
   for (std::filesystem::path const& path : shipped_models()) {
     std::string const text = content(path);
@@ -107,6 +111,7 @@ TEST_CASE("mistakes planted in every shipped model appear at the right range, an
     // place: where the message may stand, in the new text; exact: where it must stand to count as such.
     auto const plant = [&](std::string const& kind, Span span, std::string const& spelling, std::vector<Span> const& places,
                            Span exact) {
+      if (++met[kind] % 2 != 0 && !full_size()) return;
       std::string changed = text;
       changed.replace(span.begin, span.end - span.begin, spelling);
       client.edit(text, span, spelling);

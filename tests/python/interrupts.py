@@ -43,12 +43,12 @@ class Interrupts(unittest.TestCase):
     def test_all_threads_hear_it(self):
         out, error = self.printed(
             """
-            theta = model.sample_prior(20000, seed=1)
-            values = model.constrain(theta[:4000])
+            theta = model.sample_prior(8000, seed=1)
+            values = model.constrain(theta[:1500])
             calls = {
                 "log_density": lambda: model.log_density(theta),
-                "gradient": lambda: model.gradient(theta[:8000]),
-                "residuals": lambda: model.residuals(theta[:8000]),
+                "gradient": lambda: model.gradient(theta[:3000]),
+                "residuals": lambda: model.residuals(theta[:3000]),
                 "simulate": lambda: model.simulate(values).values["displacement"],
             }
             for name, call in calls.items():

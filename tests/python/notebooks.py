@@ -13,7 +13,6 @@ import unittest.mock
 
 import nbclient
 import nbformat
-from jupyter_client.manager import start_new_kernel
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((ROOT / "docs/notebooks").glob("*.ipynb"))
@@ -27,10 +26,22 @@ def setUpModule():
     environment = unittest.mock.patch.dict(os.environ, changed, PYDEVD_DISABLE_FILE_VALIDATION="1")
     environment.start()
     unittest.addModuleCleanup(environment.stop)
+    # To start a kernel and import all takes longer than most cells do: one serves all of these tests.
+    global CLIENT
+    CLIENT = nbclient.NotebookClient(notebook_of(), timeout=300, kernel_name="python3", record_timing=False, resources={"metadata": {"path": folder}})
+    CLIENT.execute(cleanup_kc=False)
+    unittest.addModuleCleanup(executed, notebook_of(), folder, cleanup_kc=True)
 
 
-def executed(notebook, folder, **options):
-    nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3", record_timing=False, resources={"metadata": {"path": str(folder)}}, **options).execute()
+def notebook_of(*cells):
+    return nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(each) for each in cells])
+
+
+def executed(notebook, folder, allow_errors=False, cleanup_kc=False):
+    """In the folder, where no name is known and the extension is not loaded."""
+    before = notebook_of(f"import os\nos.chdir({str(folder)!r})", "%reset -f", "%unload_ext sysid")
+    for CLIENT.nb, CLIENT.allow_errors, last in ((before, False, False), (notebook, allow_errors, cleanup_kc)):
+        CLIENT.execute(cleanup_kc=last)
     return notebook
 
 
@@ -102,28 +113,13 @@ forecast  = predict posterior on bench.test with draws(20), seed = 1
 """
 
 
-def notebook_of(*cells):
-    return nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(each) for each in cells])
-
-
 class Cells(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        # To start a kernel and import all takes longer than the cells do: one serves all of these tests.
-        folder = tempfile.mkdtemp()
-        cls.addClassCleanup(shutil.rmtree, folder)
-        cls.client = nbclient.NotebookClient(notebook_of(), timeout=300, kernel_name="python3", record_timing=False, resources={"metadata": {"path": folder}})
-        cls.addClassCleanup(cls.client.execute, cleanup_kc=True)
-
     def run_cells(self, *cells, allow_errors=False):
-        """In a folder of their own, where no name is known and the extension has just been loaded."""
+        """In a folder of their own, where the extension has just been loaded."""
         with tempfile.TemporaryDirectory() as folder:
             pathlib.Path(folder, "bench.csv").write_text(TABLE)
-            before = ("%reset -f", "%unload_ext sysid", f"import os\nos.chdir({folder!r})\ndel os", "%load_ext sysid")
-            self.client.nb = notebook_of(*before, *cells, "import os\nos.chdir('/')")
-            self.client.allow_errors = allow_errors
-            self.client.execute(cleanup_kc=False)
-            return [shown(cell) for cell in self.client.nb.cells[len(before) : -1]]
+            notebook = executed(notebook_of("%load_ext sysid", *cells), folder, allow_errors)
+            return [shown(cell) for cell in notebook.cells[1:]]
 
     def test_results_are_shown_and_bound(self):
         cell, names, moved = self.run_cells(
@@ -228,9 +224,11 @@ class Assistance(unittest.TestCase):
     def test_completion_and_inspection(self):
         with tempfile.TemporaryDirectory() as folder:
             pathlib.Path(folder, "bench.csv").write_text(TABLE)
-            manager, client = start_new_kernel(kernel_name="python3", cwd=folder)
+            executed(notebook_of("%load_ext sysid\nimport os.path"), folder)
+            client = CLIENT.km.blocking_client()
+            client.start_channels()
             try:
-                client.execute("%load_ext sysid\nimport os.path", reply=True, timeout=60)
+                client.wait_for_ready(timeout=60)
                 code = CELL.replace("log_uniform(0.1, 10)", "log_un")
                 place = code.index("log_un") + len("log_un")
                 said = client.complete(code, place, reply=True, timeout=60)["content"]
@@ -251,7 +249,6 @@ class Assistance(unittest.TestCase):
                 self.assertFalse(client.inspect(CELL, CELL.index("-rate") + 3, reply=True, timeout=60)["content"]["found"])
             finally:
                 client.stop_channels()
-                manager.shutdown_kernel(now=True)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "inference/targets.hpp"
+#include "replications.hpp"
 #include "search/refit.hpp"
 #include "search/search.hpp"
 #include "search/stored_values.hpp"
@@ -108,7 +109,7 @@ TEST_CASE("a search that is interrupted anywhere goes on to the same bytes, and 
       Searched const whole = run(kind, gradient, never, nullptr, false);
       REQUIRE(whole.result.modes.size() > 1);
       CHECK(all_of(run(kind, gradient, never, nullptr)) == all_of(whole));
-      for (int call = 1; call < whole.calls; call += 1 + whole.calls / 40) {
+      for (int call = 1; call < whole.calls; call += 1 + whole.calls / replications(12, 40)) {
         CAPTURE(static_cast<int>(kind));
         CAPTURE(gradient);
         CAPTURE(call);

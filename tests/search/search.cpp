@@ -7,6 +7,7 @@
 #include <set>
 
 #include "inference/targets.hpp"
+#include "replications.hpp"
 #include "search/laplace.hpp"
 
 using namespace sysid;
@@ -39,7 +40,7 @@ Mode mode_with_share(double share) {
 }  // namespace
 
 TEST_CASE("Duffing's oscillator is found from draws two decades wide, for every record and seed") {
-  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+  for (std::uint64_t const seed : seeds(3, 8, 0)) {
     CAPTURE(seed);
     TestTarget const target = duffing(seed);
     Bench bench(1000 + seed);

@@ -12,6 +12,7 @@
 #include "core/numeric/instruction_set.hpp"
 #include "native/module.hpp"
 #include "program/tangents.hpp"
+#include "replications.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/random_sources.hpp"
 #include "simulate/simulator.hpp"
@@ -199,7 +200,9 @@ TEST_CASE("adjoints are the same bytes for any executor, lanes, threads and tape
                                         {.executor = ExecutorKind::lanes, .tape_bytes = 1}};
   for (int const lanes : {1, 4, 8, 16, 32}) ways.push_back({.lanes = lanes, .executor = ExecutorKind::native});
   ways.push_back({.threads = 2, .executor = ExecutorKind::native, .tape_bytes = 1});
+  std::size_t number = 0;  // of the case
   for (Case const& each : cases()) {
+    ++number;
     LaneArray parameters = around(each.centre, width);
     parameters(each.source.map ? 0 : 2, 5) = -1e12;  // fails on its way, beside others that must not feel it
     Gradients const oracle = gradients(each.source, each.by, record_with_gaps(), each.solver, parameters,
@@ -210,6 +213,8 @@ TEST_CASE("adjoints are the same bytes for any executor, lanes, threads and tape
       if (set > *supported_instruction_set()) continue;
       force_instruction_set(set);
       for (std::size_t way = 0; way < ways.size(); ++way) {
+        // Each way with each instruction set for every other case: a way that goes astray does so for many programs.
+        if (!full_size() && (way + number + (set == narrowest_instruction_set ? 0 : 1)) % 2 == 0) continue;
         CAPTURE(each.name);
         CAPTURE(way);
         Gradients const found = gradients(each.source, each.by, record_with_gaps(), each.solver, parameters, ways[way]);

@@ -1,5 +1,6 @@
 // Simulation-based calibration of every back end on four models, by the verb that users have, and of samplers that are wrong.
-// SYSID_REPLICATIONS sets how many records are made of each; with 500 all takes about eight minutes of two processors.
+// SYSID_REPLICATIONS sets how many records are made of each; with 500 and SYSID_TEST_SIZE=full all takes about eight minutes of two
+// processors.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -172,26 +173,32 @@ constexpr BackendRow planted_row = {
 
 }  // namespace
 
+// An ordinary run has each back end on two models and each model by two back ends, and finds draws that are far too narrow or
+// beside the truth.
 TEST_CASE("ranks of true values by every back end are uniform, on four models") {
-  int const count = replications(12);
-  for (CalibrationCase const& each : {drift(), oscillator(), counts(), autoregression()})
-    for (char const* backend : {"mh(samples = 4000, burn_in = 1000, thin = 4)", "nuts(samples = 800, burn_in = 300)",
-                                "tempering(samples = 2500, burn_in = 500, temperatures = 5)", "auto"}) {
-      CAPTURE(each.name);
-      CAPTURE(backend);
-      json const summary = calibrated(each, backend, count, 11);
+  int const count = replications(12, 30);
+  std::vector<CalibrationCase> const cases = {drift(), oscillator(), counts(), autoregression()};
+  std::vector<char const*> const backends = {"mh(samples = 4000, burn_in = 1000, thin = 4)", "nuts(samples = 800, burn_in = 300)",
+                                             "tempering(samples = 2500, burn_in = 500, temperatures = 5)", "auto"};
+  for (std::size_t c = 0; c < cases.size(); ++c)
+    for (std::size_t b = 0; b < backends.size(); ++b) {
+      if (!full_size() && (b + c) % cases.size() > 1) continue;
+      CAPTURE(cases[c].name);
+      CAPTURE(backends[b]);
+      json const summary = calibrated(cases[c], backends[b], count, 11);
       CHECK(uniform(summary));
       CHECK(summary.at("exit") == 0);
       CHECK(summary.at("calibration").at("failed") == 0);
     }
 }
 
-TEST_CASE("a sampler whose acceptance is wrong by 5 % is caught, and the same sampler without the error is not") {
-  int const count = replications(150);
+// By 5 % in a full run, by 15 % in an ordinary one.
+TEST_CASE("a sampler whose acceptance is a little wrong is caught, and the same sampler without the error is not") {
+  int const count = replications(50, 150);
   std::string const mh = "mh(samples = 4000, burn_in = 1000, thin = 4)";
   json const right = calibrated(autoregression(), mh, count, 12, &planted_row<0>);
   CHECK(uniform(right));
-  json const wrong = calibrated(autoregression(), mh, count, 12, &planted_row<5>);
+  json const wrong = calibrated(autoregression(), mh, count, 12, full_size() ? &planted_row<5> : &planted_row<15>);
   CHECK_FALSE(uniform(wrong));
   CHECK(wrong.at("exit") == 1);
 }

@@ -6,6 +6,7 @@
 
 #include "core/numeric/statistics.hpp"
 #include "fits.hpp"
+#include "replications.hpp"
 
 using namespace sysid;
 
@@ -15,26 +16,37 @@ std::map<std::string, double> const duffing_truth = {{"m", 1}, {"c", 20}, {"k", 
 
 }  // namespace
 
-TEST_CASE("over 100 records the truth is inside 3 sd in at least 95, with the known widths, and no run fails silently") {
-  int inside = 0, silent = 0;
-  std::map<std::string, std::vector<double>> widths;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+// An ordinary run finds sds that are too small by two fifths or means that are off by one sd; of 100 records, sds that are wrong by
+// a quarter.
+TEST_CASE("over made records the truth is as far from the mean as the sds say, with the known widths, and no run fails silently") {
+  int const records = replications(25, 100);
+  int outside = 0, silent = 0;
+  std::map<std::string, std::vector<double>> widths, off;
+  for (std::uint64_t const seed : counted_from(1, records)) {
     Fitted const fitted = run_file(with(duffing_text(), "forecast  =", "# forecast ="), seeded(seed));
     bool all = true;
     for (auto const& [name, value] : duffing_truth) {
       double const mean = fitted.of("posterior", name).at("mean"), sd = fitted.of("posterior", name).at("sd");
       all = all && std::abs(mean - value) <= 3 * sd;
+      off[name].push_back((mean - value) / sd);
       widths[name].push_back(100 * sd / value);
     }
-    inside += all;
+    outside += !all;
     bool const doubtful = fitted.of("posterior", "m").at("rhat").get<double>() > 1.01 ||
                           fitted.of("posterior", "m").at("ess_bulk").get<double>() < 400;
     silent += doubtful && fitted.exit == 0;
   }
-  CHECK(inside >= 95);
+  CHECK(outside <= rarely_more(records, 1 - std::pow(0.9973, 4)));
   CHECK(silent == 0);
-  MESSAGE("inside: ", inside, ", median relative sds [%]: m ", median(widths["m"]), ", c ", median(widths["c"]), ", k ",
-          median(widths["k"]), ", k3 ", median(widths["k3"]));
+  for (auto const& [name, each] : off) {
+    CAPTURE(name);
+    double const square = squared_deviations(each, 0) / records;
+    CHECK(square > mean_square_of(records).least);
+    CHECK(square < mean_square_of(records).most);
+    CHECK(std::abs(mean(each)) < 3.3 / std::sqrt(records));
+  }
+  MESSAGE("outside: ", outside, " of ", records, ", median relative sds [%]: m ", median(widths["m"]), ", c ", median(widths["c"]),
+          ", k ", median(widths["k"]), ", k3 ", median(widths["k3"]));
   // Known from an independent reproduction over 200 records.
   CHECK(median(widths["m"]) == doctest::Approx(0.07).epsilon(0.3));
   CHECK(median(widths["c"]) == doctest::Approx(0.085).epsilon(0.3));
@@ -43,10 +55,11 @@ TEST_CASE("over 100 records the truth is inside 3 sd in at least 95, with the kn
   CHECK(median(widths["k3"]) < 0.7);
 }
 
+// Bands of 90 % are found, as is a redraw at each step that is left out.
 TEST_CASE("95 % bands cover 93 to 97 % of fresh noisy records at 5 % noise, and redrawing at each step narrows the band") {
   double covered = 0, narrower = 0;
-  int const records = 12;
-  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+  int const records = replications(4, 12);
+  for (std::uint64_t const seed : counted_from(1, records)) {
     std::string const text = with(duffing_text(), "noise = 1 [percent]", "noise = 5 [percent]") +
                              "redrawn = predict posterior on bench.test with draws(200), redraw = step, seed = 1\n";
     TemporaryFolder folder;

@@ -97,7 +97,7 @@ FitResult fit(std::string const& prior, std::vector<double> const& data, bool lo
 /// The largest chi-square over the parameters of ranks in five bins: of 4 degrees of freedom.
 double worst_chi_square(std::string const& prior, bool logarithmic, Settings const& settings, Run run) {
   constexpr std::size_t bins = 5;
-  int const count = replications(10);
+  int const count = replications(10, 100);
   ParameterSpace const space = space_of(prior);
   std::vector<std::vector<int>> ranks(static_cast<std::size_t>(space.dimension()), std::vector<int>(bins));
   for (int r = 0; r < count; ++r) {
@@ -149,12 +149,13 @@ TEST_CASE("ranks of a hierarchy of eight, some known well and some hardly, are u
       trajectories.set("burn_in", std::int64_t{300});
       CHECK(worst_chi_square(each.prior, each.logarithmic, trajectories, &nuts::run) < chi_square_limit);
       Settings chains(mh::settings());
-      chains.set("samples", std::int64_t{6000});
-      chains.set("burn_in", std::int64_t{1000});
+      bool const many = full_size();
+      chains.set("samples", std::int64_t{many ? 6000 : 3000});
+      chains.set("burn_in", std::int64_t{many ? 1000 : 700});
       CHECK(worst_chi_square(each.prior, each.logarithmic, chains, &mh::run) < chi_square_limit);
       Settings replicas(tempering::settings());
-      replicas.set("samples", std::int64_t{2500});
-      replicas.set("burn_in", std::int64_t{500});
+      replicas.set("samples", std::int64_t{many ? 2500 : 1300});
+      replicas.set("burn_in", std::int64_t{many ? 500 : 400});
       replicas.set("temperatures", std::int64_t{6});
       CHECK(worst_chi_square(each.prior, each.logarithmic, replicas, &tempering::run) < chi_square_limit);
     }

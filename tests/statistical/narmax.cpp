@@ -1,6 +1,6 @@
 // Difference equations of made records: the terms, the coefficients within their sds, the noise, and what is said where the form is
-// wrong. Records are made here, sample by sample, by the equation alone. SYSID_REPLICATIONS=20 makes as many of each kind as the
-// docs report.
+// wrong. Records are made here, sample by sample, by the equation alone; in a full run as many of each kind as the docs report.
+// An ordinary one finds sds of half their size, and a form that is missed.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -81,9 +81,9 @@ struct Found {
 void check_records(Noise const& noise, std::string const& selector) {
   int exact = 0, inside = 0, all = 0;
   double squares = 0;
-  int const records = replications(4);
-  for (int seed = 1; seed <= records; ++seed) {
-    Found const found(record(static_cast<std::uint64_t>(seed), 1000, noise), selector);
+  int const records = replications(2, 20);
+  for (std::uint64_t const seed : counted_from(1, records)) {
+    Found const found(record(seed, 1000, noise), selector);
     if (!found.exact()) continue;
     ++exact;
     for (auto const& [name, value] : true_coefficients) {
@@ -111,7 +111,8 @@ TEST_CASE("five terms among 56 are found in white and in coloured noise, with co
 
 TEST_CASE("more lags than the equation has do not take the place of its moving average") {
   int exact = 0, inside = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  int const records = replications(4, 10);
+  for (std::uint64_t const seed : counted_from(1, records)) {
     Stream force({seed, Purpose::input, 0, 0}), error({seed, Purpose::noise, 0, 0});
     std::string csv = "u,y\n";
     double y = 0, e = 0, u = 0;
@@ -128,7 +129,7 @@ TEST_CASE("more lags than the equation has do not take the place of its moving a
     json const& own = found.kept.at("lag(y, 1)");
     inside += std::abs(own.at("coefficient").get<double>() - 0.6) < 2.6 * own.at("sd").get<double>() ? 1 : 0;
   }
-  CHECK(exact >= 9);
+  CHECK(exact >= records - 1);
   CHECK(inside >= exact - 1);
 }
 
@@ -227,7 +228,8 @@ TEST_CASE("noise of the measurement is a moving average of the difference equati
 TEST_CASE("where single missing samples leave short runs of coloured noise, the form is not called sure") {
   // Noise of the measurement: the errors before a run are known from the samples before it.
   int exact = 0, told = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+  int const records = replications(4, 20);
+  for (std::uint64_t const seed : counted_from(1, records)) {
     Stream force({seed, Purpose::input, 0, 0}), reading({seed, Purpose::noise, 0, 0});
     std::string csv = "u,y\n";
     double x = 0, before = 0, u = 0;
@@ -243,6 +245,6 @@ TEST_CASE("where single missing samples leave short runs of coloured noise, the 
              found.kept.contains("lag(u, 1)");
     told += found.out.find("consecutive rows on average") != std::string::npos;
   }
-  MESSAGE(exact << " of 20 exact");
-  CHECK(told == 20);
+  MESSAGE(exact << " of " << records << " exact");
+  CHECK(told == records);
 }

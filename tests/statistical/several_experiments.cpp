@@ -314,7 +314,7 @@ TEST_CASE("the eight schools as they stand agree with quadrature") {
 
 TEST_CASE("the eight schools with truncated members are refused, with the way out; their optimum comes with a warning") {
   std::string const members = "  parameter effect per experiment ~ normal(mu, sd = tau, lower = -1000)\n";
-  Fitted const fitted = eight_schools(members, "mh");
+  Fitted const fitted = eight_schools(members, "mh(samples = 6000, burn_in = 2000)");
   CHECK(fitted.exit == 1);
   bool const refused = fitted.found("posterior", "chains_disagree") || fitted.found("posterior", "chains_not_quite_agreed") ||
                        fitted.found("posterior", "chain_did_not_move");

@@ -1,5 +1,6 @@
 // Evidences against closed forms and quadrature: within three stated errors, and errors that are as large as they say.
-// SYSID_REPLICATIONS=200 asks for as many records of each kind and prints what was found; a test run makes few.
+// SYSID_REPLICATIONS=200 asks for as many records of each kind and prints what was found; an ordinary run makes few, and
+// finds errors that are a third of what they should be.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -83,7 +84,7 @@ struct Scores {
 Scores scores(std::string const& name, std::function<Known(std::uint64_t)> const& kind, EvidenceMethod method, bool modes, int few,
               int repeats = 1) {
   Scores all;
-  int const count = replications(few);
+  int const count = replications(few, 40);
   for (int r = 1; r <= count; ++r) {
     auto const record = static_cast<std::uint64_t>(r);
     Known const known = kind(record);
@@ -122,11 +123,11 @@ TEST_CASE("bridge sampling states its error where draws repeat") {
 TEST_CASE("evidences in two dimensions lie within their errors of quadrature") {
   for (bool const modes : {false, true}) {
     std::string const which = modes ? ", with modes" : ", without modes";
-    check(scores("oscillator" + which, &linear_oscillator, EvidenceMethod::automatic, modes, 3));
-    check(scores("bounds" + which, &at_bounds, EvidenceMethod::automatic, modes, 3));
-    check(scores("ridge" + which, &ridge, EvidenceMethod::automatic, modes, 3));
-    check(scores("two modes" + which, &two_modes, EvidenceMethod::automatic, modes, 3));
-    check(scores("funnel" + which, &funnel, EvidenceMethod::automatic, modes, 3));
+    check(scores("oscillator" + which, &linear_oscillator, EvidenceMethod::automatic, modes, 2));
+    check(scores("bounds" + which, &at_bounds, EvidenceMethod::automatic, modes, 2));
+    check(scores("ridge" + which, &ridge, EvidenceMethod::automatic, modes, 2));
+    check(scores("two modes" + which, &two_modes, EvidenceMethod::automatic, modes, 2));
+    check(scores("funnel" + which, &funnel, EvidenceMethod::automatic, modes, 2));
   }
 }
 
