@@ -9,6 +9,7 @@
 #include <chrono>
 #include <csignal>
 #include <initializer_list>
+#include <optional>
 #include <thread>
 
 using namespace sysid;
@@ -72,6 +73,34 @@ TEST_CASE("one request that arrives twice is one; only Ctrl-C pressed again late
   CHECK(exit_after(SIGTERM, 600ms, SIGTERM) == 0);
   CHECK(exit_after(SIGINT, 600ms, SIGINT) == 130);
   CHECK(exit_after(SIGTERM, 600ms, SIGINT) == 130);
+}
+
+namespace {
+
+// Exit code of a process that hears nothing for longer than a second after the signal; 0 where it goes on.
+int exit_of_deaf_work(int signal, bool keeps_something) {
+  pid_t const child = fork();
+  if (child == 0) {
+    install_interrupt_handlers();
+    clear_interrupt();
+    std::optional<NothingToKeep> guard;
+    if (!keeps_something) guard.emplace();
+    std::raise(signal);
+    for (auto const began = std::chrono::steady_clock::now(); std::chrono::steady_clock::now() - began < std::chrono::seconds(3);) {
+    }
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+TEST_CASE("work of which nothing is kept ends a second after a request that it does not hear, other work goes on") {
+  for (int const signal : {SIGINT, SIGTERM, SIGHUP}) CHECK(exit_of_deaf_work(signal, false) == 75);
+  CHECK(exit_of_deaf_work(SIGINT, true) == 0);
+  CHECK(exit_of_deaf_work(SIGTERM, true) == 0);
 }
 
 TEST_CASE("a request raises the flag as a signal does") {

@@ -129,11 +129,13 @@ class Simulate {
     history_ = data_lag(model());
     require_memory(fmt::format("the simulation `{}` of {} samples", task_.name, what_.samples),
                    bytes_to_simulate(what_, *compiled_), "use fewer samples");
+    NothingToKeep const guard;
     prepare();
     if (written_.filtered()) draw_what_is_random();
   }
 
   ExitCode run() {
+    std::optional<NothingToKeep> until_written(std::in_place);
     std::vector<Feedback> feedbacks;
     if (feeds_back_) {
       for (auto& channel : experiment_.measured) channel.assign(experiment_.time.size(), 0.0);
@@ -147,8 +149,10 @@ class Simulate {
     require_numbers(*ended);
     note_findings(*ended);
     auto const path = session_.result_folder(task_) / what_.file;
+    std::string const text = record(trajectory.quantities(), *ended);
+    until_written.reset();
     if (session_.options.force) remove_earlier(session_.result_folder(task_));  // results of another task of this name
-    write_file(path, record(trajectory.quantities(), *ended));
+    write_file(path, text);
     session_.notices << fmt::format("{}: {} samples of {} written to {}\n", task_.name, what_.samples, model().name, path.string());
     warn_of_older_data(session_, task_, path);
     return ExitCode::success;

@@ -1,6 +1,7 @@
 // Signal handlers that only set a flag; Ctrl-C pressed again gives up waiting for a safe point.
 #include "core/system/interrupt.hpp"
 
+#include <sysexits.h>
 #include <unistd.h>
 #include <csignal>
 
@@ -22,6 +23,7 @@ std::atomic<std::int64_t> requested_at{0};
 // The same of the first signal that ends with the process being killed.
 std::atomic<std::int64_t> final_at{0};
 std::atomic<bool (*)(bool)> rule{nullptr};
+std::atomic<int> nothing_to_keep{0};  // how many pieces of work say so
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler may touch lock-free atomics alone");
 
 std::int64_t nanoseconds() {
@@ -35,7 +37,7 @@ void on_signal(int signal) {
   std::int64_t first = 0, none = 0;
   if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) final_at.compare_exchange_strong(none, now);
   if (requested_at.compare_exchange_strong(first, now)) {
-    if (signal == SIGINT && rule.load() == nullptr) alarm(1);
+    if ((signal == SIGINT || nothing_to_keep.load() > 0) && rule.load() == nullptr) alarm(1);
     return;
   }
   // Whoever supervises the program and has no more patience sends SIGKILL: SIGTERM may come as often as it likes.
@@ -45,6 +47,11 @@ void on_signal(int signal) {
 /// A second later: a step that takes long cannot be left in its middle, and nobody should wonder whether the request was heard.
 void on_alarm(int) {
   if (requested_at.load() == 0) return;
+  if (nothing_to_keep.load() > 0) {
+    constexpr char ended[] = "\nsysid: interrupted\n";
+    (void)!write(STDERR_FILENO, ended, sizeof ended - 1);
+    _exit(EX_TEMPFAIL);
+  }
   constexpr char words[] = "\nsysid: stopping after the step in progress; Ctrl-C again ends at once, without a new checkpoint\n";
   (void)!write(STDERR_FILENO, words, sizeof words - 1);
 }
@@ -93,6 +100,8 @@ void request_interrupt() {
 void stop_if_interrupted() {
   if (interrupt_requested()) throw Interrupted();
 }
+NothingToKeep::NothingToKeep() { ++nothing_to_keep; }
+NothingToKeep::~NothingToKeep() { --nothing_to_keep; }
 void clear_interrupt() {
   requested_at.store(0);
   final_at.store(0);

@@ -27,4 +27,15 @@ struct Interrupted {};
 /// finished and written, which goes on after a request.
 void stop_if_interrupted();
 
+/// While one lives, nothing would be kept of the work in progress, and nothing of it is half written: if it has not stopped a
+/// second after Ctrl-C, SIGTERM or SIGHUP, the program ends with exit code 75. For work with steps that cannot be left in their
+/// middle, such as filling gigabytes. Without effect where `install_interrupt_handlers` was not called, and among ranks.
+class NothingToKeep {
+ public:
+  NothingToKeep();
+  ~NothingToKeep();
+  NothingToKeep(NothingToKeep const&) = delete;
+  NothingToKeep& operator=(NothingToKeep const&) = delete;
+};
+
 }  // namespace sysid
