@@ -22,13 +22,17 @@ std::optional<Unit> unit_in_file(ExperimentData const& data, ColumnUse const& co
   return std::nullopt;
 }
 
-std::string missing_with(ReadingRules const& rules, double value) {
-  std::string number = fmt::format("{:.12g}", value);
-  std::replace(number.begin(), number.end(), '.', rules.decimal);
-  if (rules.missing.empty()) return fmt::format("write `read missing = {}`", quoted_text(number));
+std::string missing_with(ReadingRules const& rules, std::vector<double> const& values) {
+  std::vector<std::string> marks = rules.missing;
+  for (double const value : values) {
+    marks.push_back(fmt::format("{:.12g}", value));
+    std::replace(marks.back().begin(), marks.back().end(), '.', rules.decimal);
+  }
   std::string list;
-  for (std::string const& each : rules.missing) list += quoted_text(each) + ", ";
-  return fmt::format("write `missing = ({}{})` after `read`", list, quoted_text(number));
+  for (std::string const& each : marks) list += (list.empty() ? "" : ", ") + quoted_text(each);
+  if (marks.size() > 1) list = "(" + list + ")";
+  return rules.missing.empty() ? fmt::format("write `read missing = {}`", list)
+                               : fmt::format("write `missing = {}` after `read`", list);
 }
 
 namespace {
@@ -47,7 +51,7 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
           input ? "an input acts at every row: interpolate the missing samples in the file, or begin after them, with a range of "
                   "rows in `split`; if a pulse saturated the recorder, the true values are larger"
                 : fmt::format("{} in the data block: the row is then not scored; if it is a sample, add `none` to the list",
-                              missing_with(rules, suspect.value))};
+                              missing_with(rules, {suspect.value}))};
 }
 
 }  // namespace

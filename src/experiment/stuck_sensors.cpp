@@ -54,6 +54,21 @@ struct InFile {
   }
 };
 
+Finding clipped_finding(std::vector<ClippedSamples> const& ends, std::string const& subject, InFile const& in_file,
+                        std::vector<std::string> names, ReadingRules const& rules) {
+  std::string where;
+  std::vector<double> marks;
+  for (ClippedSamples const& end : ends) {
+    where += fmt::format("{} its {} value, {}, in {} samples", where.empty() ? "at" : " and at",
+                         end.largest ? "largest" : "smallest", in_file.text(end.value), end.places.size());
+    marks.push_back(in_file.value(end.value));
+  }
+  return {FindingCode::sensor_stuck, Severity::warning, std::move(names),
+          fmt::format("{} stays {}, three and more in a row: clipped?", subject, where),
+          fmt::format("if the range of the sensor ended there, {} in the data block: these samples are then not scored",
+                      missing_with(rules, marks))};
+}
+
 }  // namespace
 
 Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data, Model const& model) {
@@ -70,17 +85,10 @@ Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data,
         if (!experiment.is_scored(c, i)) values[i] = std::nan("");
       InFile const in_file{channel, unit_in_file(data, column)};
       std::string const subject = fmt::format("{}, column `{}` of {},", channel.name, column.column, experiment.name);
-      auto const clipped = has_own_end(model, channel) ? std::nullopt : clipped_samples(values);
+      auto const clipped = has_own_end(model, channel) ? std::vector<ClippedSamples>() : clipped_samples(values);
       auto const run = frozen_run(values);
-      if (clipped)  // first: a long part at an end of the range is both
-        findings.push_back(
-            {FindingCode::sensor_stuck,
-             Severity::warning,
-             {channel.name, experiment.name},
-             fmt::format("{} stays at its {} value, {}, in {} samples, three and more in a row: clipped?", subject,
-                         clipped->largest ? "largest" : "smallest", in_file.text(clipped->value), clipped->places.size()),
-             fmt::format("if the range of the sensor ended there, {} in the data block: these samples are then not scored",
-                         missing_with(block.rules, in_file.value(clipped->value)))});
+      if (!clipped.empty())  // first: a long part at an end of the range is both
+        findings.push_back(clipped_finding(clipped, subject, in_file, {channel.name, experiment.name}, block.rules));
       else if (run && !has_own_end(model, channel))
         findings.push_back(
             {FindingCode::sensor_stuck,
