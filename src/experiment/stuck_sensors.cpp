@@ -54,19 +54,19 @@ struct InFile {
   }
 };
 
-Finding clipped_finding(std::vector<ClippedSamples> const& ends, std::string const& subject, InFile const& in_file,
-                        std::vector<std::string> names, ReadingRules const& rules) {
-  std::string where;
-  std::vector<double> marks;
-  for (ClippedSamples const& end : ends) {
-    where += fmt::format("{} its {} value, {}, in {} samples", where.empty() ? "at" : " and at",
-                         end.largest ? "largest" : "smallest", in_file.text(end.value), end.places.size());
-    marks.push_back(in_file.value(end.value));
-  }
-  return {FindingCode::sensor_stuck, Severity::warning, std::move(names),
-          fmt::format("{} stays {}, three and more in a row: clipped?", subject, where),
-          fmt::format("if the range of the sensor ended there, {} in the data block: these samples are then not scored",
-                      missing_with(rules, marks))};
+/// "at its largest value, 1.2 mm, in 50 samples".
+std::string ends_text(std::vector<ClippedSamples> const& ends, InFile const& in_file) {
+  std::string text;
+  for (ClippedSamples const& end : ends)
+    text += fmt::format("{} its {} value, {}, in {} samples", text.empty() ? "at" : " and at", end.largest ? "largest" : "smallest",
+                        in_file.text(end.value), end.places.size());
+  return text;
+}
+
+std::vector<double> numbers_of(std::vector<ClippedSamples> const& ends, InFile const& in_file) {
+  std::vector<double> numbers;
+  for (ClippedSamples const& end : ends) numbers.push_back(in_file.value(end.value));
+  return numbers;
 }
 
 }  // namespace
@@ -88,7 +88,12 @@ Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data,
       auto const clipped = has_own_end(model, channel) ? std::vector<ClippedSamples>() : clipped_samples(values);
       auto const run = frozen_run(values);
       if (!clipped.empty())  // first: a long part at an end of the range is both
-        findings.push_back(clipped_finding(clipped, subject, in_file, {channel.name, experiment.name}, block.rules));
+        findings.push_back({FindingCode::sensor_stuck,
+                            Severity::warning,
+                            {channel.name, experiment.name},
+                            fmt::format("{} stays {}, three and more in a row: clipped?", subject, ends_text(clipped, in_file)),
+                            fmt::format("if the range of the sensor ended there, {}: these samples are then not scored",
+                                        to_be_missing(block, data, model, column.column, numbers_of(clipped, in_file)))});
       else if (run && !has_own_end(model, channel))
         findings.push_back(
             {FindingCode::sensor_stuck,
