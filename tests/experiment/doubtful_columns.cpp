@@ -109,6 +109,34 @@ TEST_CASE("rounded times are named with the rate that reads them, which is then 
   CHECK(messages(check_of("t_ms,force,level", "time t_ms [ms]" + rest, true), "times_rounded").size() == 1);
 }
 
+TEST_CASE("a time that is called after another unit than it is read in is named, as a warning also where the block states it") {
+  std::string const rest = "; input u = force hold linear; measure z = level [mm]";
+  auto const named = [&](std::string const& column, std::string const& unit) {
+    return check_of(column + ",force,level", "time " + column + unit + rest);
+  };
+  CheckResult const stated = named("hours", " [day]");
+  CHECK(messages(stated, "unit_in_name") == Messages{"column `hours` of record is read in day, but its name is that of a unit, h"});
+  CHECK(severity_of(stated, FindingCode::unit_in_name) == Severity::warning);
+  CHECK(help_of(stated, FindingCode::unit_in_name) ==
+        "if the name is right, write `time hours [h]` in the data block; if not, give the column another name in the file");
+  CheckResult const bare = named("Minuten", "");
+  CHECK(messages(bare, "unit_in_name") == Messages{"column `Minuten` of record is read in s, but its name is that of a unit, min"});
+  CHECK(help_of(bare, FindingCode::unit_in_name) ==
+        "if the name is right, write `time Minuten [min]` in the data block; if not, `time Minuten [s]`");
+  for (std::string const column : {"minutes", "min", "day", "Stunden", "elapsed_years", "Jahr", "h"}) {
+    CAPTURE(column);
+    CHECK(messages(named(column, ""), "unit_in_name").size() == 1);
+  }
+  CHECK(messages(named("minutes", " [min]"), "unit_in_name").empty());
+  CHECK(messages(named("years", " [year]"), "unit_in_name").empty());
+  for (std::string const column : {"seconds", "Sekunden", "sec", "t", "time", "days_since", "minimum"}) {
+    CAPTURE(column);
+    CHECK(messages(named(column, ""), "unit_in_name").empty());
+  }
+  // What is not the time is a minimum, the length of a day, a height.
+  CHECK(messages(check_of("t,days,min", "time t [ms]; input u = days hold linear; measure z = min [mm]"), "unit_in_name").empty());
+}
+
 TEST_CASE("columns that are exchanged by their names are named with the lines that exchange them again") {
   auto const of = [](std::string const& columns, std::string const& inputs = "load [kN], temp [degC]") {
     TemporaryFolder folder;
