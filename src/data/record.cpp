@@ -95,16 +95,18 @@ Request with_unit_of_file(RecordFile const& file, Request request) {
   return request;
 }
 
-/// Where neither the file nor its name in brackets states a unit.
+/// Where neither the file nor its name in brackets states a unit. usual: of the time, whose name may be a unit in a word.
 std::optional<UnitInName> other_unit_in_name(RecordFile const& file, ColumnRequest const& request,
                                              std::optional<Unit> const& usual) {
   if (file.unit(request.column) || split_name(request.column)) return std::nullopt;
   auto const named = unit_behind_underscore(request.column);
-  std::optional<Unit> const unit = named ? unit_of_text(named->unit) : std::nullopt;
+  auto const word = !named && usual ? unit_of_time_name(request.column) : std::nullopt;
+  std::optional<Unit> const unit = named ? unit_of_text(named->unit) : word ? unit_of_text(*word) : std::nullopt;
   std::optional<Unit> const& read_in = request.unit ? request.unit : request.declared ? request.declared : usual;
   if (!unit || !read_in || read_in->text == "-" || unit->dimension != read_in->dimension || same_unit(*unit, *read_in))
     return std::nullopt;
-  return UnitInName{request.column, unit->text, read_in->text, request.unit.has_value(), cycles_against_radians(*unit, *read_in)};
+  return UnitInName{request.column,  unit->text, read_in->text, request.unit.has_value(), cycles_against_radians(*unit, *read_in),
+                    word.has_value()};
 }
 
 /// The columns of a record as they are asked for, all of one length.

@@ -41,12 +41,14 @@ struct RecordRequest {
   std::string shown_path{};                            // what messages name in place of the path; empty: the path
 };
 
-/// A column whose name ends in another unit of the same kind than that in which its numbers were read.
+/// A column whose name ends in another unit of the same kind than that in which its numbers were read; or of the time, whose whole
+/// name is one.
 struct UnitInName {
   std::string column;
   std::string in_name, read_in;
   bool stated = false;  // the data block has it so
   bool cycles = false;  // one counts cycles and the other radians
+  bool word = false;    // `time hours`
 };
 
 /// Rows without a value of an input. The input bridges them by a straight line, which no run may use.

@@ -20,6 +20,10 @@ std::string cure_of(UnitInName const& found) {
         "one counts cycles, the other radians: declare in the model in {} what it measures, and write the factor 2*pi "
         "where the equations need it; if the name is wrong, write `{}` in the data block",
         found.in_name, read);
+  if (found.word)
+    return fmt::format(
+        "if the name is right, write `time {}` in the data block{}", named,
+        found.stated ? "; if not, give the column another name in the file" : fmt::format("; if not, `time {}`", read));
   bool const has_zero_point = found.in_name == "degC" || found.in_name == "degF";
   return fmt::format(
       "if the name is right, write `{}` in the data block{}{}", named,
@@ -49,10 +53,10 @@ Findings find_other_units(ExperimentData const& data) {
   Findings findings;
   for (UnitInName const& each : data.record.other_units)
     findings.push_back({FindingCode::unit_in_name,
-                        each.stated ? Severity::note : Severity::warning,
+                        each.stated && !each.word ? Severity::note : Severity::warning,
                         {each.column, data.use.name},
-                        fmt::format("column `{}` of {} is read in {}, but its name ends in {}", each.column, data.use.name,
-                                    each.read_in, each.in_name),
+                        fmt::format("column `{}` of {} is read in {}, but its name {} {}", each.column, data.use.name, each.read_in,
+                                    each.word ? "is that of a unit," : "ends in", each.in_name),
                         cure_of(each)});
   return findings;
 }

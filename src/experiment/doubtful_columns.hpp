@@ -6,7 +6,7 @@
 namespace sysid {
 
 /// `unit_in_name` for each column whose name ends in another unit of the same kind than that in which it is read: a note where the
-/// data block states this unit, else a warning.
+/// data block states this unit, else a warning; always one where the name of the time is the unit in a word, `minutes`.
 Findings find_other_units(ExperimentData const& data);
 
 /// `times_rounded`, a warning, where times are read as they stand and equal steps give them by rounding.

@@ -11,6 +11,7 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "data/cell/doubtful_number.hpp"
+#include "data/cell/stuck_sensor.hpp"
 #include "data/table/reading_rules.hpp"
 
 namespace sysid {
@@ -22,19 +23,89 @@ std::optional<Unit> unit_in_file(ExperimentData const& data, ColumnUse const& co
   return std::nullopt;
 }
 
-std::string missing_with(ReadingRules const& rules, double value) {
-  std::string number = fmt::format("{:.12g}", value);
-  std::replace(number.begin(), number.end(), '.', rules.decimal);
-  if (rules.missing.empty()) return fmt::format("write `read missing = {}`", quoted_text(number));
+namespace {
+
+std::string missing_with(ReadingRules const& rules, std::vector<double> const& values) {
+  std::vector<std::string> marks = rules.missing;
+  for (double const value : values) {
+    marks.push_back(fmt::format("{:.12g}", value));
+    std::replace(marks.back().begin(), marks.back().end(), '.', rules.decimal);
+  }
   std::string list;
-  for (std::string const& each : rules.missing) list += quoted_text(each) + ", ";
-  return fmt::format("write `missing = ({}{})` after `read`", list, quoted_text(number));
+  for (std::string const& each : marks) list += (list.empty() ? "" : ", ") + quoted_text(each);
+  if (marks.size() > 1) list = "(" + list + ")";
+  return rules.missing.empty() ? fmt::format("write `read missing = {}`", list)
+                               : fmt::format("write `missing = {}` after `read`", list);
+}
+
+/// As the numbers stand in the file.
+std::vector<double> numbers_in_file(ExperimentData const& data, ColumnUse const& column, Quantity const& quantity,
+                                    std::vector<double> values) {
+  std::optional<Unit> const unit = unit_in_file(data, column);
+  for (double& value : values) {
+    value = quantity.from_si(value);
+    if (unit && quantity.unit) value = convert(value, *quantity.unit, *unit);
+  }
+  return values;
+}
+
+bool has_number(std::vector<double> const& values, double number) {
+  constexpr double rounding = 1e-12;
+  return std::any_of(values.begin(), values.end(),
+                     [&](double value) { return std::fabs(value - number) <= rounding * std::fabs(number); });
+}
+
+/// Whether the numbers of another channel have the mark for the same reason: then both mean it.
+bool is_mark_of(std::vector<double> const& values, double number) {
+  for (DoubtfulNumber const& each : doubtful_numbers(values))
+    if (has_number({each.value}, number)) return true;
+  for (ClippedSamples const& each : clipped_samples(values))
+    if (has_number({each.value}, number)) return true;
+  return false;
+}
+
+/// Another column of the record that has one of these numbers, as the time, an input, or a sample that is none of the marks.
+std::string column_that_has(DataBlock const& block, ExperimentData const& data, Model const& model, std::string const& marked,
+                            std::vector<double> const& numbers) {
+  auto const has_one = [&](std::vector<double> const& values) {
+    return std::any_of(numbers.begin(), numbers.end(), [&](double number) { return has_number(values, number); });
+  };
+  if (block.time) {
+    std::vector<double> times = data.record.time;
+    for (double& time : times) time /= data.record.time_unit ? data.record.time_unit->scale : 1;
+    if (has_one(times)) return block.time->column;
+  }
+  for (DataInputUse const& column : block.inputs)
+    for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+      if (model.inputs[i].name != column.input) continue;
+      std::vector<double> values;
+      for (int row = 0; row < data.record.inputs[i].rows(); ++row) values.push_back(data.record.inputs[i].sample(row));
+      if (has_one(numbers_in_file(data, column, model.inputs[i], std::move(values)))) return column.column;
+    }
+  for (DataMeasureUse const& column : block.measured)
+    for (std::size_t c = 0; c < model.channels.size() && column.column != marked; ++c) {
+      if (model.channels[c].name != column.channel) continue;
+      std::vector<double> const values = numbers_in_file(data, column, model.channels[c], data.record.measured[c]);
+      for (double const number : numbers)
+        if (has_number(values, number) && !is_mark_of(values, number)) return column.column;
+    }
+  return {};
+}
+
+}  // namespace
+
+std::string to_be_missing(DataBlock const& block, ExperimentData const& data, Model const& model, std::string const& column,
+                          std::vector<double> const& numbers) {
+  std::string const other = column_that_has(block, data, model, column, numbers);
+  if (other.empty()) return missing_with(block.rules, numbers) + " in the data block";
+  return fmt::format("empty these cells of column `{}` in the file (`missing` would remove such numbers from column `{}`, too)",
+                     column, other);
 }
 
 namespace {
 
 Finding finding(ExperimentData const& data, ColumnUse const& column, std::string const& unit, DoubtfulNumber const& suspect,
-                bool input, ReadingRules const& rules) {
+                std::string const& cure) {
   constexpr std::size_t most_named = 5;
   std::vector<std::string> rows;
   for (std::size_t const row : suspect.places) rows.push_back(std::to_string(data.experiment.first_row + static_cast<int>(row)));
@@ -44,10 +115,7 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
           fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: a missing value?", column.column,
                       data.use.name, suspect.value, unit_after_number(unit), plural("row", rows.size()),
                       first_listed(rows, most_named)),
-          input ? "an input acts at every row: interpolate the missing samples in the file, or begin after them, with a range of "
-                  "rows in `split`; if a pulse saturated the recorder, the true values are larger"
-                : fmt::format("{} in the data block: the row is then not scored; if it is a sample, add `none` to the list",
-                              missing_with(rules, suspect.value))};
+          cure};
 }
 
 }  // namespace
@@ -58,14 +126,14 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
   Experiment const& experiment = data.experiment;
   Findings findings;
   auto const look = [&](ColumnUse const& column, Quantity const& quantity, std::vector<double> values, bool input) {
-    std::string unit = quantity.unit_text();
-    for (double& value : values) value = quantity.from_si(value);
-    if (auto const in_file = unit_in_file(data, column); in_file && quantity.unit) {
-      unit = in_file->text;
-      for (double& value : values) value = convert(value, *quantity.unit, *in_file);
-    }
-    for (DoubtfulNumber const& suspect : doubtful_numbers(values))
-      findings.push_back(finding(data, column, unit, suspect, input, block.rules));
+    auto const unit = quantity.unit ? unit_in_file(data, column) : std::nullopt;
+    for (DoubtfulNumber const& suspect : doubtful_numbers(numbers_in_file(data, column, quantity, std::move(values))))
+      findings.push_back(finding(
+          data, column, unit ? unit->text : quantity.unit_text(), suspect,
+          input ? "an input acts at every row: interpolate the missing samples in the file, or begin after them, with a range of "
+                  "rows in `split`; if a pulse saturated the recorder, the true values are larger"
+                : to_be_missing(block, data, model, column.column, {suspect.value}) +
+                      ": the row is then not scored; if it is a sample, add `none` to the list"));
   };
   for (DataInputUse const& column : block.inputs)
     for (std::size_t i = 0; i < model.inputs.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiment/experiments.hpp"
 #include "result/finding.hpp"
@@ -17,7 +18,9 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
 /// The unit in which the numbers of a column stand in the file; nothing where they are in that of the quantity.
 std::optional<Unit> unit_in_file(ExperimentData const& data, ColumnUse const& column);
 
-/// "write `read missing = "-9999"`", for a number of the file: what the block has is kept.
-std::string missing_with(ReadingRules const& rules, double value);
+/// "write `read missing = "-9999"` in the data block", for numbers of a channel's column as they stand in the file: what the block
+/// has is kept. Where another column that is used has one of them, and not as a mark, to empty the cells.
+std::string to_be_missing(DataBlock const& block, ExperimentData const& data, Model const& model, std::string const& column,
+                          std::vector<double> const& numbers);
 
 }  // namespace sysid

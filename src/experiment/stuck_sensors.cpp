@@ -54,6 +54,21 @@ struct InFile {
   }
 };
 
+/// "at its largest value, 1.2 mm, in 50 samples".
+std::string ends_text(std::vector<ClippedSamples> const& ends, InFile const& in_file) {
+  std::string text;
+  for (ClippedSamples const& end : ends)
+    text += fmt::format("{} its {} value, {}, in {} samples", text.empty() ? "at" : " and at", end.largest ? "largest" : "smallest",
+                        in_file.text(end.value), end.places.size());
+  return text;
+}
+
+std::vector<double> numbers_of(std::vector<ClippedSamples> const& ends, InFile const& in_file) {
+  std::vector<double> numbers;
+  for (ClippedSamples const& end : ends) numbers.push_back(in_file.value(end.value));
+  return numbers;
+}
+
 }  // namespace
 
 Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data, Model const& model) {
@@ -70,17 +85,15 @@ Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data,
         if (!experiment.is_scored(c, i)) values[i] = std::nan("");
       InFile const in_file{channel, unit_in_file(data, column)};
       std::string const subject = fmt::format("{}, column `{}` of {},", channel.name, column.column, experiment.name);
-      auto const clipped = has_own_end(model, channel) ? std::nullopt : clipped_samples(values);
+      auto const clipped = has_own_end(model, channel) ? std::vector<ClippedSamples>() : clipped_samples(values);
       auto const run = frozen_run(values);
-      if (clipped)  // first: a long part at an end of the range is both
-        findings.push_back(
-            {FindingCode::sensor_stuck,
-             Severity::warning,
-             {channel.name, experiment.name},
-             fmt::format("{} stays at its {} value, {}, in {} samples, three and more in a row: clipped?", subject,
-                         clipped->largest ? "largest" : "smallest", in_file.text(clipped->value), clipped->places.size()),
-             fmt::format("if the range of the sensor ended there, {} in the data block: these samples are then not scored",
-                         missing_with(block.rules, in_file.value(clipped->value)))});
+      if (!clipped.empty())  // first: a long part at an end of the range is both
+        findings.push_back({FindingCode::sensor_stuck,
+                            Severity::warning,
+                            {channel.name, experiment.name},
+                            fmt::format("{} stays {}, three and more in a row: clipped?", subject, ends_text(clipped, in_file)),
+                            fmt::format("if the range of the sensor ended there, {}: these samples are then not scored",
+                                        to_be_missing(block, data, model, column.column, numbers_of(clipped, in_file)))});
       else if (run && !has_own_end(model, channel))
         findings.push_back(
             {FindingCode::sensor_stuck,

@@ -108,3 +108,73 @@ TEST_CASE("rounded times are named with the rate that reads them, which is then 
   CHECK(messages(doubtful, "unit_in_name").size() == 1);
   CHECK(messages(check_of("t_ms,force,level", "time t_ms [ms]" + rest, true), "times_rounded").size() == 1);
 }
+
+TEST_CASE("a time that is called after another unit than it is read in is named, as a warning also where the block states it") {
+  std::string const rest = "; input u = force hold linear; measure z = level [mm]";
+  auto const named = [&](std::string const& column, std::string const& unit) {
+    return check_of(column + ",force,level", "time " + column + unit + rest);
+  };
+  CheckResult const stated = named("hours", " [day]");
+  CHECK(messages(stated, "unit_in_name") == Messages{"column `hours` of record is read in day, but its name is that of a unit, h"});
+  CHECK(severity_of(stated, FindingCode::unit_in_name) == Severity::warning);
+  CHECK(help_of(stated, FindingCode::unit_in_name) ==
+        "if the name is right, write `time hours [h]` in the data block; if not, give the column another name in the file");
+  CheckResult const bare = named("Minuten", "");
+  CHECK(messages(bare, "unit_in_name") == Messages{"column `Minuten` of record is read in s, but its name is that of a unit, min"});
+  CHECK(help_of(bare, FindingCode::unit_in_name) ==
+        "if the name is right, write `time Minuten [min]` in the data block; if not, `time Minuten [s]`");
+  for (std::string const column : {"minutes", "min", "day", "Stunden", "elapsed_years", "Jahr", "h"}) {
+    CAPTURE(column);
+    CHECK(messages(named(column, ""), "unit_in_name").size() == 1);
+  }
+  CHECK(messages(named("minutes", " [min]"), "unit_in_name").empty());
+  CHECK(messages(named("years", " [year]"), "unit_in_name").empty());
+  for (std::string const column : {"seconds", "Sekunden", "sec", "t", "time", "days_since", "minimum"}) {
+    CAPTURE(column);
+    CHECK(messages(named(column, ""), "unit_in_name").empty());
+  }
+  // What is not the time is a minimum, the length of a day, a height.
+  CHECK(messages(check_of("t,days,min", "time t [ms]; input u = days hold linear; measure z = min [mm]"), "unit_in_name").empty());
+}
+
+TEST_CASE("columns that are exchanged by their names are named with the lines that exchange them again") {
+  auto const of = [](std::string const& columns, std::string const& inputs = "load [kN], temp [degC]") {
+    TemporaryFolder folder;
+    std::string table = "load,temp,gap,t_kN\n";
+    for (int i = 0; i < 60; ++i)
+      table += fmt::format("{:.6g},{:.6g},{:.6g},{}\n", 5 + std::sin(1.7 * i), 20 + std::cos(0.9 * i), 2 + std::sin(0.3 * i), i);
+    write_file(folder.path() / "record.csv", table);
+    std::string const first = inputs.substr(0, inputs.find(' ')),
+                      second = inputs.find("temp") != std::string::npos ? "temp" : "gap";
+    return checked(folder.path() / "m.sysid", "model m {\n input " + inputs + "\n parameter a [mm/kN] ~ normal(0, sd = 2)\n" +
+                                                  " parameter b [mm/degC] ~ normal(0, sd = 1)\n observe gap [mm] ~ normal(a*" +
+                                                  first + " + b*" + second +
+                                                  ", sd = 0.1 [mm])\n}\ndata record { file \"record.csv\"; " + columns +
+                                                  " }\nposterior = fit m to record with map, seed = 1\n");
+  };
+  CheckResult const exchanged = of("input load = temp [kN]; input temp = load [degC]; measure gap = gap [mm]");
+  CHECK(messages(exchanged, "column_used_twice") ==
+        Messages{"load is read from column `temp` of record, and column `load` is read for temp: exchanged?"});
+  std::string const help = help_of(exchanged, FindingCode::column_used_twice);
+  CHECK(help == "if so, write `input load = load [kN]` and `input temp = temp [degC]`");
+  std::string cure;
+  for (std::size_t from = help.find('`'); from != std::string::npos; from = help.find('`', help.find('`', from + 1) + 1))
+    cure += help.substr(from + 1, help.find('`', from + 1) - from - 1) + "; ";
+  CHECK(messages(of(cure + "measure gap = gap [mm]"), "column_used_twice").empty());
+  // One name is that of a column, as `level` and `u`.
+  CheckResult const half = of("input load = gap [kN]; input temp = temp [degC]; measure gap = load [mm]");
+  CHECK(help_of(half, FindingCode::column_used_twice) == "if so, write `input load = load [kN]` and `measure gap = gap [mm]`");
+  CheckResult const own = of("input x = gap [kN]; input temp = temp [degC]; measure gap = load [mm]", "x [kN], temp [degC]");
+  CHECK(messages(own, "column_used_twice") ==
+        Messages{"gap is read from column `load` of record, and column `gap` is read for x: exchanged?"});
+  // No name is that of a column that is read for something else.
+  CHECK(messages(of("input load = load [kN]; input temp = temp [degC]; measure gap = gap [mm]"), "column_used_twice").empty());
+  CHECK(messages(of("input x = load [kN]; input temp = temp [degC]; measure gap = gap [mm]", "x [kN], temp [degC]"),
+                 "column_used_twice")
+            .empty());
+  CHECK(messages(of("input load = t_kN [kN]; input temp = temp [degC]; measure gap = gap [mm]"), "column_used_twice").empty());
+  // `t_kN` without its unit is `t`, one letter, which is exchanged with nothing.
+  CHECK(messages(of("input t = load [kN]; input temp = t_kN [degC]; measure gap = gap [mm]", "t [kN], temp [degC]"),
+                 "column_used_twice")
+            .empty());
+}

@@ -75,16 +75,74 @@ TEST_CASE("a part in the middle leaves a range on both sides") {
 
 TEST_CASE("a sensor whose range ends below the signal is named, and its marks are read as missing") {
   for (double const sign : {1.0, -1.0}) {
-    auto const clipped = [sign](int row, double noise) { return sign * std::min(noisy(row, noise), 2.1); };
+    auto const clipped = [sign](int row, double noise) { return sign * std::min(noisy(row, noise), 2.15); };
     CheckResult const result = check_level(clipped);
     auto const found = messages(result, "sensor_stuck");
     REQUIRE(found.size() == 1);
-    CHECK(found[0].find(sign > 0 ? "largest value, 2.1 mm" : "smallest value, -2.1 mm") != std::string::npos);
+    CHECK(found[0].find(sign > 0 ? "largest value, 2.15 mm" : "smallest value, -2.15 mm") != std::string::npos);
     std::smatch line;
     std::string const help = stuck_help(result);
     REQUIRE(std::regex_search(help, line, std::regex("`(read missing = [^`]*)`")));
     CHECK(messages(check_level(clipped, with(stuck_text, "time t [s]", line[1].str() + "; time t [s]")), "sensor_stuck").empty());
   }
+}
+
+TEST_CASE("a sensor that is clipped at both ends is named with both, rough or smooth, and so are the marks of the help") {
+  auto const rough = [](int row, double noise) { return std::clamp(noisy(row, noise), -2.15, 2.35); };
+  // 19 samples a period, printed with eight digits: no noise to speak of.
+  auto const smooth = [](int row, double noise) {
+    return std::clamp(3 * elementary::sin(0.33 * row - 0.4) + 0.002 * noise, -2.15, 2.35);
+  };
+  for (auto const& clipped : {std::function<double(int, double)>(rough), std::function<double(int, double)>(smooth)}) {
+    CheckResult const result = check_level(clipped);
+    auto const found = messages(result, "sensor_stuck");
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].find("at its largest value, 2.35 mm, in ") != std::string::npos);
+    CHECK(found[0].find(" and at its smallest value, -2.15 mm, in ") != std::string::npos);
+    std::smatch line;
+    std::string const help = stuck_help(result);
+    REQUIRE(std::regex_search(help, line, std::regex("`(read missing = [^`]*)`")));
+    CHECK(line[1] == "read missing = (\"2.35\", \"-2.15\")");
+    CHECK(messages(check_level(clipped, with(stuck_text, "time t [s]", line[1].str() + "; time t [s]")), "sensor_stuck").empty());
+  }
+}
+
+TEST_CASE("a smooth record that is clipped at one end is named") {
+  auto const found = stuck([](int row, double) { return std::min(3 * elementary::sin(0.33 * row), 2.15); });
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].find("at its largest value, 2.15 mm, in ") != std::string::npos);
+}
+
+TEST_CASE("a number at the end of the range that another column has, too, is taken from its own column alone") {
+  auto const clipped = [](int row, double noise) { return std::min(noisy(row, noise), 2.1); };
+  std::string const cells =
+      "if the range of the sensor ended there, empty these cells of column `level` in the file (`missing` would remove "
+      "such numbers from column `{}`, too): these samples are then not scored";
+  CHECK(stuck_help(check_level(clipped)) == fmt::format(fmt::runtime(cells), "t"));  // 2.1 s
+  auto const emptied = [&](int row, double noise) { return clipped(row, noise) == 2.1 ? std::nan("") : clipped(row, noise); };
+  CHECK(messages(check_level(emptied, with(stuck_text, "time t", "read missing = \"nan\"; time t")), "sensor_stuck").empty());
+  auto const at_force = [](int row, double noise) { return std::min(noisy(row, noise), 0.997495); };  // sin(1.5)
+  CHECK(stuck_help(check_level(at_force)) == fmt::format(fmt::runtime(cells), "force"));
+  // Without a column of the time there is none that has it.
+  CHECK(stuck_help(check_level(clipped, with(stuck_text, "time t [s]", "rate 10 [Hz]"))).find("`read missing = \"2.1\"`") !=
+        std::string::npos);
+}
+
+TEST_CASE("smooth records that come to an end of their range by themselves are not clipped") {
+  auto const slow = [](int row, double) { return 3 * elementary::sin(0.3317 * row); };
+  CHECK(stuck(slow).empty());
+  for (double const step : {0.5, 0.25, 0.1, 0.02})  // rounded peaks: of a converter, coarse and fine
+    CHECK(stuck([&](int row, double noise) { return step * std::round(slow(row, noise) / step); }).empty());
+  for (double const step : {0.05, 0.01})  // with longer periods the peaks are flat for several samples
+    CHECK(stuck([&](int row, double) { return step * std::round(3 * elementary::sin(0.1317 * row) / step); }).empty());
+  // Saturates smoothly; a ramp between stops; stops that are touched in single samples.
+  CHECK(stuck([&](int row, double noise) { return std::round(1e4 * std::tanh(slow(row, noise))) / 1e4; }).empty());
+  CHECK(stuck([](int row, double) { return std::clamp(0.1 * std::abs(row % 60 - 30) - 0.5, 0.5, 1.5); }).empty());
+  CHECK(stuck([&](int row, double noise) { return std::min(slow(row, noise), 2.95); }).empty());
+  // Held for three rows each, as a slow sensor in a fast recorder.
+  CHECK(stuck([&](int row, double noise) { return std::clamp(slow(row / 3 * 3, noise), -2.0, 2.0); }).empty());
+  // Rests at its end for most of the time, as a valve that closes now and then.
+  CHECK(stuck([](int row, double) { return row % 100 < 80 ? 1.0 : 0.5; }).empty());
 }
 
 TEST_CASE("what repeats its samples for a reason is no stuck sensor") {

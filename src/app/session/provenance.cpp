@@ -9,6 +9,7 @@
 #include "core/system/digest.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "experiment/crossed_columns.hpp"
 #include "experiment/dead_columns.hpp"
 #include "experiment/doubtful_columns.hpp"
 #include "experiment/placeholders.hpp"
@@ -99,7 +100,8 @@ Findings data_findings(CheckedFile const& file, ExperimentData const& data, Mode
   Findings all = find_placeholders(file, data, model);
   for (Findings const& more : {find_constant_columns(file, data, model), find_time_gaps(file, data, model),
                                find_stuck_sensors(file, data, model), find_other_units(data), find_rounded_times(file, data, model),
-                               find_contradicted_rate(file, data, model), find_shared_columns(file, data, model)})
+                               find_contradicted_rate(file, data, model), find_shared_columns(file, data, model),
+                               find_crossed_columns(file, data, model)})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }

@@ -90,6 +90,26 @@ std::optional<NameWithUnit> unit_behind_underscore(std::string_view column) {
   return std::nullopt;
 }
 
+std::optional<std::string_view> unit_of_time_name(std::string_view column) {
+  struct UnitWords {
+    std::string_view unit, words;
+  };
+  constexpr UnitWords rows[] = {{"ms", " ms millisecond milliseconds millisekunde millisekunden "},
+                                {"s", " s sec secs second seconds sekunde sekunden "},
+                                {"min", " min mins minute minutes minuten "},
+                                {"h", " h hr hrs hour hours stunde stunden "},
+                                {"day", " day days tag tage "},
+                                {"year", " year years yr yrs jahr jahre "}};
+  constexpr std::size_t shortest_ending = 4;  // `run_s`, `t_min`: what stands behind a shorter one decides (above)
+  std::string_view const whole = last_part(column);
+  std::string_view const ending = whole.substr(whole.find_last_of("_ ") + 1);
+  std::string_view const name = ending.size() < whole.size() && ending.size() >= shortest_ending ? ending : whole;
+  std::string const word = " " + in_small_letters_only(name) + " ";
+  for (UnitWords const& row : rows)
+    if (row.words.find(word) != std::string_view::npos) return row.unit;
+  return std::nullopt;
+}
+
 bool is_time_name(std::string_view column) {
   if (is_kind_of_temperature(column)) return false;
   if (auto const split = split_name(column)) return is_word_of_time(split->name);

@@ -22,4 +22,7 @@ bool is_acceleration_name(std::string_view column);
 /// input, an extreme), and of one letter, and minutes, only behind a name of the time (`t_s`, not `T_s`).
 std::optional<NameWithUnit> unit_behind_underscore(std::string_view column);
 
+/// Of a column that is used as the time: the unit that its name is, `hours`, `Minuten`, `elapsed_days`, or `min` and `h`.
+std::optional<std::string_view> unit_of_time_name(std::string_view column);
+
 }  // namespace sysid

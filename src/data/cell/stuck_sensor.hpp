@@ -27,8 +27,10 @@ struct ClippedSamples {
   std::vector<std::size_t> places;
 };
 
-/// One sample in fifty or more (10 at least) in such runs, of a record that is like the one above elsewhere. Runs that begin the
-/// record do not count, nor does 0, which is where many quantities end.
-std::optional<ClippedSamples> clipped_samples(std::span<double const> values);
+/// The ends of the range, the upper one first, at which one sample in fifty or more (10 at least) stands in such runs, of a record
+/// that elsewhere is rough as the one above. A smooth one must be cut off three times or more, each time while it moves as fast as
+/// usual and in steps much larger than those of its numbers: a rounded peak is not. Runs that begin the record do not count, nor
+/// does 0, which is where many quantities end, nor what is straight between its stops.
+std::vector<ClippedSamples> clipped_samples(std::span<double const> values);
 
 }  // namespace sysid
