@@ -91,6 +91,32 @@ void mark_past(Experiment& experiment, Model const& model, Span place) {
   }
 }
 
+/// A log-normal noise has only positive values: no parameter explains another sample. Counts are seen to where they are read.
+void refuse_values_outside(Experiment const& experiment, DataBlock const& block, Model const& model) {
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    Channel const& channel = model.channels[c];
+    if (channel.noise.row->lower == nullptr || channel.noise.row->discrete) continue;
+    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
+      double const value = experiment.measured[c][i];
+      if (!experiment.is_scored(c, i) || !(value <= 0)) continue;
+      auto const bound = std::find_if(block.measured.begin(), block.measured.end(),
+                                      [&](DataMeasureUse const& each) { return each.channel == channel.name; });
+      throw UserError(
+          {Severity::error,
+           "E4206",
+           fmt::format("row {} of `{}`: `{}` is {:.6g}, but `{}` has only positive values",
+                       experiment.first_row + static_cast<int>(i), block.mention(), channel.name, channel.from_si(value),
+                       channel.noise.row->name),
+           Label{bound == block.measured.end() ? block.span : bound->span, {}},
+           {},
+           fmt::format("if the sensor gave no value, empty the cell: the sample is then left out; if such a value can be "
+                       "true, write another noise, such as `observe {} ~ normal(..., sd = ...)`",
+                       channel.name),
+           {channel.name, std::string(channel.noise.row->name)}});
+    }
+  }
+}
+
 }  // namespace
 
 bool predicts_from_data(Model const& model) {
@@ -206,6 +232,7 @@ Experiment cut(Record const& record, DataBlock const& block, Model const& model,
   }
   Experiment experiment = make_experiment(record, name, from, range, rows.span, history);
   mark_past(experiment, model, rows.span);
+  refuse_values_outside(experiment, block, model);
   return experiment;
 }
 
