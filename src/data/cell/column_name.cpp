@@ -92,7 +92,7 @@ std::optional<NameWithUnit> unit_behind_underscore(std::string_view column) {
 
 std::optional<std::string_view> unit_of_time_name(std::string_view column) {
   struct UnitWords {
-    std::string_view unit, words;
+    std::string_view unit, spellings;
   };
   constexpr UnitWords rows[] = {{"ms", " ms millisecond milliseconds millisekunde millisekunden "},
                                 {"s", " s sec secs second seconds sekunde sekunden "},
@@ -106,7 +106,7 @@ std::optional<std::string_view> unit_of_time_name(std::string_view column) {
   std::string_view const name = ending.size() < whole.size() && ending.size() >= shortest_ending ? ending : whole;
   std::string const word = " " + in_small_letters_only(name) + " ";
   for (UnitWords const& row : rows)
-    if (row.words.find(word) != std::string_view::npos) return row.unit;
+    if (row.spellings.find(word) != std::string_view::npos) return row.unit;
   return std::nullopt;
 }
 
