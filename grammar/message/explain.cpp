@@ -212,6 +212,14 @@ class Failure {
     Diagnostic diagnostic = errors::unknown_item(found());
     Token const* const sign = next();
     Token const* const verb = next_but_one();
+    if (sign != nullptr && verb != nullptr && sign->is("<") && verb->is("-") && sign->span.end == verb->span.begin) {
+      diagnostic = errors::left_arrow(cover(sign->span, verb->span));
+      Token const* const task =
+          found_ + 3 < tokens_.size() && verb->statement == tokens_[found_ + 3].statement ? &tokens_[found_ + 3] : nullptr;
+      diagnostic.help =
+          fmt::format("the name of a task is followed by `=`: `{} = {}`", found().text, task == nullptr ? "fit ..." : task->text);
+      return diagnostic;
+    }
     if (sign != nullptr && verb != nullptr && sign->is("~") && words::contains(words::verbs, verb->text))
       diagnostic.help = fmt::format("the name of a task is followed by `=`: `{} = {}`", found().text, verb->text);
     if (verb != nullptr && verb->is("=") && words::contains(words::model_statements, found().text))

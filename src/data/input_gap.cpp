@@ -58,9 +58,11 @@ void refuse_gaps(Record const& record, RowRange used, RowRange simulated) {
   for (InputGap const& gap : record.gaps) {
     int const around = rows_around(record.inputs[gap.input].rule());
     if (gap.last < used.first - around || gap.first > used.last + around) continue;
+    data_errors::Cell const first{record.path, gap.first, gap.line, gap.column};
+    if (record.independent_rows) throw UserError(data_errors::gap_in_independent_rows(first, gap.last, gap.mention));
     RowRange const free = longest_without_gap(record.gaps, gap, simulated, around);
-    throw UserError(data_errors::gap_in_input({record.path, gap.first, gap.line, gap.column}, {gap.last, gap.before, gap.after},
-                                              {simulated.first, simulated.last, around}, {free.first, free.last}, gap.mention));
+    throw UserError(data_errors::gap_in_input(first, {gap.last, gap.before, gap.after}, {simulated.first, simulated.last, around},
+                                              {free.first, free.last}, gap.mention));
   }
 }
 

@@ -334,6 +334,7 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
   record.file_units = columns.file_units();
   record.rounded = columns.rounded();
   record.gaps = columns.gaps();
+  record.independent_rows = request.independent_rows;
   if (whole) {
     record.unused_time = find_unused_time(file, request);
     record.measured_time = find_measured_time(file, request);

@@ -68,6 +68,7 @@ struct Record {
   std::optional<Unit> time_unit;              // in which people read them; absent: seconds
   std::vector<InputSignal> inputs;            // over the whole record
   std::vector<InputGap> gaps;                 // of inputs, those of one input in the order of rows
+  bool independent_rows = false;              // as it was asked for
   std::vector<std::vector<double>> measured;  // [N] each, NaN where missing; empty: not in this data
   std::vector<std::string> comments;          // before the header of the file
   std::vector<UnitInName> other_units;

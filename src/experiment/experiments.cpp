@@ -32,6 +32,23 @@ Diagnostic unreadable(DataBlock const& block, std::filesystem::path const& path,
           guess.empty() ? "paths are relative to the folder of the .sysid file" : guess};
 }
 
+// The block has no times that could be wrong in one row: it and the model contradict each other.
+Diagnostic step_of_block(DataBlock const& block, double step, Model const& model) {
+  std::string const as_rate = block.step_stated ? "" : fmt::format(" (a rate of {:.9g} Hz)", 1 / step);
+  return {Severity::error,
+          "E4203",
+          fmt::format("data `{}` has a step of {:.9g} s{}, but model `{}` has steps of {:.9g} s", block.name, step, as_rate,
+                      model.name, *model.step),
+          Label{*block.step_place, {}},
+          {},
+          block.step_stated
+              ? fmt::format("one of the two is wrong: write `step {0:.9g} [s]` here, or `time discrete {1:.9g} [s]` in the model",
+                            *model.step, step)
+              : fmt::format("one of the two is wrong: write `rate {0:.9g} [Hz]` here, or `time discrete {1:.9g} [s]` in the model",
+                            1 / *model.step, step),
+          {block.name, model.name}};
+}
+
 // A model in discrete time goes from row to row: these must be as far apart as it says, and equally far.
 void check_steps(Record const& record, DataBlock const& block, Model const& model) {
   double const mean = (record.time.back() - record.time.front()) / static_cast<double>(record.rows() - 1);
@@ -39,6 +56,7 @@ void check_steps(Record const& record, DataBlock const& block, Model const& mode
   for (std::size_t i = 1; i < record.time.size(); ++i) {
     double const step = record.time[i] - record.time[i - 1];
     if (same_step(step, wanted)) continue;
+    if (block.step_place) throw UserError(step_of_block(block, step, model));
     throw UserError(
         {Severity::error,
          "E4203",

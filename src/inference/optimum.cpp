@@ -26,6 +26,25 @@ namespace {
 
 constexpr std::uint64_t bound_step = 8'000'000, prior_step = 8'500'000;  // of Purpose::start
 
+/// A prior cannot be widened below a bound of 0 without another distribution, and behind a smaller positive bound lies the next
+/// one: a wrong sign drives a parameter against either.
+std::string cure_at_bounds(Target const& target, std::vector<ModeAtBound> const& bounds) {
+  std::string help = "widen the prior if the bound is not physical, or use mh, which describes the whole posterior";
+  for (ModeAtBound const& each : bounds) {
+    ParameterInfo const& parameter = target.parameters()[static_cast<std::size_t>(each.parameter)];
+    if (each.upper || !(parameter.lower >= 0)) continue;
+    if (parameter.lower > 0)
+      return help + fmt::format("; if `{}` moves to a smaller bound again, a sign in the equation or in the data may be wrong",
+                                parameter.name);
+    help = fmt::format(
+        "if a sign in the equation or in the data is wrong, correct it; to allow negative values, use `{} ~ normal(0, sd = ...)`; "
+        "otherwise use mh, which describes the whole posterior",
+        parameter.name);
+    return help;
+  }
+  return help;
+}
+
 /// Whether and where the optimum lies at bounds.
 Finding at_bounds(Target const& target, Mode const& best, std::vector<ModeAtBound> const& bounds) {
   std::vector<std::string> names, values, endless;
@@ -47,7 +66,7 @@ Finding at_bounds(Target const& target, Mode const& best, std::vector<ModeAtBoun
     message = fmt::format("the density has no maximum, since it grows without end as {}: {}; {}", fmt::join(endless, " and as "),
                           fmt::join(values, ", "), sds);
   return {FindingCode::at_bound, Severity::warning, std::move(names), std::move(message),
-          endless.empty() ? "widen the prior if the bound is not physical, or use mh, which describes the whole posterior"
+          endless.empty() ? cure_at_bounds(target, bounds)
                           : "use mh, which describes the whole posterior, or a prior whose density is finite at the bound"};
 }
 

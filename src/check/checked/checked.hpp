@@ -74,8 +74,9 @@ struct DataBlock {
   std::string shown_path;  // what messages and results name in its place; empty: `path`
   ReadingRules rules{};    // how the file is written
   std::optional<ColumnUse> time;
-  double step = 0;           // [s], when there is no time column; 0: the block does not say when its rows were taken
-  bool step_stated = false;  // by `step`, else by `rate`
+  double step = 0;                   // [s], when there is no time column; 0: the block does not say when its rows were taken
+  bool step_stated = false;          // by `step`, else by `rate`
+  std::optional<Span> step_place{};  // of what states it
   std::vector<DataInputUse> inputs;
   std::vector<DataMeasureUse> measured;
   std::vector<DataConstantUse> constants;

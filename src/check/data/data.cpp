@@ -14,6 +14,7 @@
 #include "check/message/errors_numbers.hpp"
 #include "check/units/units.hpp"
 #include "data/table/file_errors.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid {
 namespace {
@@ -50,11 +51,19 @@ class DataChecker {
     return is_fresh;
   }
 
-  std::optional<double> number(ast::Expression const& tree, Unit const& unit, errors::Subject const& what) {
+  /// What a number of another kind would be right for, and how it is written there.
+  struct OtherPlace {
+    Unit unit;
+    std::string help;
+  };
+
+  std::optional<double> number(ast::Expression const& tree, Unit const& unit, errors::Subject const& what,
+                               std::optional<OtherPlace> const& elsewhere = std::nullopt) {
     auto const value = scope_.expression(tree);
     if (!value) return std::nullopt;
     if (value->kind == Typed::Kind::known)
       if (auto refused = refuse_number(tree.span, what, value->unit, unit)) {
+        if (elsewhere && !refuse_number(tree.span, what, value->unit, elsewhere->unit)) refused->help = elsewhere->help;
         diagnostics_.add(std::move(*refused));
         return std::nullopt;
       }
@@ -78,8 +87,13 @@ class DataChecker {
   void take(ast::DataRate const& tree) {
     if (times_) diagnostics_.add(errors::time_and_rate(tree.span, *times_));
     times_ = tree.span;
-    Unit const unit = unit_atom(tree.step ? "s" : "Hz").value();
-    auto const value = number(tree.value, unit, {tree.step ? "the sampling step" : "the sampling rate"});
+    Unit const second = unit_atom("s").value(), hertz = unit_atom("Hz").value();
+    std::string const number_text = unparse(tree.value);
+    auto const value =
+        tree.step ? number(tree.value, second, {"the sampling step"},
+                           OtherPlace{hertz, fmt::format("this is a number of samples per time: write `rate {}`", number_text)})
+                  : number(tree.value, hertz, {"the sampling rate"},
+                           OtherPlace{second, fmt::format("this is the time between two samples: write `step {}`", number_text)});
     if (!value) return;
     if (!(*value > 0) || !std::isfinite(*value)) {
       diagnostics_.add(errors::rate_not_positive(tree.value.span));
@@ -87,6 +101,7 @@ class DataChecker {
     }
     block_.step = tree.step ? *value : 1 / *value;
     block_.step_stated = tree.step;
+    block_.step_place = tree.value.span;
   }
   void take(ast::DataReading const& tree) {
     reading_ = tree.span;

@@ -8,6 +8,7 @@
 #include "check/elaborate/array_functions.hpp"
 #include "check/elaborate/frame.hpp"
 #include "check/elaborate/tree.hpp"
+#include "check/message/errors.hpp"
 #include "check/message/errors_reuse.hpp"
 #include "function/table.hpp"
 
@@ -87,9 +88,26 @@ std::optional<Array> Evaluator::value_of(Frame& frame, std::string const& name, 
   return symbol.array = std::move(value);
 }
 
+// `u[t-1]` where time is discrete; an index that is a whole number is that of an element.
+std::optional<Diagnostic> Evaluator::sample_index(ast::Reference const& reference, Frame const& frame, bool is_channel) const {
+  Frame const* whole = &frame;
+  while (whole->outer != nullptr) whole = whole->outer;
+  auto const& statements = whole->model().statements;
+  bool const discrete = std::any_of(statements.begin(), statements.end(), [](ast::ModelStatement const& each) {
+    return std::holds_alternative<ast::DiscreteTimeDeclaration>(each);
+  });
+  if (!discrete || reference.index.size() != 1 || whole_number(reference.index.front(), frame.instance.arguments))
+    return std::nullopt;
+  return errors::sample_by_index(reference.span, reference.index.front(), {reference.name.text, is_channel});
+}
+
 std::optional<Array> Evaluator::element(Array array, ast::Reference const& reference, Frame const& frame) {
   if (reference.index.empty()) return array;
   Span const span = cover(reference.index.front().span, reference.index.back().span);
+  if (auto refused = sample_index(reference, frame, false)) {
+    diagnostics_.add(std::move(*refused));
+    return std::nullopt;
+  }
   if (static_cast<int>(reference.index.size()) != array.shape.rank) {
     diagnostics_.add(errors::index_count(span, reference.name.text, array.shape, reference.index.size()));
     return std::nullopt;
@@ -130,6 +148,15 @@ std::optional<Array> Evaluator::reference(ast::Reference const& reference, Frame
   }
   Found const found = find(frame, name);
   if (found.symbol == nullptr) {
+    auto const& statements = frame.model().statements;
+    bool const is_channel = std::any_of(statements.begin(), statements.end(), [&](ast::ModelStatement const& each) {
+      auto const* observation = std::get_if<ast::Observation>(&each);
+      return observation != nullptr && observation->channel.name.text == name;
+    });
+    if (auto refused = is_channel ? sample_index(reference, frame, true) : std::nullopt) {
+      diagnostics_.add(std::move(*refused));
+      return std::nullopt;
+    }
     // Channels, `pi`, and what is not declared: the checker knows better.
     ast::Reference copy = reference;
     Shape shape;

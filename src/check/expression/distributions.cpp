@@ -26,6 +26,34 @@ bool is_logarithm(ast::Expression const& value) {
   return call != nullptr && ((*call)->function.text == "log" || (*call)->function.text == "ln");
 }
 
+/// `log_mean = 3`; of `log(x)` it is `median = x`, for what has a unit has no logarithm. Where `log(x/K)` is of a pure number and
+/// the quantity is not, it is `log_mean = log(x/K)`.
+std::string mean_of_logarithm(Scope& scope, ast::Expression const& value, Quantity const& variate) {
+  std::string const whole = "log_mean = " + unparse(value);
+  auto const* call = std::get_if<ast::Box<ast::Call>>(&value.node);
+  if (!is_logarithm(value) || (*call)->arguments.size() != 1) return whole;
+  ast::Expression const& inside = (*call)->arguments.front().value;
+  Diagnostics unsaid;
+  auto const typed = scope.with(unsaid).expression(inside);
+  bool const pure = typed && typed->kind == Typed::Kind::known && typed->unit.dimensionless();
+  return pure && variate.unit && !variate.unit->dimensionless() ? whole : "median = " + unparse(inside);
+}
+
+/// `lognormal(log(x), sigma)` of Stan, R, NumPy and PyMC, where both arguments are of the logarithm: how it is written here. Empty
+/// where it is written as here but for the name.
+std::string log_normal_of_others(Scope& scope, ast::Call const& call, Quantity const& variate) {
+  constexpr std::string_view means[] = {"mu", "meanlog"}, widths[] = {"sigma", "sdlog"};
+  auto const is_one_of = [](ast::Argument const& argument, std::span<std::string_view const> names) {
+    return argument.name && std::find(names.begin(), names.end(), argument.name->text) != names.end();
+  };
+  if (call.function.text != "lognormal" && call.function.text != "Lognormal" && call.function.text != "LogNormal") return {};
+  if (call.arguments.size() != 2) return {};
+  ast::Argument const &place = call.arguments[0], &width = call.arguments[1];
+  if ((place.name && !is_one_of(place, means)) || (width.name && !is_one_of(width, widths))) return {};
+  std::string const location = mean_of_logarithm(scope, place.value, variate);
+  return fmt::format("log_normal({}, {} = {})", location, location.starts_with("median") ? "sd" : "log_sd", unparse(width.value));
+}
+
 struct Given {
   ast::Expression const* value = nullptr;
   Spelling const* spelling = nullptr;
@@ -84,10 +112,21 @@ class DistributionChecker {
     std::span<Spelling const> const spellings = row_.arguments[position].spellings;
     bool const in_doubt = std::any_of(spellings.begin(), spellings.end(), [](Spelling const& each) { return each.logarithm; }) &&
                           is_logarithm(argument.value);
-    if (in_doubt) return fail(errors::logarithm_or_number(argument, name_));
+    if (in_doubt) return fail(errors::logarithm_or_number(argument, mean_of_logarithm(scope_, argument.value, variate_), name_));
     if (spellings.size() > 1 && !row_.arguments[position].by_position)
-      return fail(errors::must_be_named(call_, argument, spelling_names(row_.arguments[position])));
+      return fail(errors::must_be_named(call_, argument, spelling_names(row_.arguments[position]), other_meaning_of_first()));
     take(given_[position], &spellings.front(), argument, std::string(spellings.front().name));
+  }
+
+  /// `log_normal(3, 1)`: 3 is the median here, and the mean of the logarithm in other languages.
+  std::string other_meaning_of_first() const {
+    std::span<Spelling const> const first = row_.arguments.front().spellings;
+    auto const logarithm = std::find_if(first.begin(), first.end(), [](Spelling const& each) { return each.logarithm; });
+    ast::Argument const& argument = call_.arguments.front();
+    if (logarithm == first.end() || argument.name || is_logarithm(argument.value)) return {};
+    std::string const value = unparse(argument.value);
+    return fmt::format("`{}` is the {}: where the mean of the logarithm is meant, write `{} = {}`", value, first.front().name,
+                       logarithm->name, value);
   }
 
   void take_named(ast::Argument const& argument) {
@@ -254,7 +293,7 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
   if (row == nullptr) {
     std::vector<std::string> known;
     for (DistributionRow const& each : distributions()) known.emplace_back(each.name);
-    scope.diagnostics().add(errors::unknown_distribution(call.function, known));
+    scope.diagnostics().add(errors::unknown_distribution(call.function, known, log_normal_of_others(scope, call, variate)));
     return std::nullopt;
   }
   return DistributionChecker(scope, call, variate, *row).run();

@@ -1,11 +1,14 @@
 // Calls that reach back in time or to the channels, turned into leaves with a lag.
 #include "check/expression/lags.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "check/expression/scope.hpp"
 #include "check/message/errors.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid {
 namespace {
@@ -57,6 +60,13 @@ std::optional<Scope::Lags> Scope::lag_calls(ast::Call const& call) {
   }
   if (call.arguments.size() != 2) {
     diagnostics_.add(errors::argument_count(call.function, call.arguments.size(), 2, 2));
+    return std::nullopt;
+  }
+  auto const* name = std::get_if<ast::Reference>(&call.arguments[0].value.node);
+  if (name != nullptr && find(name->name.text) == nullptr && samples_.channels.contains(name->name.text)) {
+    diagnostics_.add(errors::channel_as_quantity(
+        name->name, true,
+        fmt::format("{}(measured({}), {})", call.function.text, name->name.text, unparse(call.arguments[1].value))));
     return std::nullopt;
   }
   auto const value = expression(call.arguments[0].value);

@@ -1,6 +1,8 @@
 // Names to nodes: states become leaves of the first-order system, definitions are expanded in place.
 #include "check/expression/scope.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <numbers>
@@ -144,7 +146,9 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
       if (name == "pi") return literal(graph_, std::numbers::pi, span);
       if (name == "inf") return literal(graph_, std::numeric_limits<double>::infinity(), span);
     }
-    diagnostics_.add(errors::unknown_name(reference.name, names()));
+    diagnostics_.add(samples_.channels.contains(name)
+                         ? errors::channel_as_quantity(reference.name, samples_.discrete, fmt::format("lag(measured({}), 1)", name))
+                         : errors::unknown_name(reference.name, names()));
     return std::nullopt;
   }
   auto const no_primes = [&](std::string const& what) {

@@ -141,7 +141,9 @@ class Scope {
   std::optional<Typed> agreeing_with(std::optional<Unit> const& unit, Span place, ast::Expression const& tree,
                                      Occasion const& occasion);
 
-  // past.cpp
+  std::optional<Diagnostic> sample_in_parentheses(ast::Call const& call) const;
+
+  // lags.cpp
   bool is_lag_call(ast::Call const& call) const;
   std::optional<Typed> lag_call(ast::Call const& call);
   struct Lags {

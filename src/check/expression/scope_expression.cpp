@@ -145,11 +145,25 @@ Typed Scope::combined(ast::Binary const& binary, Typed const& left, Typed const&
   throw InternalError("operator " + symbol + " in an expression");
 }
 
+// `u(t - 1)`: `t` need not be declared for the cure to be known.
+std::optional<Diagnostic> Scope::sample_in_parentheses(ast::Call const& call) const {
+  std::string const& name = call.function.text;
+  bool const is_channel = samples_.channels.contains(name) && find(name) == nullptr;
+  if (!samples_.discrete || (find(name) == nullptr && !is_channel) || functions_.contains(name) || find_function(name) != nullptr ||
+      call.arguments.size() != 1 || call.arguments.front().name)
+    return std::nullopt;
+  return errors::sample_by_index(call.span, call.arguments.front().value, {name, is_channel, false});
+}
+
 std::optional<Typed> Scope::function_call(ast::Call const& call) {
   if (is_lag_call(call)) return lag_call(call);
   std::string const& name = call.function.text;
   for (std::size_t i = 0; i < processes_.size(); ++i)
     if (processes_[i].definition->name.text == name) return process_call(call, i);
+  if (auto refused = sample_in_parentheses(call)) {
+    diagnostics_.add(std::move(*refused));
+    return std::nullopt;
+  }
   CallArguments const arguments = call_arguments(call);
   if (auto const user = functions_.find(name); user != functions_.end()) return user_call(call, *user->second, arguments);
   FunctionRow const* row = find_function(name);

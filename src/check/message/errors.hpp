@@ -37,14 +37,17 @@ Diagnostic number_of_other_kind(Span span, Subject const& what, Unit const& give
 Diagnostic number_in_cycles(Span span, Subject const& what, Unit const& given, Unit const& wanted);
 
 // distributions (E21)
-Diagnostic unknown_distribution(ast::Name const& name, Names const& known);
+/// written: the whole call as it is written here, where that is known.
+Diagnostic unknown_distribution(ast::Name const& name, Names const& known, std::string const& written = {});
 Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known);
 Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other);
 Diagnostic argument_missing(ast::Call const& call, Names const& spellings);
 /// argument: one of call's, without a name.
-Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, Names const& spellings);
-/// Of `log_normal(log(30), ...)`: a median by position, or the mean of the logarithm.
-Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const& distribution);
+/// first: what else the first argument may mean; empty: nothing.
+Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, Names const& spellings,
+                         std::string const& first = {});
+/// Of `log_normal(log(30), ...)`: a median by position, or the mean of the logarithm. written: as the latter.
+Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const& written, std::string const& distribution);
 Diagnostic logarithm_of_shifted(Span span, std::string const& spelling, std::string const& distribution);
 Diagnostic too_many_arguments(ast::Call const& call, ast::Argument const& argument, Names const& signature);
 Diagnostic not_a_noise(ast::Call const& call, Names const& known);
@@ -80,7 +83,8 @@ Diagnostic start_off_constraint(Span equation, Span initial);
 Diagnostic estimated_start_of_constraint(Span start, Span equation);
 Diagnostic undetermined(Span declaration, std::string const& unknown);
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order);
-Diagnostic initial_missing(Span declaration, Names const& components);
+/// values: of each component, what it may be given.
+Diagnostic initial_missing(Span declaration, Names const& components, Names const& values);
 Diagnostic initial_twice(Span second, Span first, std::string const& component);
 Diagnostic initial_moves(Span span);
 Diagnostic not_a_state(ast::Name const& name, Names const& states);
@@ -97,6 +101,14 @@ Diagnostic time_twice(Span second, Span first);
 // samples and discrete time (E31)
 Diagnostic lag_without_discrete_time(ast::Call const& call);
 Diagnostic lag_count(Span span);
+/// E2001: `lag(level, 1)` of a channel; past: how its earlier samples are written.
+Diagnostic channel_as_quantity(ast::Name const& name, bool discrete, std::string const& past);
+struct IndexedQuantity {
+  std::string name;
+  bool is_channel = false, in_brackets = true;
+};
+/// `u[t-1]` (E2707) and `u(t-1)` (E2003) in discrete time; nothing where the index counts no samples.
+std::optional<Diagnostic> sample_by_index(Span span, ast::Expression const& index, IndexedQuantity const& what);
 Diagnostic lags_out_of_place(ast::Call const& call);
 Diagnostic primes_in_discrete_time(ast::Reference const& reference);
 /// name: what stands in place of the channel, when it is a name.

@@ -86,16 +86,25 @@ std::string decimal_comma(ast::Call const& call, ast::Argument const& last) {
   return {};
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 constexpr std::array<std::string_view, 6> start_words{"start", "init", "initval", "initial", "testval", "value"};
 constexpr std::array<std::string_view, 6> truncations{"truncated", "truncate",        "trunc",
                                                       "truncnorm", "truncatednormal", "truncated_normal"};
 
 }  // namespace
 
-Diagnostic unknown_distribution(ast::Name const& name, Names const& known) {
-  std::string small = name.text;
-  for (char& c : small)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+Diagnostic unknown_distribution(ast::Name const& name, Names const& known, std::string const& written) {
+  std::string const small = lower_case(name.text);
+  if (!written.empty())
+    return about({name.text},
+                 error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
+                       fmt::format("write `{}`, if its arguments are the mean and the sd of the logarithm", written)),
+                 "distribution");
   if (std::find(truncations.begin(), truncations.end(), small) != truncations.end())
     return about({name.text},
                  error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
@@ -141,24 +150,24 @@ Diagnostic argument_missing(ast::Call const& call, Names const& spellings) {
                                 fmt::format("write for example `{} = ...`", spellings.front()))));
 }
 
-Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, Names const& spellings) {
+Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, Names const& spellings, std::string const& first) {
   std::string const point = decimal_comma(call, argument);
   return also_about(
       spellings,
       about({call.function.text},
             error("E2106", argument.span, fmt::format("the name of this argument is missing: {}", quoted(spellings, "or")),
-                  fmt::format("{}write `{} = {}`", point.empty() ? "" : point + "; if the comma separates arguments, ",
-                              spellings.front(), unparse(argument.value)))));
+                  fmt::format("{}write `{} = {}`{}", point.empty() ? "" : point + "; if the comma separates arguments, ",
+                              spellings.front(), unparse(argument.value), first.empty() ? "" : "; " + first))));
 }
 
-Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const& distribution) {
+Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const& written, std::string const& distribution) {
   std::string const value = unparse(argument.value);
   return also_about(
       {"median", "log_mean"},
       about({distribution},
             error("E2106", argument.span,
                   fmt::format("without a name this is the median of `{}`, but it is written as a logarithm", distribution),
-                  fmt::format("write `log_mean = {}` for the mean of the logarithm; `median = {}` if it is the median", value,
+                  fmt::format("write `{}` if `{}` is the mean of the logarithm; `median = {}` if it is the median", written, value,
                               value))));
 }
 

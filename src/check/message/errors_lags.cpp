@@ -1,9 +1,28 @@
 // The checker's wording about samples, lags and discrete time.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "check/message/error_words.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid::errors {
+namespace {
+
+/// k of `t + k`, `t - k`, `t`: what is written with an index that counts samples; nothing for other indices.
+std::optional<int> shift_of(ast::Expression const& index) {
+  if (std::holds_alternative<ast::Reference>(index.node)) return 0;
+  auto const* sum = std::get_if<ast::Box<ast::Binary>>(&index.node);
+  if (sum == nullptr || ((*sum)->symbol != "-" && (*sum)->symbol != "+")) return std::nullopt;
+  auto const* count = std::get_if<ast::Number>(&(*sum)->right->node);
+  constexpr double most = 10000;
+  if (!std::holds_alternative<ast::Reference>((*sum)->left->node) || count == nullptr || count->unit || !(count->value <= most) ||
+      count->value != std::floor(count->value))
+    return std::nullopt;
+  return static_cast<int>((*sum)->symbol == "-" ? -count->value : count->value);
+}
+
+}  // namespace
 
 Diagnostic lag_without_discrete_time(ast::Call const& call) {
   return about(
@@ -24,6 +43,32 @@ Diagnostic primes_in_discrete_time(ast::Reference const& reference) {
   return about({reference.name.text, primed(reference)},
                error("E3104", reference.span, fmt::format("`{}`: there are no derivatives in discrete time", primed(reference)),
                      fmt::format("write differences of samples: `{0} - lag({0}, 1)`; or remove `discrete`", reference.name.text)));
+}
+Diagnostic channel_as_quantity(ast::Name const& name, bool discrete, std::string const& past) {
+  return about(
+      {name.text},
+      error("E2001", name.span, fmt::format("`{}` is a measured channel, and its name alone stands for no quantity", name.text),
+            discrete ? fmt::format("its earlier samples are `{}`", past)
+                     : fmt::format("write what the channel observes: the expression behind `observe {} ~`", name.text)));
+}
+std::optional<Diagnostic> sample_by_index(Span span, ast::Expression const& index, IndexedQuantity const& what) {
+  std::optional<int> const shift = shift_of(index);
+  if (!shift) return std::nullopt;
+  auto const lag = [&](int count) {
+    return what.is_channel ? fmt::format("lag(measured({}), {})", what.name, count) : fmt::format("lag({}, {})", what.name, count);
+  };
+  std::string const written = fmt::format(fmt::runtime(what.in_brackets ? "{}[{}]" : "{}({})"), what.name, unparse(index));
+  std::string help;
+  if (*shift < 0)
+    help = fmt::format("{} `{}`", *shift == -1 ? "the sample before is" : "this earlier sample is", lag(-*shift));
+  else if (*shift == 0)
+    help = what.is_channel ? fmt::format("an equation cannot read the present sample; the one before is `{}`", lag(1))
+                           : fmt::format("the present sample is `{}`; the one before is `{}`", what.name, lag(1));
+  else
+    help = fmt::format("write the equation for the present sample: `{}` in place of `{}`, and lags that are larger by {}",
+                       what.name, written, *shift);
+  return about({what.name}, error(what.in_brackets ? "E2707" : "E2003", span,
+                                  fmt::format("`{}`: samples are not written with an index", written), help));
 }
 Diagnostic not_a_channel(Span span, std::string const& function, std::string const& name, Names const& channels) {
   std::string help = name.empty() ? std::string() : did_you_mean(name, channels);

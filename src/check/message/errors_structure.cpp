@@ -44,13 +44,16 @@ Diagnostic initial_of_highest(ast::Reference const& reference, std::string const
             fmt::format("`{}` is of order {}: give the initial values of {}", state, order, quoted(components))));
 }
 
-Diagnostic initial_missing(Span declaration, Names const& components) {
+Diagnostic initial_missing(Span declaration, Names const& components, Names const& values) {
   bool const one = components.size() == 1;
+  std::string written;
+  for (std::size_t i = 0; i < components.size(); ++i)
+    written += fmt::format("{}{} = {}", i == 0 ? "" : ", ", components[i], values[i]);
   return also_about(components,
                     about({components.front().substr(0, components.front().find('\''))},
                           error("E3007", declaration,
                                 fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"),
-                                fmt::format("write `initial {} = 0`", fmt::join(components, " = 0, ")))));
+                                fmt::format("write `initial {}`", written))));
 }
 
 Diagnostic initial_twice(Span second, Span first, std::string const& component) {

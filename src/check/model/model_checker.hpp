@@ -97,6 +97,8 @@ class ModelChecker {
   // In discrete time one value stands for all samples before the first; it may be what a channel measured there.
   void initial_lags();
   void initial_values();
+  /// Of components without an initial value: a parameter of their unit that nothing reads, where one is meant, or 0.
+  std::vector<std::string> values_to_give(std::vector<std::size_t> const& components) const;
   // Where the search for an unknown's first value begins.
   void guess(ast::InitialValue const& initial, Unknown& unknown);
   // Equations that were differentiated must hold at the start.

@@ -2,7 +2,9 @@
 #include "check/model/model_checker.hpp"
 
 #include <algorithm>
+#include <set>
 
+#include "check/elaborate/tree.hpp"
 #include "check/expression/distributions.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_disturbances.hpp"
@@ -74,6 +76,30 @@ void ModelChecker::initial_lags() {
   });
 }
 
+std::vector<std::string> ModelChecker::values_to_give(std::vector<std::size_t> const& components) const {
+  std::set<std::string> read;
+  for (ast::ModelStatement const& statement : tree_.statements)
+    tree::each_reference(statement, [&](ast::Reference const& reference) { read.insert(reference.name.text); });
+  auto const same_kind = [](std::optional<Unit> const& a, std::optional<Unit> const& b) {
+    Unit const left = a.value_or(Unit{}), right = b.value_or(Unit{});
+    return left.dimension == right.dimension && left.offset == right.offset;
+  };
+  std::vector<std::string> values;
+  for (std::size_t const component : components) {
+    State const& state = model_.states[component];
+    std::vector<std::string> unused, alike;
+    for (Parameter const& each : model_.parameters) {
+      if (read.contains(each.name) || !same_kind(each.unit, state.unit)) continue;
+      unused.push_back(each.name);
+      if (each.name.starts_with(state.name)) alike.push_back(each.name);
+    }
+    if (alike.size() == 1) unused = alike;
+    bool const taken = unused.size() == 1 && std::find(values.begin(), values.end(), unused.front()) != values.end();
+    values.push_back(unused.size() == 1 && !taken ? unused.front() : "0");
+  }
+  return values;
+}
+
 void ModelChecker::initial_values() {
   if (scope_.samples().discrete) {
     initial_lags();
@@ -125,9 +151,13 @@ void ModelChecker::initial_values() {
   for (std::size_t i = 0; i < model_.states.size() && !orders_doubtful_;) {
     Span const declaration = model_.states[i].span;
     std::vector<std::string> missing;
-    for (; i < model_.states.size() && model_.states[i].span == declaration; ++i)
-      if (!given.contains(static_cast<int>(i)) && !model_.states[i].initial_given) missing.push_back(model_.states[i].name);
-    if (!missing.empty() && !misnamed) diagnostics_.add(errors::initial_missing(declaration, missing));
+    std::vector<std::size_t> components;
+    for (; i < model_.states.size() && model_.states[i].span == declaration; ++i) {
+      if (given.contains(static_cast<int>(i)) || model_.states[i].initial_given) continue;
+      missing.push_back(model_.states[i].name);
+      components.push_back(i);
+    }
+    if (!missing.empty() && !misnamed) diagnostics_.add(errors::initial_missing(declaration, missing, values_to_give(components)));
   }
 }
 

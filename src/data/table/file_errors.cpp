@@ -409,8 +409,18 @@ Diagnostic missing_value(Cell const& cell, std::string const& what, Mention ment
                "files of their own");
 }
 
+Diagnostic gap_in_independent_rows(Cell const& first, int last, Mention mention) {
+  bool const one = last == first.row;
+  return error("E4013", mention,
+               fmt::format("{} {}, but the model reads it in every row", place(first),
+                           one ? "has no value" : fmt::format("has no values up to row {}", last)),
+               fmt::format("delete {} from the file: the rows of a model without dynamics are independent, and a number that is "
+                           "filled in would count as measured; later rows then have smaller numbers in `split`",
+                           one ? fmt::format("row {}", last) : fmt::format("rows {}..{}", first.row, last)));
+}
+
 Diagnostic gap_in_input(Cell const& first, GapEnd const& end, SimulatedRows const& rows, FreeRows const& free, Mention mention) {
-  constexpr int longest_to_fill = 3;
+  constexpr int longest_to_fill = 3, usual_rows = 50;  // of an estimated start
   int const count = end.last - first.row + 1;
   bool const inside = first.row <= rows.last && end.last >= rows.first;
   std::string const why = inside ? fmt::format("rows {}..{} are simulated and need one", rows.first, rows.last)
@@ -426,7 +436,11 @@ Diagnostic gap_in_input(Cell const& first, GapEnd const& end, SimulatedRows cons
     help += fmt::format(" with numbers between its neighbours, {:.6g} and {:.6g}", end.before, end.after);
   if (free.last > free.first)
     help += fmt::format(", or use rows without it: `split part = rows {}..{}`{}", free.first, free.last,
-                        free.first > rows.first ? " with `start = rest` or `start = estimated(rows = 50)` in the task" : "");
+                        free.first > rows.first
+                            ? fmt::format(" with `start = estimated(rows = {})` in the task, or with `start = rest` if "
+                                          "nothing moved just before row {}",
+                                          std::min(usual_rows, (free.last - free.first + 1) / 2), free.first)
+                            : std::string());
   else
     help += ", or save the rows before and after it in files of their own";
   return error("E4013", mention, fmt::format("{} {}, but {}", place(first), what, why), std::move(help));

@@ -120,6 +120,8 @@ struct SimulatedRows {
 struct FreeRows {
   int first = 0, last = 0;
 };
+/// E4013 of an input of a model whose rows are independent.
+Diagnostic gap_in_independent_rows(Cell const& first, int last, Mention mention);
 /// E4013 of an input, in rows that a run uses.
 Diagnostic gap_in_input(Cell const& first, GapEnd const& end, SimulatedRows const& rows, FreeRows const& free, Mention mention);
 

@@ -105,6 +105,22 @@ TEST_CASE("a posterior that ends at the one bound of a flat prior is proper") {
   }
 }
 
+TEST_CASE("what to do at the lower bound of a positive prior names the sign that may be wrong") {
+  // The slope of the record is positive: with a minus before it, it is driven to the end of its prior.
+  auto const help = [](char const* prior) {
+    json const summary =
+        fit_of_line(fmt::format("  parameter a ~ normal(0, sd = 10)\n  parameter b ~ {}\n", prior), "a - b*x", "map");
+    json const* const told = told_by(summary, "at_bound");
+    return told == nullptr ? std::string("none") : told->at("help").get<std::string>();
+  };
+  std::string const at_zero = help("half_normal(sd = 10)");
+  CHECK(at_zero.find("a sign in the equation or in the data") != std::string::npos);
+  CHECK(at_zero.find("`b ~ normal(0, sd = ...)`") != std::string::npos);
+  CHECK(at_zero.find("widen") == std::string::npos);
+  CHECK(help("log_uniform(0.1, 10)").find("if `b` moves to a smaller bound again, a sign") != std::string::npos);
+  CHECK(help("uniform(-0.01, 10)").find("sign") == std::string::npos);
+}
+
 TEST_CASE("an optimum many sds from the end of a wide prior is inside, as it is under a prior without that end") {
   for (char const* const method : {"ml", "map"}) {
     CAPTURE(std::string(method));
