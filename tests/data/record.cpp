@@ -202,7 +202,7 @@ TEST_CASE("the message about a gap names how to fill a short one, and the longes
         "fill the gap in the file with numbers between its neighbours, 1 and 4, or use rows without it: `split part = rows 1..99`");
   CHECK(refused_rows(record, 90, {90, 200}).help ==
         "fill the gap in the file with numbers between its neighbours, 1 and 4, or use rows without it: `split part = rows "
-        "102..200` with `start = rest` or `start = estimated(rows = 50)` in the task");
+        "102..200` with `start = estimated(rows = 49)` in the task, or with `start = rest` if nothing moved just before row 102");
   std::string const far =
       refused_rows(loaded(request(longer.path(), {input("x", InputRule::zero_order)}, {"y"})), 1, {1, 200}).help;
   CHECK(far.find("neighbours") == std::string::npos);

@@ -365,7 +365,7 @@ found = discover decaying from bench with spike_slab(derivatives = weak), seed =
 
 class Interrupt(Desk):
     def test_ctrl_c_keeps_draws_and_resume_goes_on(self):
-        pathlib.Path("long.sysid").write_text(DECAY.replace("samples = 400", "samples = 30000"))
+        pathlib.Path("long.sysid").write_text(DECAY.replace("samples = 400", "samples = 100000"))
         program = textwrap.dedent(
             """
             import os, pathlib, signal, threading, time, sysid
@@ -384,13 +384,13 @@ class Interrupt(Desk):
             import sysid._progress
             sysid._progress.line_for = lambda wanted: Tell()
             fit = model.fit(output="results")
-            print(fit.interrupted, fit.posterior.sizes["draw"] < 29900)
+            print(fit.interrupted, fit.posterior.sizes["draw"] < 99900)
             again = model.fit(output="results", resume=True)
             print(again.interrupted, again.posterior.sizes["draw"])
             """
         )
         said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-        self.assertEqual(said.stdout, "True True\nFalse 29900\n", said.stderr)
+        self.assertEqual(said.stdout, "True True\nFalse 99900\n", said.stderr)
         whole = sysid.load("long.sysid").fit(output="whole")
         self.assertEqual(files_of("results/posterior")["draws_1.csv"], files_of(whole.folder)["draws_1.csv"])
 

@@ -98,10 +98,10 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
 
 Findings data_findings(CheckedFile const& file, ExperimentData const& data, Model const& model) {
   Findings all = find_placeholders(file, data, model);
-  for (Findings const& more : {find_constant_columns(file, data, model), find_time_gaps(file, data, model),
-                               find_stuck_sensors(file, data, model), find_other_units(data), find_rounded_times(file, data, model),
-                               find_contradicted_rate(file, data, model), find_shared_columns(file, data, model),
-                               find_crossed_columns(file, data, model)})
+  for (Findings const& more :
+       {find_constant_columns(file, data, model), find_time_gaps(file, data, model), find_stuck_sensors(file, data, model),
+        find_other_units(data), find_rounded_times(file, data, model), find_contradicted_rate(file, data, model),
+        find_shared_columns(file, data, model), find_crossed_columns(file, data, model)})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }
