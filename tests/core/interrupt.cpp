@@ -86,8 +86,7 @@ int exit_of_deaf_work(int signal, bool keeps_something) {
     std::optional<NothingToKeep> guard;
     if (!keeps_something) guard.emplace();
     std::raise(signal);
-    for (auto const began = std::chrono::steady_clock::now(); std::chrono::steady_clock::now() - began < std::chrono::seconds(3);) {
-    }
+    std::this_thread::sleep_until(std::chrono::steady_clock::now() + std::chrono::milliseconds(1500));
     _exit(0);
   }
   int status = 0;
