@@ -240,13 +240,13 @@ TEST_CASE("the user's text cannot become markup") {
   CHECK(page.find("# &lt;as printed&gt;") != std::string::npos);
 }
 
-TEST_CASE("a finding that asks ends with its question mark") {
+TEST_CASE("what to do begins a line of its own, also below a finding that asks") {
   Report report = example::duffing(20);
   report.findings = {{FindingCode::sensor_stuck, Severity::warning, {}, "y stays at 3: clipped?", "look"},
                      {FindingCode::at_bound, Severity::warning, {}, "it is at 2", "look"}};
   std::string const page = report_html(report, {});
-  CHECK(page.find("clipped? <span class=\"help\">What to do: look") != std::string::npos);
-  CHECK(page.find("it is at 2. <span class=\"help\">What to do: look") != std::string::npos);
+  CHECK(page.find("clipped?<br/><span class=\"help\">What to do: look") != std::string::npos);
+  CHECK(page.find("it is at 2<br/><span class=\"help\">What to do: look") != std::string::npos);
 }
 
 TEST_CASE("the verdict box takes the colour of the worst finding") {

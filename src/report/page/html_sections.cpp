@@ -37,9 +37,7 @@ std::string verdict_html(Report const& report) {
                     : finding.severity == Severity::warning ? "Warning:"
                                                             : "Note:",
                     marked(finding.message),
-                    finding.help.empty() ? ""
-                                         : fmt::format("{} <span class=\"help\">What to do: {}</span>",
-                                                       finding.message.ends_with('?') ? "" : ".", marked(finding.help)),
+                    finding.help.empty() ? "" : fmt::format("<br/><span class=\"help\">What to do: {}</span>", marked(finding.help)),
                     code(word(finding.code)));
   }
   return out + "</ul>\n" + (shown < weighed.size() ? "</details>\n" : "") +
