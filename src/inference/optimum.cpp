@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "inference/backend/checkpoint.hpp"
@@ -24,7 +23,7 @@
 namespace sysid::optimum {
 namespace {
 
-constexpr std::uint64_t bound_step = 8'000'000, prior_step = 8'500'000;  // of Purpose::start
+constexpr std::uint64_t bound_step = 8'000'000;  // of Purpose::start
 
 /// A prior cannot be widened below a bound of 0 without another distribution, and behind a smaller positive bound lies the next
 /// one: a wrong sign drives a parameter against either.
@@ -126,27 +125,6 @@ Finding widths_wrong(Target const& target, Mode const& best, WeightedDraws const
           "fit with mh to get the sds of the posterior; use only the optimum of this result"};
 }
 
-/// Parameters whose posterior by weighted draws is nearly as wide as their prior, where the normal distribution at the optimum does
-/// not show it: along a ridge from one bound of its parameters to another the curvature is that of the coordinates.
-std::optional<Finding> not_determined(Target const& target, WeightedDraws const& draws, std::uint64_t seed) {
-  constexpr double as_the_prior = 0.6;
-  constexpr int prior_draws = 2048;
-  LaneArray prior(target.dimension(), prior_draws);
-  target.sample_prior({seed, Purpose::start, 0, prior_step}, prior);
-  std::vector<std::string> names;
-  for (int p = 0; p < prior.rows(); ++p)
-    if (draws.coordinate_sd[static_cast<std::size_t>(p)] > as_the_prior * std::sqrt(sample_variance(prior.row(p))))
-      names.push_back(target.parameters()[static_cast<std::size_t>(p)].name);
-  if (names.empty()) return std::nullopt;
-  bool const one = names.size() == 1;
-  std::string message =
-      fmt::format("the data do not determine {}{}: {} nearly as wide as {}", one ? "" : "a combination of ", listed(names),
-                  one ? "its posterior is" : "their posteriors are", one ? "its prior" : "their priors");
-  return Finding{FindingCode::flat_direction, Severity::warning, std::move(names), std::move(message),
-                 one ? "fix it to a value, give it a narrower prior, or measure something that depends on it"
-                     : "fix one of them, give them narrower priors, or measure a quantity that distinguishes them"};
-}
-
 /// Of a posterior that weighted draws do not describe, and that was too dear for walkers.
 Finding widths_unknown() {
   return {
@@ -159,26 +137,20 @@ Finding widths_unknown() {
 }
 
 /// Whether the posterior has the widths of the normal distribution at its highest mode. Several modes are a finding of their own.
-Findings check_widths(Target const& target, std::vector<Mode> const& modes, std::vector<ModeAtBound> const& at_bound,
-                      RunContext& context) {
+std::optional<Finding> check_widths(Target const& target, std::vector<Mode> const& modes, std::vector<ModeAtBound> const& at_bound,
+                                    RunContext& context) {
   Ledger extra;
   auto const stop = [&] { return context.stop_requested(); };
   std::vector<Mode> const sampled = sampled_modes(target, ObjectiveKind::declared_posterior, modes, context.seed, extra, stop);
-  if (sampled.size() != 1) return {};
+  if (sampled.size() != 1) return std::nullopt;
   WeightedDraws const draws = weighted_draws(target, sampled, context.seed, extra, stop, &modes.front());
-  if (draws.draws == 0 || draws.sd.empty()) return {};
+  if (draws.draws == 0 || draws.sd.empty()) return std::nullopt;
   std::vector<Misfit> const found = misfits(modes.front(), draws, at_bound);
   bool const some = !found.empty() && (draws.confirmed || draws.walked || found.front().wrong());
-  if (some) {
-    Findings findings;
-    if (modes.front().flat.empty())
-      if (auto undetermined = not_determined(target, draws, context.seed)) findings.push_back(std::move(*undetermined));
-    findings.push_back(widths_wrong(target, modes.front(), draws, found));
-    return findings;
-  }
+  if (some) return widths_wrong(target, modes.front(), draws, found);
   // What walkers find as wide as stated is, though the weights are poor, as they are with many parameters.
-  if (draws.confirmed || draws.walked || !at_bound.empty() || !modes.front().flat.empty()) return {};
-  return {widths_unknown()};
+  if (draws.confirmed || draws.walked || !at_bound.empty() || !modes.front().flat.empty()) return std::nullopt;
+  return widths_unknown();
 }
 
 void write_draw(Target const& target, Mode const& mode, RunContext& context, FitResult& result) {
@@ -247,7 +219,8 @@ FitResult run(std::string_view backend, Target const& target, ObjectiveKind obje
     result.findings.push_back(at_bounds(target, best, at_bound));
   }
   if (objective_kind == ObjectiveKind::declared_posterior)
-    for (Finding& each : check_widths(target, result.modes, at_bound, context)) result.findings.push_back(std::move(each));
+    if (std::optional<Finding> misfit = check_widths(target, result.modes, at_bound, context))
+      result.findings.push_back(std::move(*misfit));
   write_draw(target, best, context, result);
   // One draw has no spread: the standard deviations are those of the Laplace approximation.
   result.summaries = summarise(result);

@@ -217,7 +217,6 @@ WeightedDraws summarised(Target const& target, std::vector<Mode> const& modes, P
   result.confirmed = result.tell() && k < largest_k;
   add_evidence(population, result);
   add_widths(target, modes, population, result);
-  result.coordinate_sd = sds_of(moments_of(population.places, population.weight));
   return result;
 }
 
@@ -244,15 +243,11 @@ LaneArray first_walkers(Population const& population) {
 void set_moments(Target const& target, LaneArray const& theta, std::vector<double> const& weight, WeightedDraws& result) {
   LaneArray declared(theta.rows(), theta.width());
   target.constrain(theta, declared);
-  std::vector<Eigen::VectorXd> places, values;
-  for (int w = 0; w < declared.width(); ++w) {
-    places.push_back(column(theta, w));
-    values.push_back(column(declared, w));
-  }
+  std::vector<Eigen::VectorXd> values;
+  for (int w = 0; w < declared.width(); ++w) values.push_back(column(declared, w));
   Moments const found = moments_of(values, weight);
   result.mean.assign(found.mean.begin(), found.mean.end());
   result.sd = sds_of(found);
-  result.coordinate_sd = sds_of(moments_of(places, weight));
 }
 
 /// What walkers make of it.

@@ -19,8 +19,7 @@ struct WeightedDraws {
   double log_evidence = 0, error = 0;  // log of the mean weight, and its standard error
   double effective = 0;                // number of equally weighted draws that they are worth
   int draws = 0;
-  std::vector<double> mean, sd;       // [P] of the posterior, declared units
-  std::vector<double> coordinate_sd;  // [P] of the sampler's coordinates
+  std::vector<double> mean, sd;  // [P] of the posterior, declared units
 
   /// As many as a width to a tenth takes.
   bool tell() const { return effective >= 50; }
