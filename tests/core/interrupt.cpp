@@ -8,9 +8,16 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <initializer_list>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
+
+#include "core/system/forced_end.hpp"
+#include "temporary_folder.hpp"
 
 using namespace sysid;
 
@@ -78,13 +85,14 @@ TEST_CASE("one request that arrives twice is one; only Ctrl-C pressed again late
 namespace {
 
 // Exit code of a process that hears nothing for longer than a second after the signal; 0 where it goes on.
-int exit_of_deaf_work(int signal, bool keeps_something) {
+int exit_of_deaf_work(int signal, bool keeps_something, std::vector<std::string> const& made = {}) {
   pid_t const child = fork();
   if (child == 0) {
     install_interrupt_handlers();
     clear_interrupt();
     std::optional<NothingToKeep> guard;
     if (!keeps_something) guard.emplace();
+    RemovedAtForcedEnd const removed(made);
     std::raise(signal);
     std::this_thread::sleep_until(std::chrono::steady_clock::now() + std::chrono::milliseconds(1500));
     _exit(0);
@@ -97,8 +105,21 @@ int exit_of_deaf_work(int signal, bool keeps_something) {
 }  // namespace
 
 TEST_CASE("work of which nothing is kept ends a second after a request that it does not hear, other work goes on") {
-  for (int const signal : {SIGINT, SIGTERM, SIGHUP}) CHECK(exit_of_deaf_work(signal, false) == 75);
-  CHECK(exit_of_deaf_work(SIGINT, true) == 0);
+  TemporaryFolder const work;
+  auto const results = work.path() / "results", task = results / "decay", earlier = work.path() / "earlier";
+  std::vector<std::string> const made = {(task / "lock").string(), task.string(), results.string(), earlier.string()};
+  for (int const signal : {SIGINT, SIGTERM, SIGHUP}) {
+    std::filesystem::create_directories(task);
+    std::filesystem::create_directories(earlier);
+    for (auto const& file : {task / "lock", earlier / "summary.json"}) std::ofstream(file) << '.';
+    { RemovedAtForcedEnd const given_up(made); }
+    CHECK(exit_of_deaf_work(signal, false, made) == 75);
+    CHECK_FALSE(std::filesystem::exists(results));
+    CHECK(std::filesystem::exists(earlier / "summary.json"));
+  }
+  std::filesystem::create_directories(task);
+  CHECK(exit_of_deaf_work(SIGINT, true, made) == 0);
+  CHECK(std::filesystem::exists(task));
   CHECK(exit_of_deaf_work(SIGTERM, true) == 0);
 }
 

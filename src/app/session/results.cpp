@@ -33,7 +33,15 @@ void ClaimedFolder::MadeFolders::remove_empty() const {
   for (auto const& each : paths) std::filesystem::remove(each, ignored);
 }
 
-ClaimedFolder::ClaimedFolder(std::filesystem::path const& folder, RunOptions const& options) : made_(folder), lock_(folder) {
+std::vector<std::string> ClaimedFolder::MadeFolders::with_lock(std::filesystem::path const& folder) const {
+  std::vector<std::string> all;
+  if (!files_are_left()) all.push_back((folder / "lock").string());
+  for (auto const& each : paths) all.push_back(each.string());
+  return all;
+}
+
+ClaimedFolder::ClaimedFolder(std::filesystem::path const& folder, RunOptions const& options)
+    : made_(folder), lock_(folder), removed_(made_.with_lock(folder)) {
   if (files_are_left()) return;
   if (!options.resume && !options.force) {
     if (std::filesystem::exists(checkpoint_path(folder)))

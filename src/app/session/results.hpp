@@ -2,10 +2,12 @@
 // ones.
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "app/session/options.hpp"
 #include "core/system/folder_lock.hpp"
+#include "core/system/forced_end.hpp"
 #include "core/text/diagnostic.hpp"
 
 namespace sysid {
@@ -27,10 +29,12 @@ class ClaimedFolder {
     MadeFolders(MadeFolders&&) = default;
     MadeFolders& operator=(MadeFolders&&) = delete;
     void remove_empty() const;
+    std::vector<std::string> with_lock(std::filesystem::path const& folder) const;
     std::vector<std::filesystem::path> paths;  // the innermost first
   };
   MadeFolders made_;
   FolderLock lock_;
+  RemovedAtForcedEnd removed_;  // the same, where the program is ended by a signal
 };
 
 /// Given up in reverse: the first claim may have made the folder that all lie in.

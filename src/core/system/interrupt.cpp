@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <ctime>
 
+#include "core/system/forced_end.hpp"
+
 namespace sysid {
 
 namespace {
@@ -50,6 +52,7 @@ void on_alarm(int) {
   if (nothing_to_keep.load() > 0) {
     constexpr char ended[] = "\nsysid: interrupted\n";
     (void)!write(STDERR_FILENO, ended, sizeof ended - 1);
+    remove_at_forced_end();
     _exit(EX_TEMPFAIL);
   }
   constexpr char words[] = "\nsysid: stopping after the step in progress; Ctrl-C again ends at once, without a new checkpoint\n";
