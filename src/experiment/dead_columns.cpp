@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/text/number.hpp"
-#include "experiment/placeholders.hpp"
+#include "experiment/column_in_file.hpp"
 
 namespace sysid {
 namespace {
@@ -23,24 +22,13 @@ std::optional<double> only_number(std::vector<double> const& values) {
   return alike ? std::optional(values.front()) : std::nullopt;
 }
 
-// As the file has it.
-std::string number_in(ExperimentData const& data, ColumnUse const& column, Quantity const& quantity, double si) {
-  double value = quantity.from_si(si);
-  std::string unit = quantity.unit_text();
-  if (auto const in_file = unit_in_file(data, column); in_file && quantity.unit) {
-    value = convert(value, *quantity.unit, *in_file);
-    unit = in_file->text;
-  }
-  return fmt::format("{:.6g}", value) + unit_after_number(unit);
-}
-
 Finding constant_channel(ExperimentData const& data, ColumnUse const& column, Channel const& channel, double value,
                          std::size_t samples) {
   return {FindingCode::column_constant,
           Severity::warning,
           {channel.name, data.experiment.name},
           fmt::format("{}, column `{}` of {}, is {} in all {} scored samples: was the sensor connected?", channel.name,
-                      column.column, data.experiment.name, number_in(data, column, channel, value), samples),
+                      column.column, data.experiment.name, ColumnInFile(data, column, channel).text(value), samples),
           "check the column and the sensor; a channel that does not change gives no information about the dynamics"};
 }
 
@@ -49,7 +37,7 @@ Finding constant_input(ExperimentData const& data, ColumnUse const& column, Quan
           whole_file ? Severity::warning : Severity::note,
           {input.name, data.experiment.name},
           fmt::format("input {}, column `{}` of {}, is {} in {}{}", input.name, column.column, data.experiment.name,
-                      number_in(data, column, input, value), whole_file ? "all rows of its file" : "all rows that are used",
+                      ColumnInFile(data, column, input).text(value), whole_file ? "all rows of its file" : "all rows that are used",
                       whole_file ? ": was the sensor connected?" : ""),
           "check the column; if the input was not measured, or is a constant of the test, make it a parameter or "
           "`constant` of the model"};

@@ -13,16 +13,9 @@
 #include "data/cell/doubtful_number.hpp"
 #include "data/cell/stuck_sensor.hpp"
 #include "data/table/reading_rules.hpp"
+#include "experiment/column_in_file.hpp"
 
 namespace sysid {
-
-std::optional<Unit> unit_in_file(ExperimentData const& data, ColumnUse const& column) {
-  if (column.unit) return column.unit;
-  for (auto const& [name, unit] : data.record.file_units)
-    if (name == column.column) return unit;
-  return std::nullopt;
-}
-
 namespace {
 
 std::string missing_with(ReadingRules const& rules, std::vector<double> const& values) {
@@ -36,17 +29,6 @@ std::string missing_with(ReadingRules const& rules, std::vector<double> const& v
   if (marks.size() > 1) list = "(" + list + ")";
   return rules.missing.empty() ? fmt::format("write `read missing = {}`", list)
                                : fmt::format("write `missing = {}` after `read`", list);
-}
-
-/// As the numbers stand in the file.
-std::vector<double> numbers_in_file(ExperimentData const& data, ColumnUse const& column, Quantity const& quantity,
-                                    std::vector<double> values) {
-  std::optional<Unit> const unit = unit_in_file(data, column);
-  for (double& value : values) {
-    value = quantity.from_si(value);
-    if (unit && quantity.unit) value = convert(value, *quantity.unit, *unit);
-  }
-  return values;
 }
 
 bool has_number(std::vector<double> const& values, double number) {
@@ -80,12 +62,12 @@ std::string column_that_has(DataBlock const& block, ExperimentData const& data, 
       if (model.inputs[i].name != column.input) continue;
       std::vector<double> values;
       for (int row = 0; row < data.record.inputs[i].rows(); ++row) values.push_back(data.record.inputs[i].sample(row));
-      if (has_one(numbers_in_file(data, column, model.inputs[i], std::move(values)))) return column.column;
+      if (has_one(ColumnInFile(data, column, model.inputs[i]).values(std::move(values)))) return column.column;
     }
   for (DataMeasureUse const& column : block.measured)
     for (std::size_t c = 0; c < model.channels.size() && column.column != marked; ++c) {
       if (model.channels[c].name != column.channel) continue;
-      std::vector<double> const values = numbers_in_file(data, column, model.channels[c], data.record.measured[c]);
+      std::vector<double> const values = ColumnInFile(data, column, model.channels[c]).values(data.record.measured[c]);
       for (double const number : numbers)
         if (has_number(values, number) && !is_mark_of(values, number)) return column.column;
     }
@@ -126,10 +108,10 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
   Experiment const& experiment = data.experiment;
   Findings findings;
   auto const look = [&](ColumnUse const& column, Quantity const& quantity, std::vector<double> values, bool input) {
-    auto const unit = quantity.unit ? unit_in_file(data, column) : std::nullopt;
-    for (DoubtfulNumber const& suspect : doubtful_numbers(numbers_in_file(data, column, quantity, std::move(values))))
+    ColumnInFile const in_file(data, column, quantity);
+    for (DoubtfulNumber const& suspect : doubtful_numbers(in_file.values(std::move(values))))
       findings.push_back(finding(
-          data, column, unit ? unit->text : quantity.unit_text(), suspect,
+          data, column, in_file.unit_text(), suspect,
           input ? "an input acts at every row: interpolate the missing samples in the file, or begin after them, with a range of "
                   "rows in `split`; if a pulse saturated the recorder, the true values are larger"
                 : to_be_missing(block, data, model, column.column, {suspect.value}) +

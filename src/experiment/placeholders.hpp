@@ -1,6 +1,5 @@
 // Numbers in a record that mark missing measurements.
 #pragma once
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,6 @@ namespace sysid {
 /// no `read`, about marks beside those that `missing` lists, and about those that stand out of a part of the rows alone. Of
 /// channels only rows that are scored, or that a model in discrete time may go on from. None where the block has `missing = none`.
 Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, Model const& model);
-
-/// The unit in which the numbers of a column stand in the file; nothing where they are in that of the quantity.
-std::optional<Unit> unit_in_file(ExperimentData const& data, ColumnUse const& column);
 
 /// "write `read missing = "-9999"` in the data block", for numbers of a channel's column as they stand in the file: what the block
 /// has is kept. Where another column that is used has one of them, and not as a mark, to empty the cells.

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "data/cell/stuck_sensor.hpp"
+#include "experiment/column_in_file.hpp"
 #include "experiment/new_ranges.hpp"
 #include "experiment/placeholders.hpp"
 
@@ -41,21 +40,8 @@ bool has_own_end(Model const& model, Channel const& channel) {
   });
 }
 
-struct InFile {
-  Quantity const& quantity;
-  std::optional<Unit> unit;
-
-  double value(double si) const {
-    double const declared = quantity.from_si(si);
-    return unit && quantity.unit ? convert(declared, *quantity.unit, *unit) : declared;
-  }
-  std::string text(double si) const {
-    return fmt::format("{:.6g}", value(si)) + unit_after_number(unit && quantity.unit ? unit->text : quantity.unit_text());
-  }
-};
-
 /// "at its largest value, 1.2 mm, in 50 samples".
-std::string ends_text(std::vector<ClippedSamples> const& ends, InFile const& in_file) {
+std::string ends_text(std::vector<ClippedSamples> const& ends, ColumnInFile const& in_file) {
   std::string text;
   for (ClippedSamples const& end : ends)
     text += fmt::format("{} its {} value, {}, in {} samples", text.empty() ? "at" : " and at", end.largest ? "largest" : "smallest",
@@ -63,7 +49,7 @@ std::string ends_text(std::vector<ClippedSamples> const& ends, InFile const& in_
   return text;
 }
 
-std::vector<double> numbers_of(std::vector<ClippedSamples> const& ends, InFile const& in_file) {
+std::vector<double> numbers_of(std::vector<ClippedSamples> const& ends, ColumnInFile const& in_file) {
   std::vector<double> numbers;
   for (ClippedSamples const& end : ends) numbers.push_back(in_file.value(end.value));
   return numbers;
@@ -83,7 +69,7 @@ Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data,
       std::vector<double> values = experiment.measured[c];
       for (std::size_t i = 0; i < values.size(); ++i)
         if (!experiment.is_scored(c, i)) values[i] = std::nan("");
-      InFile const in_file{channel, unit_in_file(data, column)};
+      ColumnInFile const in_file(data, column, channel);
       std::string const subject = fmt::format("{}, column `{}` of {},", channel.name, column.column, experiment.name);
       auto const clipped = has_own_end(model, channel) ? std::vector<ClippedSamples>() : clipped_samples(values);
       auto const run = frozen_run(values);
@@ -91,7 +77,7 @@ Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data,
         findings.push_back({FindingCode::sensor_stuck,
                             Severity::warning,
                             {channel.name, experiment.name},
-                            fmt::format("{} stays {}, three and more in a row: clipped?", subject, ends_text(clipped, in_file)),
+                            fmt::format("{} stays {}, in runs of three or more: clipped?", subject, ends_text(clipped, in_file)),
                             fmt::format("if the range of the sensor ended there, {}: these samples are then not scored",
                                         to_be_missing(block, data, model, column.column, numbers_of(clipped, in_file)))});
       else if (run && !has_own_end(model, channel))

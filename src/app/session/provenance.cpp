@@ -12,6 +12,7 @@
 #include "experiment/crossed_columns.hpp"
 #include "experiment/dead_columns.hpp"
 #include "experiment/doubtful_columns.hpp"
+#include "experiment/pasted_rows.hpp"
 #include "experiment/placeholders.hpp"
 #include "experiment/repeated_samples.hpp"
 #include "experiment/stuck_sensors.hpp"
@@ -137,9 +138,13 @@ void look_at_data(CheckedFile const& file, ExperimentData const& data, Model con
 }
 
 void look_at_all_data(CheckedFile const& file, std::vector<ExperimentData> const& data, Model const& model, Findings& findings) {
+  auto const add = [&](Findings more) {
+    for (Finding& each : more)
+      if (std::find(findings.begin(), findings.end(), each) == findings.end()) findings.push_back(std::move(each));
+  };
   for (ExperimentData const& each : data) look_at_data(file, each, model, findings);
-  for (Finding& each : find_repeated_samples(file, data, model))
-    if (std::find(findings.begin(), findings.end(), each) == findings.end()) findings.push_back(std::move(each));
+  for (ExperimentData const& each : data) add(find_pasted_rows(file, each, model));
+  add(find_repeated_samples(file, data, model));
 }
 
 void add_fitted_data(CheckedFile const& file, std::vector<ExperimentData> const& data, Model const& model, Report& report) {

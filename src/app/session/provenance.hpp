@@ -16,7 +16,8 @@ bool tells_of_data(FindingCode code);
 /// Adds what the numbers that a model reads give to think, unless it is there.
 void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings);
 
-/// The same of all experiments that one likelihood reads, and what they have in common (`find_repeated_samples`).
+/// The same of all experiments that one likelihood reads, and samples that count twice (`find_pasted_rows`,
+/// `find_repeated_samples`).
 void look_at_all_data(CheckedFile const& file, std::vector<ExperimentData> const& data, Model const& model, Findings& findings);
 
 /// `add_data` of all experiments that one likelihood reads, and what they have in common.
