@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "data/table/file_errors.hpp"
+#include "data/table/cell_errors.hpp"
 
 namespace sysid {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/text/diagnostic.hpp"
 #include "data/experiment.hpp"
-#include "data/table/file_errors.hpp"
+#include "data/table/time_errors.hpp"
 
 namespace sysid {
 

@@ -14,7 +14,10 @@
 #include "data/cell/unit_text.hpp"
 #include "data/format/open_record.hpp"
 #include "data/input_gap.hpp"
+#include "data/table/cell_errors.hpp"
+#include "data/table/column_unit_errors.hpp"
 #include "data/table/file_errors.hpp"
+#include "data/table/time_errors.hpp"
 #include "data/table_record.hpp"
 
 namespace sysid {
@@ -139,8 +142,8 @@ class Columns {
       if (std::optional<std::vector<double>> equal = equal_times_before_rounding(written)) {
         time = std::move(*equal);
         in_seconds(time);
-      } else if (!file_.has_stamps()) {
-        rounded_ = rounded_steps(written, column.unit ? column.unit->scale : 1);
+      } else {
+        rounded_ = rounded_steps(written, column.unit && !file_.has_stamps() ? column.unit->scale : 1);
       }
     }
     return time;

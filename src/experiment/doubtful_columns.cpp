@@ -61,6 +61,23 @@ Findings find_other_units(ExperimentData const& data) {
   return findings;
 }
 
+namespace {
+
+bool reads_time(Graph const& graph) {
+  for (NodeId id = 0; id < graph.size(); ++id)
+    if (graph[id].operation == Operation::leaf && graph[id].leaf_kind == LeafKind::time) return true;
+  return false;
+}
+
+/// What a rate in place of times does to the origin of the time, which is 0 then. first: s.
+std::string origin_words(double first, Model const& model) {
+  if (first == 0) return "";
+  if (!reads_time(model.graph)) return " (the time then begins at 0)";
+  return fmt::format("; the time then begins at 0: add {} [s] to it where the model reads it", shortest(first));
+}
+
+}  // namespace
+
 Findings find_rounded_times(CheckedFile const& file, ExperimentData const& data, Model const& model) {
   std::optional<RoundedSteps> const& rounded = data.record.rounded;
   if (!rounded || model.dynamics == Dynamics::none) return {};
@@ -70,16 +87,15 @@ Findings find_rounded_times(CheckedFile const& file, ExperimentData const& data,
   if (std::any_of(data.record.other_units.begin(), data.record.other_units.end(), is_time)) return {};
   double const scale = data.record.time_unit ? data.record.time_unit->scale : 1;
   std::string const unit = data.record.time_unit ? data.record.time_unit->text : "s";
-  return {
-      {FindingCode::times_rounded,
-       Severity::warning,
-       {data.use.name},
-       fmt::format("the time steps of {} are {} or {} {}: this results if times at equal steps, {} Hz, are rounded", data.use.name,
-                   fmt::format("{:.6g}", rounded->lower / scale), fmt::format("{:.6g}", (rounded->lower + rounded->unit) / scale),
-                   unit, shortest(rounded->rate)),
-       fmt::format("if the samples were taken at equal steps, write `rate {} [Hz]` in place of `time` in `{}`: times that are "
-                   "wrong by a fraction of a step act like noise, and bias the estimates{}",
-                   shortest(rounded->rate), block.name, data.experiment.time.front() == 0 ? "" : " (the time then begins at 0)")}};
+  return {{FindingCode::times_rounded,
+           Severity::warning,
+           {data.use.name},
+           fmt::format("the time steps of {} are {} or {} {}: this results if times at equal steps, {} Hz, are rounded",
+                       data.use.name, fmt::format("{:.6g}", rounded->lower / scale),
+                       fmt::format("{:.6g}", (rounded->lower + rounded->unit) / scale), unit, shortest(rounded->rate)),
+           fmt::format("if the samples were taken at equal steps, write `rate {} [Hz]` in place of `time` in `{}`: times that are "
+                       "wrong by a fraction of a step act like noise, and bias the estimates{}",
+                       shortest(rounded->rate), block.name, origin_words(data.record.time.front(), model))}};
 }
 
 Findings find_contradicted_rate(CheckedFile const& file, ExperimentData const& data, Model const& model) {

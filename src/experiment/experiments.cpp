@@ -53,6 +53,13 @@ Diagnostic step_of_block(DataBlock const& block, double step, Model const& model
 void check_steps(Record const& record, DataBlock const& block, Model const& model) {
   double const mean = (record.time.back() - record.time.front()) / static_cast<double>(record.rows() - 1);
   double const wanted = model.step.value_or(mean);
+  std::string const help =
+      record.rounded && (!model.step || same_step(1 / record.rounded->rate, *model.step))
+          ? fmt::format("equal steps give these times when they are rounded: write `rate {} [Hz]` in place of `time` in `{}`",
+                        shortest(record.rounded->rate), block.name)
+          : "correct `time discrete`, or resample the record to equal steps; differences of up to 1 % of the step, such as those "
+            "of "
+            "rounded times, are accepted";
   for (std::size_t i = 1; i < record.time.size(); ++i) {
     double const step = record.time[i] - record.time[i - 1];
     if (same_step(step, wanted)) continue;
@@ -68,8 +75,7 @@ void check_steps(Record const& record, DataBlock const& block, Model const& mode
                    i + 1, block.mention(), step, wanted, model.name),
          Label{block.time ? block.time->span : block.span, {}},
          {},
-         "correct `time discrete`, or resample the record to equal steps; differences of up to 1 % of the step, such as those of "
-         "rounded times, are accepted",
+         help,
          {model.name}});
   }
 }

@@ -199,9 +199,9 @@ TEST_CASE("the message about a gap names how to fill a short one, and the longes
   TemporaryFile const brief(with_gap(100, 101)), longer(with_gap(60, 120));
   Record const record = loaded(request(brief.path(), {input("x", InputRule::zero_order)}, {"y"}));
   CHECK(refused_rows(record, 1, {1, 200}).help ==
-        "fill the gap in the file with numbers between its neighbours, 1 and 4, or use rows without it: `split part = rows 1..99`");
+        "fill the gap in the file with numbers between its neighbours, which are 1 and 4, or use rows without it: `split part = rows 1..99`");
   CHECK(refused_rows(record, 90, {90, 200}).help ==
-        "fill the gap in the file with numbers between its neighbours, 1 and 4, or use rows without it: `split part = rows "
+        "fill the gap in the file with numbers between its neighbours, which are 1 and 4, or use rows without it: `split part = rows "
         "102..200` with `start = estimated(rows = 49)` in the task, or with `start = rest` if nothing moved just before row 102");
   std::string const far =
       refused_rows(loaded(request(longer.path(), {input("x", InputRule::zero_order)}, {"y"})), 1, {1, 200}).help;

@@ -109,6 +109,59 @@ TEST_CASE("rounded times are named with the rate that reads them, which is then 
   CHECK(messages(check_of("t_ms,force,level", "time t_ms [ms]" + rest, true), "times_rounded").size() == 1);
 }
 
+namespace {
+
+/// 256 Hz in milliseconds from 12.345 s on, and a wave; `time`: of the record, as a cell.
+CheckResult check_wave(std::string const& model, std::string const& block, std::string (*time)(double)) {
+  TemporaryFolder folder;
+  std::string table = "time,y\n";
+  for (int i = 0; i < 300; ++i) table += fmt::format("{},{:.6g}\n", time(12.345 + i / 256.0), std::cos(0.05 * i));
+  write_file(folder.path() / "record.csv", table);
+  return checked(folder.path() / "m.sysid", model + "data record { file \"record.csv\"; " + block +
+                                                "; measure z = y }\nposterior = fit m to record with map, seed = 1\n");
+}
+
+std::string seconds(double time) { return fmt::format("{:.3f}", time); }
+std::string date(double time) { return fmt::format("2024-05-01 12:00:{:06.3f}", time); }
+
+std::string driven(std::string const& force) {
+  return "model m {\n time t\n state y [1]\n initial y = 1\n parameter c [1/s] ~ log_uniform(0.1, 10)\n y' = " + force +
+         " - c*y\n observe z ~ normal(y, sd = 0.1)\n}\n";
+}
+
+}  // namespace
+
+TEST_CASE("a rate in place of rounded times says where the time then begins, if the model reads it") {
+  std::string const plain = help_of(check_wave(driven("0 [1/s]"), "time time", seconds), FindingCode::times_rounded);
+  CHECK(plain.ends_with("bias the estimates (the time then begins at 0)"));
+  std::string const reading =
+      help_of(check_wave(driven("1 [1/s]*sin(2 [1/s]*t)"), "time time", seconds), FindingCode::times_rounded);
+  CHECK(reading.ends_with("the time then begins at 0: add 12.345 [s] to it where the model reads it"));
+}
+
+TEST_CASE("rounded dates are named as rounded numbers are, and read by the same rate") {
+  std::string const stamps = "read stamp = iso; ";
+  CheckResult const rounded = check_wave(driven("0 [1/s]"), stamps + "time time", date);
+  CHECK(messages(rounded, "times_rounded").size() == 1);
+  CHECK(
+      help_of(rounded, FindingCode::times_rounded).starts_with("if the samples were taken at equal steps, write `rate 256 [Hz]`"));
+  CHECK(messages(check_wave(driven("0 [1/s]"), stamps + "rate 256 [Hz]", date), "times_rounded").empty());
+  auto const in_full = [](double time) { return fmt::format("2024-05-01 12:00:{:012.9f}", time); };
+  CHECK(messages(check_wave(driven("0 [1/s]"), stamps + "time time", in_full), "times_rounded").empty());
+}
+
+TEST_CASE("a model in discrete time asks for the rate of rounded times") {
+  std::string const step =
+      "model m {\n time discrete\n parameter a ~ normal(0, sd = 2)\n"
+      " observe z ~ normal(a*lag(measured(z), 1), sd = 0.1)\n}\n";
+  std::vector<Diagnostic> const refused = check_wave(step, "time time", seconds).diagnostics.all();
+  REQUIRE(refused.size() == 1);
+  CHECK(refused[0].code == "E4203");
+  CHECK(refused[0].help ==
+        "equal steps give these times when they are rounded: write `rate 256 [Hz]` in place of `time` in `record`");
+  CHECK(check_wave(step, "rate 256 [Hz]", seconds).diagnostics.all().empty());
+}
+
 TEST_CASE("a time that is called after another unit than it is read in is named, as a warning also where the block states it") {
   std::string const rest = "; input u = force hold linear; measure z = level [mm]";
   auto const named = [&](std::string const& column, std::string const& unit) {

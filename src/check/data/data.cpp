@@ -13,7 +13,7 @@
 #include "check/message/errors_disturbances.hpp"
 #include "check/message/errors_numbers.hpp"
 #include "check/units/units.hpp"
-#include "data/table/file_errors.hpp"
+#include "data/table/column_unit_errors.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {

@@ -122,7 +122,7 @@ Diagnostic range_out_of_place(Span span);
 Diagnostic initial_lag_missing(Span declaration, std::string const& state);
 Diagnostic implicit_in_discrete_time(Span equation, std::string const& state);
 
-// data blocks (E40; the file's own contents: data/file_errors.hpp)
+// data blocks (E40; the file's own contents: data/table/*_errors.hpp)
 Diagnostic no_file(ast::Name const& block);
 Diagnostic no_time(ast::Name const& block);
 Diagnostic time_and_rate(Span second, Span first);

@@ -1,5 +1,5 @@
 // What is wrong with the user's text or data, as a value: collected by the stages, rendered once at the end.
-// The front end's wording lives in the files that own a stage's messages (check/message/errors_*.cpp, data/file_errors.cpp,
+// The front end's wording lives in the files that own a stage's messages (check/message/errors_*.cpp, data/table/*_errors.cpp,
 // grammar/errors.cpp), never at the place of detection; tasks word their few beside what they do.
 #pragma once
 #include <functional>

@@ -120,7 +120,7 @@ std::vector<std::size_t> size_of(int group, int variable) {
 
 std::string netcdf_refusal(nc_type type) {
   if (type == NC_CHAR || type == NC_STRING) return "is text";
-  if (type < NC_BYTE || type > NC_UINT64) return "has numbers of a type of its own, such as complex ones or rows of a table";
+  if (type < NC_BYTE || type > NC_UINT64) return "has numbers of a user-defined type, such as complex numbers or rows of a table";
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include "core/system/digest.hpp"
 #include "data/format/matlab.hpp"
 #include "data/format/netcdf_record.hpp"
+#include "data/table/file_errors.hpp"
 #include "data/table/gzip.hpp"
 #include "data/table/record_bytes.hpp"
 #include "data/table/table.hpp"

@@ -12,6 +12,7 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "data/cell/column_name.hpp"
+#include "data/cell/doubtful_number.hpp"
 #include "data/cell/rounded_times.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_doubt.hpp"
@@ -20,6 +21,7 @@
 #include "data/format/open_record.hpp"
 #include "data/look/paste_block.hpp"
 #include "data/table/encoding.hpp"
+#include "data/table/file_errors.hpp"
 #include "data/table/gzip.hpp"
 #include "data/table/proposal.hpp"
 #include "data/table/record_bytes.hpp"
@@ -126,6 +128,7 @@ class Looking {
   void run() {
     open();
     read_columns();
+    if (!is_text()) mark_missing();
     find_time();
     for (std::size_t c = 0; c < look_.columns.size(); ++c) {
       ColumnLook& column = look_.columns[c];
@@ -185,6 +188,24 @@ class Looking {
         look_.values[c].clear();
       }
   }
+  bool is_text() const { return file_->row_count().has_value(); }
+
+  /// Numbers that stand for missing samples, which of a text are looked for in its cells.
+  void mark_missing() {
+    for (std::size_t c = 0; c < look_.columns.size(); ++c)
+      for (DoubtfulNumber const& each : doubtful_numbers(look_.values[c])) {
+        std::string mark = fmt::format("{:.12g}", each.value);
+        std::vector<std::string>& marks = chosen_.rules.missing;
+        if (std::find(marks.begin(), marks.end(), mark) == marks.end()) marks.push_back(std::move(mark));
+      }
+    if (chosen_.rules.missing.empty()) return;
+    look_.reading = reading_statement(chosen_.rules);
+    look_.readings = {look_.reading};
+    file_ = open_record(path_, chosen_.rules);
+    for (std::size_t c = 0; c < look_.columns.size(); ++c)
+      if (look_.columns[c].unread.empty()) look_.values[c] = file_->numbers(look_.columns[c].name);
+  }
+
   void find_time() {
     TimeLook& time = look_.time;
     if (!chosen_.rules.stamp.empty()) {
@@ -221,13 +242,12 @@ class Looking {
     if (!time.assumed) unit = *stated;
     time.column = column.name;
     SerialTime const* const counts = unit.scale == 1 ? seems_serial(values, column.name) : nullptr;
-    bool const is_text = file_->row_count().has_value();
-    if (is_text && unit.scale == 1 && read_stamps(column.name, stamps_of_numbers(c, counts))) {
+    if (is_text() && unit.scale == 1 && read_stamps(column.name, stamps_of_numbers(c, counts))) {
       time.assumed = false;
       return look_at_time(look_);
     }
     // Where a file has no `read`, a unit says what its numbers count; seconds need none.
-    if (counts != nullptr && !is_text && counts->word != "seconds") {
+    if (counts != nullptr && !is_text() && counts->word != "seconds") {
       unit = unit_atom(counts->unit).value();
       time.since_first = true;
     }

@@ -186,7 +186,7 @@ constexpr ReadingRow rows[] = {
     {"thousands", "thousands = \".\"", "the sign between groups of three digits: \".\", \",\", \"'\" or blank", "blank",
      &take_thousands},
     {"missing", "missing = (\"NaN\", \"-9999\")",
-     "words and numbers that stand for a missing sample; `none`, alone or in the list: no other number stands for one", "none",
+     "words and numbers that stand for a missing sample; `none`, alone or in the list: all other numbers are samples", "none",
      &take_missing},
     {"stamp", "stamp = \"DD.MM.YYYY hh:mm:ss\"",
      "the pattern of dates and times in the time column, `iso`, or `duration` (`0.01 sec`); if it has numbers that count from a "
@@ -225,7 +225,7 @@ std::string refuse(ReadingRules const& rules) {
   if (!rules.date.empty() && rules.stamp != "iso" && is_stamp_word(rules.stamp))
     return fmt::format(
         "`date` goes with a pattern of the date and the time of day, and not with `stamp = {}`: write such a pattern, or leave "
-        "`date` out where all rows are of one day",
+        "`date` out if all rows are of one day",
         rules.stamp);
   int const above = std::max(rules.names, rules.units_line);
   if (rules.first_value != 0 && rules.first_value <= above) return "`values` must lie below `names` and `units`";

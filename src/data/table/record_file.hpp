@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/text/source.hpp"
-#include "data/table/file_errors.hpp"
+#include "data/table/error_parts.hpp"
 
 namespace sysid {
 

@@ -14,12 +14,14 @@
 #include "data/cell/doubtful_number.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_stamp.hpp"
+#include "data/table/cell_errors.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/file_errors.hpp"
 #include "data/table/gzip.hpp"
 #include "data/table/proposal.hpp"
 #include "data/table/record_bytes.hpp"
 #include "data/table/table_parser.hpp"
+#include "data/table/time_errors.hpp"
 
 namespace sysid {
 namespace {

@@ -226,6 +226,26 @@ TEST_CASE("numbers that mark missing samples are missing in a MATLAB file too, a
   CHECK_THROWS_AS(open_record(file.path, rules), UserError);
 }
 
+TEST_CASE("the data block proposed for a MATLAB file lists the numbers that mark missing samples, and none for a record without") {
+  Scratch const file("proposed.mat");
+  for (bool const marked : {true, false}) {
+    Numbers t, y;
+    for (int row = 0; row < 60; ++row) {
+      t.push_back(0.01 * row);
+      y.push_back(marked && row % 7 == 3 ? -9999 : std::sin(0.3 * row));
+    }
+    mat_t* const mat = Mat_CreateVer(file.path.c_str(), nullptr, MAT_FT_MAT5);
+    put(mat, doubles("t", 60, 1, t.data()));
+    put(mat, doubles("y", 60, 1, y.data()));
+    Mat_Close(mat);
+    RecordLook const look = look_at_record(file.path);
+    CHECK(contains(look.block, "read    missing = \"-9999\"") == marked);
+    CHECK(contains(look.block, "read") == marked);
+    CHECK(look.columns[1].missing == (marked ? 9 : 0));
+    CHECK(look.columns[1].smallest > -1.1);
+  }
+}
+
 TEST_CASE("an array of structs is named with what to do, also by a field of it, and so is what else is no column") {
   for (mat_ft const version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
     CAPTURE(static_cast<int>(version));
