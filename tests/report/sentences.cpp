@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "example.hpp"
 #include "report/figure/figures.hpp"
@@ -18,12 +19,15 @@ namespace {
 bool has(std::string const& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 /// All but one of `samples` samples, or all of them, inside a band.
-std::string page_with_coverage(std::size_t samples, double share) {
+std::string page_with_coverage(std::size_t samples, double share, std::string const& score = "coverage_95", bool counts = false) {
   Report report = example::duffing(20);
   Prediction& prediction = report.predictions[0];
   prediction.scored.assign(prediction.scored.size(), 0);
   std::fill_n(prediction.scored.begin(), samples, 1);
-  report.fit = {{"bench.train", "displacement", "mm", {{"coverage_95", share}}}};
+  report.fit = {{"bench.train", "displacement", "mm", {{score, share}}}};
+  if (counts)
+    for (PredictedQuantity& quantity : prediction.quantities)
+      for (double& value : quantity.measured) value = std::round(value);
   return report_html(report, {});
 }
 
@@ -69,6 +73,15 @@ TEST_CASE("a band is too wide or too narrow only where chance would not do it") 
   CHECK(has(page_with_coverage(80, 1), "consistent with the data"));    // 0.95^80 = 1.7 %
   CHECK(has(page_with_coverage(10, 0.8), "consistent with the data"));  // two of ten or more: 8.6 %
   CHECK(has(page_with_coverage(200, 0.8), "too narrow for these data"));
+}
+
+TEST_CASE("bands of counts hold more than their share, and three sds of other noise than normal have no share of their own") {
+  std::string const counts = page_with_coverage(100, 1, "coverage_95", true);
+  CHECK(has(counts, "at least 95.0 % are expected: the width of the bands is consistent with the data"));
+  CHECK(has(page_with_coverage(100, 0.8, "coverage_95", true), "too narrow for these data"));
+  std::string const skewed = page_with_coverage(100, 0.96, "coverage_3sd");
+  CHECK(has(skewed, "96.0 % of the scored samples lie within three sds"));
+  CHECK(has(skewed, "; of normal noise, 99.7 % are expected."));
 }
 
 TEST_CASE("bands include the noise where there are such bands, and a small p value is a bound") {
@@ -163,7 +176,7 @@ TEST_CASE("a prediction and a track show no priors, and a track draws nothing") 
   CHECK(has(page, "5.0184·10⁹ ± 2.4·10⁷"));
   report.verdict = "no change found in 10 rows";
   report.findings.clear();
-  CHECK(has(report_html(report, {}), "If no change was found, there may still be one"));
+  CHECK(has(report_html(report, {}), "no change was found. There may still be one"));
   report.findings = {{FindingCode::parameter_changed, Severity::warning, {"k"}, "`k` fell", ""}};
   page = report_html(report, {});
   CHECK(!has(page, "That nothing was found"));

@@ -73,6 +73,8 @@ struct Widths {
 /// Never "-0.0".
 double to_tenth(double value) { return std::round(10 * value) / 10 + 0.0; }
 
+constexpr double visible = 0.05;  // in the one decimal that is shown
+
 /// A log Bayes factor over half and twice the widths.
 struct Range {
   double low = 0, high = 0;
@@ -178,13 +180,15 @@ std::vector<std::string> prior_width_notes(std::vector<std::string> const& model
     if (range.high < -ruled_out) continue;
     std::string const unknown = fmt::format("{} of {}", plural("prior", range.unknown.size()), quoted(range.unknown));
     std::string note = fmt::format("{} against {}: ", of.name, best.name);
-    if (range.known)
+    if (range.known) {
+      std::string const low = fmt::format("{:.1f}", to_tenth(range.low)), high = fmt::format("{:.1f}", to_tenth(range.high));
       note += fmt::format(
-          "the log Bayes factor lies between {:.1f} and {:.1f} if {} half or twice as wide{}{}", to_tenth(range.low),
-          to_tenth(range.high), range.all ? "one prior or all priors are" : "one prior is",
-          range.by.empty() ? "" : fmt::format("; the prior of `{}` changes it most", range.by),
+          "the log Bayes factor {} if {} half or twice as wide{}{}",
+          low == high ? "stays " + low : fmt::format("lies between {} and {}", low, high),
+          range.all ? "one prior or all priors are" : "one prior is",
+          range.by.empty() || range.most < visible ? "" : fmt::format("; the prior of `{}` changes it most", range.by),
           range.unknown.empty() ? "" : fmt::format("; this does not include the {}, whose effect the draws do not show", unknown));
-    else if (!range.unknown.empty())
+    } else if (!range.unknown.empty())
       note += fmt::format("the draws do not show how the log Bayes factor depends on the {}", unknown);
     else
       continue;

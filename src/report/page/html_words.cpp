@@ -7,6 +7,8 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <functional>
+#include <tuple>
+#include <vector>
 
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
@@ -24,19 +26,24 @@ struct Worst {
   double value;
   std::string where;        // " (force on wave_06)"; empty where there is one line alone
   std::size_t samples = 0;  // of it; 0: not known
+  bool counts = false;      // whether all of these are whole numbers
 };
 
 std::string number(double value, int digits = 3) { return pretty_number(significant(value, digits)); }
 
 /// Scored samples of a line: of a channel those that were measured.
-std::size_t samples_of(Report const& report, FitLine const& line) {
-  std::size_t count = 0;
+std::vector<double> samples_of(Report const& report, FitLine const& line) {
+  std::vector<double> samples;
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (prediction.experiment == line.experiment && quantity.name == line.channel)
         for (std::size_t i = 0; i < quantity.measured.size(); ++i)
-          count += prediction.scored[i] != 0 && !std::isnan(quantity.measured[i]) ? 1 : 0;
-  return count;
+          if (prediction.scored[i] != 0 && !std::isnan(quantity.measured[i])) samples.push_back(quantity.measured[i]);
+  return samples;
+}
+
+bool all_whole(std::vector<double> const& samples) {
+  return !samples.empty() && std::all_of(samples.begin(), samples.end(), [](double value) { return value == std::round(value); });
 }
 
 std::optional<Worst> worst(Report const& report, std::vector<FitLine> const& lines, std::string_view name,
@@ -45,7 +52,8 @@ std::optional<Worst> worst(Report const& report, std::vector<FitLine> const& lin
   for (FitLine const& line : lines)
     for (Score const& score : line.scores) {
       if (score.name != name || !std::isfinite(score.value)) continue;
-      Worst here{score.value, lines.size() > 1 ? fmt::format(" ({})", line.what()) : "", samples_of(report, line)};
+      std::vector<double> const samples = samples_of(report, line);
+      Worst here{score.value, lines.size() > 1 ? fmt::format(" ({})", line.what()) : "", samples.size(), all_whole(samples)};
       if (!out || badness(here) > badness(*out)) out = std::move(here);
     }
   return out;
@@ -77,11 +85,19 @@ std::string coverage_words(Worst const& coverage, double expected) {
   // Five in a hundred may be missing where 95 % are expected, one in a hundred where 99.7 % are: chance goes by the root.
   double const off = coverage.value - expected, short_of = std::sqrt(0.05 * (1 - expected));
   bool const by_chance = chance_of(coverage, expected) >= 0.01;
-  return fmt::format("{} % of the scored samples lie inside{}, {} % are expected: {}.", number(100 * coverage.value),
-                     coverage.where, number(100 * expected),
-                     off < -short_of && !by_chance ? "the bands are too narrow for these data"
-                     : off > 0.035 && !by_chance   ? "the bands are too wide for these data"
-                                                   : "the width of the bands is consistent with the data");
+  // The narrowest band of counts that holds 95 % holds more.
+  bool const wide = off > 0.035 && !by_chance && !coverage.counts, narrow = off < -short_of && !by_chance;
+  return fmt::format("{} % of the scored samples lie inside{}, {}{} % are expected: {}.", number(100 * coverage.value),
+                     coverage.where, coverage.counts ? "at least " : "", number(100 * expected),
+                     narrow ? "the bands are too narrow for these data"
+                     : wide ? "the bands are too wide for these data"
+                            : "the width of the bands is consistent with the data");
+}
+
+/// Three sds hold 99.7 % of a normal noise; counts and noise with long tails have fewer there, whatever their bands.
+std::string three_sd_words(Worst const& coverage, double expected) {
+  return fmt::format("{} % of the scored samples lie within three sds{}; of normal noise, {} % are expected.",
+                     number(100 * coverage.value), coverage.where, number(100 * expected));
 }
 
 /// The check knows how much of it is chance. fitted: the noise is a parameter, which takes the size that the residuals leave.
@@ -166,8 +182,8 @@ std::string verdict_meaning(Report const& report) {
       break;
   }
   if (report.verb == "track")
-    return "The model follows the rows; where they show a change, its parameters were moved. If no change was found, there may "
-           "still be one: a slow change may be taken for drift, and a change of the noise is not reported as a change.";
+    return "The model follows the rows, and no change was found. There may still be one: a slow change may be taken for drift, "
+           "and a change of the noise is not reported as a change.";
   if (bands) return "No check failed. The bands are valid if the model is valid on this record: compare them with the measurement.";
   if (report.discovery)
     return "No check failed. The equations are the best from the terms of the dictionary; this does not prove that no other term "
@@ -184,10 +200,11 @@ std::string score_words(Report const& report, std::vector<FitLine> const& lines,
   auto const high = [](Worst const& each) { return each.value; };
   auto const low = [](Worst const& each) { return -each.value; };
   if (score == "nmse" || score == "nmse_left_out") return say(high, error_words);
-  for (auto const& [name, expected] : {std::pair("coverage_95", 0.95), std::pair("coverage_3sd", 0.9973)})
+  for (auto const& [name, expected, words] :
+       {std::tuple("coverage_95", 0.95, &coverage_words), std::tuple("coverage_3sd", 0.9973, &three_sd_words)})
     if (score == name)
       return say([at = expected](Worst const& each) { return badness_of_coverage(each, at); },
-                 [at = expected](Worst const& each) { return coverage_words(each, at); });
+                 [at = expected, in_words = words](Worst const& each) { return in_words(each, at); });
   if (score == "log_score")
     return "mean log predictive density of a sample: higher is better, to be compared on these samples alone";
   if (score == "chi_squared_per_sample")
@@ -227,7 +244,7 @@ std::vector<ChainWords> chain_words(Report const& report) {
   }
   for (auto const& [name, what, of] :
        {std::tuple("bulk ESS", "means", std::function([](Summary const& s) { return s.ess_bulk; })),
-        std::tuple("tail ESS", "5 and 95 % limits", std::function([](Summary const& s) { return s.ess_tail; }))})
+        std::tuple("tail ESS", "5 and 95 % quantiles", std::function([](Summary const& s) { return s.ess_tail; }))})
     if (auto const ess = extreme(report, of, false)) {
       bool const good = ess->value >= ess_threshold;
       out.push_back(
