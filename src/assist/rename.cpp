@@ -233,7 +233,7 @@ Renaming rename(std::string const& path, std::string const& text, std::uint32_t 
               fmt::format("`{}` is already used where `{}` occurs: {} would mean something else", name, what.name,
                           changed == what.name ? "it" : "`" + changed + "`")};
     if (errors_of(root, new_text, with_new_name) != errors_of(root, old_text, unsaved))
-      return {{}, fmt::format("with `{}` in place of `{}` the file would have other errors", name, what.name)};
+      return {{}, fmt::format("with `{}` in place of `{}` the file would not have the same errors as now", name, what.name)};
   }
   return result;
 }

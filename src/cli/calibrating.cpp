@@ -75,7 +75,7 @@ Work declare_crosscheck(CLI::App& verb) {
   add_options(verb, *options, options->crosscheck.task);
   std::vector<std::string> names;
   for (BackendRow const& each : backends()) names.emplace_back(each.name);
-  verb.add_option("--against", options->crosscheck.against, "the other back end (default: one that samples in another way)")
+  verb.add_option("--against", options->crosscheck.against, "the other back end (default: nuts for a fit by mh, else mh)")
       ->type_name("NAME")
       ->check(CLI::IsMember(names));
   return [options](Messages const& messages) {

@@ -51,7 +51,7 @@ Work declare_check(CLI::App& verb) {
   auto const options = std::make_shared<CheckOptions>();
   options->run.execution.threads = 0;
   add_file(verb, options->file);
-  add_output(verb, options->run.output, "the folder of `sysid run -o`, where records of `simulate` tasks are expected");
+  add_output(verb, options->run.output, "folder of results (`-o` of `run`) in which records of `simulate` tasks are looked for");
   add_seed(verb, options->run.seed, "seed of the prior draws, in place of the one in the file");
   return [options](Messages const& messages) { return check(messages, *options); };
 }

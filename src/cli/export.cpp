@@ -141,7 +141,7 @@ Work declare_export(CLI::App& verb) {
       ->type_name("FILE");
   CLI::Option* const draws =
       verb.add_option("--draws", options->draws,
-                      "number of draws to simulate for likelihoods and predictions; 0: export only stored results")
+                      "number of draws for which likelihoods and predictions are simulated; 0: export only stored results")
           ->type_name("N")
           ->check(CLI::Range(0, 1000000))
           ->capture_default_str();

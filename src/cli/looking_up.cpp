@@ -42,7 +42,7 @@ Work declare_list(CLI::App& verb) {
 
 Work declare_explain(CLI::App& verb) {
   auto const code = std::make_shared<std::string>();
-  verb.add_option("CODE", *code, "code of a message or a finding, such as E2001 or chains_disagree; none: list all");
+  verb.add_option("CODE", *code, "code of a message or a finding, such as E2001 or chains_disagree; without it, all are listed");
   return [code](Messages const& messages) {
     if (code->empty()) return print(list_codes(), &wrapped_rows);
     std::optional<std::string> const page = explain(*code);

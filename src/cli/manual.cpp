@@ -58,13 +58,15 @@ struct ExitRow {
   char const* meaning;
 };
 constexpr ExitRow exits[] = {
-    {ExitCode::success, "done; the checks of the results pass"},
-    {ExitCode::doubtful, "done and written, but a check of the results fails"},
+    {ExitCode::success, "done; no check of the results fails, but there may be warnings"},
+    {ExitCode::doubtful,
+     "done, but a check fails; of fmt --check: a file is not in canonical layout; of export --stan: a fit is left out; of track: "
+     "a parameter has changed"},
     {ExitCode::usage, "the command line is wrong"},
-    {ExitCode::user_error, "the model or the data are wrong; the message names the place"},
+    {ExitCode::user_error, "something is wrong with the model, the data or the place for results"},
     {ExitCode::internal, "an error in sysid"},
     {ExitCode::io, "a file cannot be read or written, or memory or a library is missing"},
-    {ExitCode::interrupted, "interrupted; --resume continues from there"},
+    {ExitCode::interrupted, "interrupted; commands that have --resume can continue the run"},
 };
 
 std::string exit_status() {
@@ -115,7 +117,7 @@ ExitCode write_pages(CLI::App const& program, std::filesystem::path const& folde
 
 Work declare_manual(CLI::App& verb) {
   auto const options = std::make_shared<ManualOptions>();
-  verb.add_option("COMMAND", options->command, "a command of sysid; none: the program as a whole");
+  verb.add_option("COMMAND", options->command, "a command of sysid; without it, the page of sysid itself is printed");
   verb.add_option("-o,--output", options->folder, "write the pages of all commands into this folder")
       ->type_name("FOLDER")
       ->check(refuse_no_path);

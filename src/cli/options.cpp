@@ -85,7 +85,7 @@ void add_result_options(CLI::App& verb, ResultOptions& options) {
   verb.add_flag("--force", options.run.force, "replace existing results");
   add_seed(verb, options.run.seed, "seed of all random numbers, in place of the seeds in the file");
   verb.add_flag("-q,--quiet", options.quiet, "print no progress and no notices");
-  add_figures(verb, options.run, "write gnuplot scripts only");
+  add_figures(verb, options.run, "draw no figures, but write their gnuplot scripts");
   options.run.execution.threads = 0;
   add_threads(verb, options.run.execution.threads);
 }

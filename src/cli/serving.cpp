@@ -15,7 +15,7 @@ Work declare_repl(CLI::App& verb) {
   verb.add_option("FILE", options->file, "a .sysid file to load first");
   add_output(verb, options->run.output);
   verb.add_flag("--force", options->run.force, "replace existing results");
-  add_seed(verb, options->run.seed, "seed of tasks without one (default: drawn at random and written into them)");
+  add_seed(verb, options->run.seed, "seed of tasks that state none (default: a random seed, which is written into the task)");
   options->run.execution.threads = 0;
   add_threads(verb, options->run.execution.threads);
   return [options](Messages const&) { return static_cast<ExitCode>(repl::run_prompt(options->run, options->file)); };

@@ -85,7 +85,7 @@ Work declare_track(CLI::App& verb) {
   options->run.output = "results/track";
   add_file(verb, options->file);
   verb.add_option("RESULT", track.result, "the folder of a fit's results")->required();
-  verb.add_option("--rows", options->rows, "rows to track: A..B, or A.. for all from A on (default: all)")
+  verb.add_option("--rows", options->rows, "rows to track: A..B, or A.. from row A to the last (default: all)")
       ->type_name("A..B")
       ->check([&track](std::string const& text) { return read_rows(text, track); });
   verb.add_option("--data", track.data, "the data block (default: the first one of the fit)")->type_name("NAME");
@@ -93,16 +93,16 @@ Work declare_track(CLI::App& verb) {
       ->type_name("CSV")
       ->check(refuse_no_path);
   verb.add_flag("--follow", track.follow, "wait for rows that are appended to the file, until Ctrl-C");
-  verb.add_flag("--at-rest", track.at_rest, "start at the model's initial values in the first row");
-  verb.add_option("--parameters", track.parameters, "parameters to track, separated by commas (default: all in equations)")
+  verb.add_flag("--at-rest", track.at_rest, "the states have the model's initial values in the first tracked row");
+  verb.add_option("--parameters", track.parameters, "parameters to track, separated by commas (default: all in the equations)")
       ->delimiter(',')
       ->type_name("NAMES");
   verb.add_option("--drift", options->drift,
-                  "relative sd of the change of a parameter in 1000 rows; with a unit of time, per that time: 0.05/day")
+                  "relative sd of the change of a parameter in 1000 rows, or in a unit of time: 0.05/day")
       ->type_name("DRIFT")
       ->check([&track](std::string const& text) { return read_drift(text, track.drift); })
       ->default_str("0.01");
-  verb.add_option("--filter", options->filter, "extended or unscented")
+  verb.add_option("--filter", options->filter, "Kalman filter: extended or unscented")
       ->type_name("NAME")
       ->check(CLI::IsMember({"extended", "unscented"}))
       ->default_str("extended");
@@ -110,14 +110,14 @@ Work declare_track(CLI::App& verb) {
       ->type_name("RATE")
       ->check(refuse_no_rate)
       ->default_str("1e-5");
-  verb.add_option("--window", track.window, "maximum age of a change, in rows, that is still looked for")
+  verb.add_option("--window", track.window, "how many rows back the start of a change is looked for")
       ->type_name("N")
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();
   add_output(verb, options->run.output);
   verb.add_flag("--force", options->run.force, "replace existing results");
   verb.add_flag("-q,--quiet", options->quiet, "print no notices");
-  add_figures(verb, options->run, "write gnuplot scripts only");
+  add_figures(verb, options->run, "draw no figures, but write their gnuplot scripts");
   return [options](Messages const& messages) { return run(messages, *options); };
 }
 

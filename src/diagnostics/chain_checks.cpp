@@ -179,7 +179,7 @@ void check_size(ChainReport const& report, Findings& findings) {
          fmt::format("run chains about {:.2g} times as long (samples), or more of them (chains)", std::ceil(10 * most) / 10)});
   };
   check(FindingCode::ess_bulk_low, "means", [](Summary const& s) { return s.ess_bulk; });
-  check(FindingCode::ess_tail_low, "5 and 95 % limits", [](Summary const& s) { return s.ess_tail; });
+  check(FindingCode::ess_tail_low, "5 and 95 % quantiles", [](Summary const& s) { return s.ess_tail; });
 }
 
 void check_defined(ChainReport const& report, Findings& findings) {

@@ -184,11 +184,11 @@ void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
           fmt::format("row {}, {:.0f} sds", of.data().first_row + static_cast<int>(place), std::fabs(of.sized.values[place])));
   if (places.size() > most_named) named.push_back("...");
   findings.push_back({FindingCode::samples_far_off, Severity::warning, of.names(),
-                      fmt::format("{} of {} {} far from all others ({})", counted(places.size(), "sample"), of.name(),
-                                  places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
+                      fmt::format("{} of {} {} much farther from the fit than all others ({})", counted(places.size(), "sample"),
+                                  of.name(), places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
                       of.model().filtered()
-                          ? "check these rows: empty the cells that are not measurements; if they are, the disturbance does not "
-                            "describe the motion there"
+                          ? "check these rows: empty the cells that are not measurements; if all are measurements, the disturbance "
+                            "does not describe the motion there"
                           : "check these rows: empty the cells that are not measurements, or use noise with heavy "
                             "tails: `student_t(y, 4, scale = sigma)`"});
 }

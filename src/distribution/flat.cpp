@@ -27,7 +27,7 @@ DistributionRow flat_distribution() {
           .log_density = &flat_log_density,
           .cumulative = &flat_cumulative,
           .refuse = &refuse,
-          .summary = "improper constant density: the posterior must be proper, and there is no evidence"};
+          .summary = "improper constant density: the posterior must be proper, and the evidence of the model is not defined"};
 }
 
 DistributionRow log_flat_distribution() {
@@ -39,7 +39,7 @@ DistributionRow log_flat_distribution() {
           .cumulative = &log_flat_cumulative,
           .lower = &zero_bound,
           .refuse = &refuse,
-          .summary = "improper density 1/x for x > 0, flat in the logarithm: for sds and other scales; no evidence"};
+          .summary = "improper density 1/x for x > 0, flat in the logarithm: for sds and other scales; evidence not defined"};
 }
 
 }  // namespace sysid

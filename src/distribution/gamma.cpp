@@ -98,7 +98,7 @@ DistributionRow gamma_distribution() {
           .quantile = &gamma_quantile,
           .widen = &gamma_widen,
           .refuse = &refuse,
-          .summary = "gamma, by shape and scale, rate or mean"};
+          .summary = "gamma, by its shape and one of scale, rate and mean"};
 }
 
 DistributionRow inverse_gamma_distribution() {

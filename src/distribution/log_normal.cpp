@@ -73,7 +73,7 @@ DistributionRow log_normal_distribution() {
           .quantile = &quantile,
           .widen = &widen_argument<1>,
           .refuse = &refuse,
-          .summary = "log-normal, by its median or log_mean and the sd (log_sd), variance or precision of the logarithm",
+          .summary = "log-normal, by its median or log_mean, and by the sd (log_sd), variance or precision of the logarithm",
           .moments = &moments};
 }
 

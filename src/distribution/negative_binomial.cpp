@@ -74,7 +74,7 @@ DistributionRow negative_binomial_distribution() {
           .saturated = &saturated,
           .draw = &draw,
           .refuse = &refuse,
-          .summary = "negative binomial: overdispersed counts, by mean and shape or overdispersion; noise only",
+          .summary = "negative binomial: overdispersed counts, by its mean and one of shape and overdispersion; noise only",
           .discrete = true,
           .variance = &variance,
           .excess_kurtosis = &excess_kurtosis,

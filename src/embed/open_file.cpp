@@ -40,9 +40,9 @@ std::string names_of(Items const& items) {
 void refuse_what_only_the_file_states(DataBlock const& block) {
   bool const has_dates = !block.rules.stamp.empty() && find_serial_time(block.rules.stamp) == nullptr;
   if (block.time && !block.time->unit && has_dates)
-    refuse(block, *block.time, "`read stamp` converts the dates of the file to seconds, but the numbers of an array are not dates",
-           fmt::format("write the unit that they have: `time {}`; it changes nothing for the file",
-                       column_text(block.time->column, "s")));
+    refuse(
+        block, *block.time, "`read stamp` converts the dates of the file to seconds, but the numbers of an array are not dates",
+        fmt::format("write the unit that they have: `time {}`; the file is read as before", column_text(block.time->column, "s")));
   if (block.rules.units == UnitsPlace::none) return;
   auto const check = [&](ColumnUse const& column, std::string_view example) {
     if (!column.unit)

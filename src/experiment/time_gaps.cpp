@@ -96,7 +96,8 @@ InitialValues initial_values(Model const& model) {
 
 /// What makes the simulation of a range begin at its own first row. fewest: rows of the shortest range.
 std::string start_words(Model const& model, int fewest) {
-  std::string const at_record = ": with `start = record` a simulation begins at the first row of the file and goes through the gap";
+  std::string const at_record =
+      "; with the default, `start = record`, a simulation begins at the first row of the file and goes through the gap";
   InitialValues const initial = initial_values(model);
   bool const may_estimate = model.invariants.empty() && !model.filtered();
   if (initial.all_free || !may_estimate) {

@@ -79,7 +79,8 @@ sysid_model* opened(char const* path, char const* text, char const* task, int th
   kept(static_cast<Source const*>(nullptr), [&] {
     require(path, "path");
     if (threads < 0 || threads > most_threads)
-      refuse("`threads` is " + std::to_string(threads), "give 0, one for each processor, or up to " + std::to_string(most_threads));
+      refuse("`threads` is " + std::to_string(threads),
+             "give 0 for one thread per processor, or a number up to " + std::to_string(most_threads));
     if (!supported_instruction_set())
       refuse("this processor lacks AVX2 and FMA (x86-64-v3)", "run it on a processor of 2013 or later");
     auto const given = text != nullptr ? std::optional<std::string>(text) : std::nullopt;

@@ -91,7 +91,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::counted_once, "counted_once", note},
     {FindingCode::without_noise, "without_noise", note},
     {FindingCode::no_population, "no_population", error},
-    {FindingCode::model_not_visited, "model_not_visited", warning},
+    {FindingCode::model_not_visited, "model_not_visited", error_or_warning},
     {FindingCode::jumps_rarely_accepted, "jumps_rarely_accepted", warning},
     {FindingCode::posterior_not_covered, "posterior_not_covered", error},
     {FindingCode::visits_disagree, "visits_disagree", error},

@@ -172,7 +172,7 @@ TEST_CASE("what agrees passes: numbers adapt, prefixes and pure numbers do not m
 }
 
 TEST_CASE("the help names what is missing") {
-  CHECK(with_equation("m*y'' + c*y' + k + k3*y^3 = x").help == "multiply it by a length, such as `y`");
+  CHECK(with_equation("m*y'' + c*y' + k + k3*y^3 = x").help == "multiply this by a length, such as `y`");
   // One power of what moves too many or too few: the unit of the coefficient may be the mistake.
   CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^4 = x").help ==
         "declare `k3` in [N/m^4], or divide this term by a length, such as `y`");
@@ -185,11 +185,11 @@ TEST_CASE("the help names what is missing") {
   CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter h [m/N] = 1\ninput x [N]\n"
                 "initial y = 0\n1 [N s/m]*y' + k*y + y^2/h = x\nobserve d ~ normal(y, sd = 1)\n}\n")
             .help == "declare `h` in [m^2/N], or divide this term by a length, such as `y`");
-  CHECK(with_equation("m*y'' + c*y' + k*y + (k3 + 1)*y^4 = x").help == "divide it by a length, such as `y`");
+  CHECK(with_equation("m*y'' + c*y' + k*y + (k3 + 1)*y^4 = x").help == "divide this by a length, such as `y`");
   // Not a power of what moves: another name is missing.
   CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter m [kg] = 1\ninitial y = 0, y' = 0\ny'' + k*y = 0\n"
                 "observe d ~ normal(y, sd = 1)\n}\n")
-            .help == "divide it by a mass, such as `m`");
+            .help == "divide this by a mass, such as `m`");
   CHECK(with_equation("m*y'' + 20*y' + k*y = x").help == "a number as a factor has no unit: write `20 [N s/m]`");
   CHECK(with_equation("m*y'' + c*y' + 100*y = x").help == "a number as a factor has no unit: write `100 [N/m]`");
   CHECK(said_of("model a {\nstate y [m]\nparameter c [N s/m] = 1\nparameter k [N/m] = 1\ninput x [N]\ninitial y = 0\nc*y' + c*y + "
@@ -203,7 +203,7 @@ TEST_CASE("the help names what is missing") {
                 "initial y = 0\n1 [N s/m]*y' + k*y + k3*y^3 = x\nobserve d ~ normal(y, precision = beta)\n}\n")
             .help == "declare `k3` in [N/m^3]");
   CHECK(with("let a = k*t + x").help.find("t'") == std::string::npos);  // time has no primes
-  CHECK(with("let a = exp(y)").help == "divide it by a length");
+  CHECK(with("let a = exp(y)").help == "divide this by a length");
   CHECK(with("let a = abs(y)^n").help == "make the base a pure number: divide `abs(y)` by a reference value in [m]");
   CHECK(with("let a = if y then 1 else 2").help == "compare it: `y > 0`");
 }
@@ -279,7 +279,7 @@ TEST_CASE("what stays unchecked is listed with its reason") {
   CHECK(lines[0] == "x: no unit is declared, so `b*x` is not compared");
   CHECK(lines[1] == "b: no unit is declared, so `b*x` and `e*y` are not compared");
   CHECK(lines[2] == "c: a number without a unit, so `c*y` is not compared");
-  CHECK(lines[3] == "y: its exponent is not a fraction of small whole numbers");
+  CHECK(lines[3] == "y: its exponent is neither a whole number nor a fraction of small whole numbers");
   CHECK(lines[4] == "h: its unit is not known");
   CHECK(model_of(names + equation).unchecked.size() == 1);  // n
 }
@@ -313,15 +313,15 @@ TEST_CASE("names that help proposes as a factor are in scope and not circular") 
   for (std::string const name : {"`q`", "`twice`", "`fast`"}) CHECK(said.find(name) == std::string::npos);
   std::string const only = "model m {\nstate y [m]\ninitial y = 1\n" + hierarchy +
                            "let q [1/s] = exp(mu)\ny' = -q*y\nobserve d ~ normal(y, sd = 1e-3)\nderive fast [1/s] = 3*q\n}\n";
-  CHECK(said_of(only).help == "multiply it by a rate, such as `1 [1/s]`");
+  CHECK(said_of(only).help == "multiply this by a rate, such as `1 [1/s]`");
   CHECK(said_of(with_text(only, "exp(mu)", "exp(mu)*1 [1/s]")).count == 0);
   // A parameter of the same unit may stand there.
   CHECK(said_of(with_text(only, "state y", "parameter rate [1/s] ~ log_uniform(1, 2)\nstate y")).help ==
-        "multiply it by a rate, such as `rate`");
+        "multiply this by a rate, such as `rate`");
   // An initial value reads nothing that varies along the record.
   CHECK(said_of("model m {\ninput u [m]\nstate y [m]\nparameter a [-] ~ normal(1, sd = 1)\ninitial y = a\ny' = 1 [1/s]*(u - y)\n"
                 "observe d ~ normal(y, sd = 1e-3)\n}\n")
-            .help == "multiply it by a length, such as `1 [m]`");
+            .help == "multiply this by a length, such as `1 [m]`");
 }
 
 TEST_CASE("an option that has one number takes it once") {

@@ -79,7 +79,7 @@ TEST_CASE("a sound file has no errors; a mistake is published with code, range, 
   CHECK(found.at("code") == "E2103");
   CHECK(text_of(changed, found.at("range")) == "β");
   CHECK(found.at("relatedInformation").size() == 1);
-  CHECK(contains(found.at("message"), "help: multiply it by"));
+  CHECK(contains(found.at("message"), "help: multiply this by"));
   CHECK_FALSE(found.contains("codeDescription"));
   bench.client.edit(changed, {static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at + 2)}, "β*y");
   for (Json const& each : bench.client.diagnostics) CHECK(each.at("severity") != 1);

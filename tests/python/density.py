@@ -205,7 +205,7 @@ class Closed(unittest.TestCase):
         by_number = self.model.simulate([2.0, 0.1], 0).values["d"]
         for experiment in ("bench", np.int64(0)):
             np.testing.assert_array_equal(self.model.simulate([2.0, 0.1], experiment).values["d"], by_number)
-        with self.assertRaisesRegex(KeyError, "no single experiment 'hall'; it has 0: 'bench'"):
+        with self.assertRaisesRegex(KeyError, "'hall' does not name exactly one experiment of the fit; it has 0: 'bench'"):
             self.model.simulate([2.0, 0.1], "hall")
         with self.assertRaisesRegex(IndexError, "no experiment 1; it has 0: 'bench'"):
             self.model.simulate([2.0, 0.1], 1)
@@ -216,7 +216,7 @@ class Closed(unittest.TestCase):
         self.assertEqual(part.simulate([2.0, 0.1], "bench").experiment, "bench.train")
 
     def test_texts_and_columns_that_are_none(self):
-        with self.assertRaisesRegex(ValueError, "a character that is no text"):
+        with self.assertRaisesRegex(ValueError, "has an invalid character"):
             sysid.loads("model q {\ud800}")
         with self.assertRaisesRegex(TypeError, "is a str, not bytes"):
             sysid.loads(b"model")

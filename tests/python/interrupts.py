@@ -156,7 +156,7 @@ class Interrupts(unittest.TestCase):
         )
         self.assertEqual(
             out,
-            "[] `posterior` had ended: its result is in model.results['posterior']\nFalse 3 True True\n",
+            "[] `posterior` ended before the interruption took effect: its result is in model.results['posterior']\nFalse 3 True True\n",
             error,
         )
 

@@ -191,8 +191,8 @@ class Cells(unittest.TestCase):
         text = CELL.replace("posterior", "list").replace("forecast ", "decay ")
         cell, names = self.run_cells(text, "print(list is type([]), type(decay).__name__, *decay.results)")
         told = "".join(each[1] for each in cell if isinstance(each, tuple))
-        self.assertIn("`list` is a name of Python and stays so; the result of the task is in decay.results['list']", told)
-        self.assertIn("`decay` is the name of the model and stays so", told)
+        self.assertIn("`list` is a name of Python and is not replaced; the result of the task is in decay.results['list']", told)
+        self.assertIn("`decay` is the name of the model and is not replaced", told)
         self.assertEqual(names[0][1].split(), ["True", "Model", "list", "decay"])
 
     def test_progress_is_a_bar_that_gives_way_to_the_result(self):

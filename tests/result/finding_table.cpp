@@ -16,7 +16,7 @@ TEST_CASE("every finding that the sources make has a severity that its row allow
   std::map<std::string, Severity> const severities = {
       {"error", Severity::error}, {"warning", Severity::warning}, {"note", Severity::note}};
   // `FindingCode::x, Severity::y`, and in tables that name the severity first `Severity::y, FindingCode::x`.
-  std::regex const made("FindingCode::(\\w+),\\s*([^,;]*Severity::\\w+[^,;]*),|Severity::(\\w+), FindingCode::(\\w+)");
+  std::regex const made("FindingCode::(\\w+),\\s*((?:[^,;]|, (?=\\w+\\)))*Severity::\\w+[^,;]*),|Severity::(\\w+), FindingCode::(\\w+)");
   std::regex const each_severity("Severity::(\\w+)");
   std::set<std::string> seen;
   for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SYSID_SOURCE_DIR) / "src")) {

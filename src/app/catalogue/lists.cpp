@@ -88,7 +88,8 @@ std::string list_discovery() {
   for (auto const& row : regression::forms()) text += with_settings(row.name, row.summary, row.settings);
   regression::Form const& samples = regression::form_of_samples();
   text +=
-      "\nin discrete time, also a setting of the selector\n\n" + with_settings(samples.name, samples.summary, samples.settings);
+      "\nin discrete time (its setting is written among those of the selector)\n\n" +
+      with_settings(samples.name, samples.summary, samples.settings);
   text += "\nfamilies of terms\n\n";
   for (GeneratorRow const& row : generators())
     text += fmt::format("{:<14} {}\n{:<14} {}\n", row.name, row.summary, "", row.option.example);

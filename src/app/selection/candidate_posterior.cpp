@@ -106,7 +106,7 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     examined[k] = true;
     refine_solver_of(session, candidates[k], seed, journal, posteriors[k]);
     if (posteriors[k].solver != candidates[k].fit->solver)
-      finer += fmt::format("the likelihood of `{}` is computed with {} (too coarse with {}: with {}, {})\n",
+      finer += fmt::format("the likelihood of `{}` is computed with {}, because {} would be too coarse: with {}, {}\n",
                            candidates[k].what->name, posteriors[k].solver.text(), candidates[k].fit->solver.text(),
                            candidates[k].fit->solver.finer_words(), moved(*posteriors[k].move));
     if (stopped()) return std::nullopt;

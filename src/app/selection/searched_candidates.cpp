@@ -62,7 +62,7 @@ class CandidateSearch {
     found.modes = std::move(refined.modes);
     rank(ObjectiveKind::posterior, found.modes);
     if (found.solver != stated)
-      session_.notices << fmt::format("the likelihood of `{}` is computed with {} (too coarse with {})\n", name(),
+      session_.notices << fmt::format("the likelihood of `{}` is computed with {}, because {} would be too coarse\n", name(),
                                       found.solver.text(), stated.text());
     if (found.modes.empty()) found.excluded = fmt::format("no mode is left with a solver finer than {}", stated.text());
     if (!refined.converged)

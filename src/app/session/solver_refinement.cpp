@@ -72,8 +72,9 @@ bool refine_solver(Session& session, Task const& task, MakeTarget const& make, O
   Findings const found = mode_findings(*make(refined.solver), objective_kind, preparation.modes);
   preparation.findings.insert(preparation.findings.begin(), found.begin(), found.end());
   if (refined.solver != stated)
-    session.notices << fmt::format("{}: {} (too coarse with {}: with {}, {})\n", task.name, accuracy(refined.solver),
-                                   accuracy(stated), stated.finer_words(), moved(preparation.moves.front()));
+    session.notices << fmt::format("{}: the fit uses {}, because {} would be too coarse: with {}, {}\n", task.name,
+                                   accuracy(refined.solver), accuracy(stated), stated.finer_words(),
+                                   moved(preparation.moves.front()));
   if (!refined.converged)
     preparation.findings.push_back(not_converged(refined, objective_kind != ObjectiveKind::posterior, context.ledger));
   return true;

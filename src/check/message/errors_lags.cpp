@@ -32,7 +32,8 @@ Diagnostic lag_without_discrete_time(ast::Call const& call) {
 }
 Diagnostic lag_count(Span span) {
   return error("E3102", span, "a lag is a whole number of samples: `lag(y, 1)`, `lags(y, 1..4)`",
-               "0 is the present sample, 1 the one before; `lag` takes one number, `lags` a range");
+               "0 is the present sample, 1 the one before; `lag` takes one number, `lags` a range from the smaller number to the "
+               "larger");
 }
 Diagnostic lags_out_of_place(ast::Call const& call) {
   return about({call.function.text},
@@ -49,7 +50,7 @@ Diagnostic channel_as_quantity(ast::Name const& name, bool discrete, std::string
       {name.text},
       error("E2001", name.span, fmt::format("`{}` is a measured channel, and its name alone stands for no quantity", name.text),
             discrete ? fmt::format("its earlier samples are `{}`", past)
-                     : fmt::format("write what the channel observes: the expression behind `observe {} ~`", name.text)));
+                     : fmt::format("write what the channel observes: the expression after `observe {} ~`", name.text)));
 }
 std::optional<Diagnostic> sample_by_index(Span span, ast::Expression const& index, IndexedQuantity const& what) {
   std::optional<int> const shift = shift_of(index);
@@ -135,7 +136,7 @@ Diagnostic implicit_in_discrete_time(Span equation, std::string const& state) {
 }
 
 Diagnostic prediction_without_lags(Span span, std::string const& model, bool random) {
-  return about({model}, error("E6016", span, fmt::format("model `{}` is not in discrete time: it uses no past samples", model),
+  return about({model}, error("E6016", span, fmt::format("model `{}` is not in discrete time: it has no lagged samples", model),
                               random ? "remove the option: with random states a fit predicts each sample from those before it; "
                                        "`predict` has the option"
                                      : "remove the option: a model in continuous time is always simulated in a free run"));

@@ -251,7 +251,7 @@ Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& me
 }
 
 Diagnostic unit_exponent(Span span) {
-  return error("E2012", span, "the exponent of a unit must be a fraction of small whole numbers",
+  return error("E2012", span, "the exponent of a unit must be a whole number or a fraction of small whole numbers",
                "for example [m^2], [N^(1/2)], [s^-1]");
 }
 

@@ -43,8 +43,8 @@ Diagnostic parts_overlap(Span second, Span first, std::string const& later, std:
   return about({later, earlier},
                conflict("E4116", second, "again here", first, "first here",
                         fmt::format("{} {} in both ranges `{}` and `{}`", rows, from == to ? "is" : "are", earlier, later),
-                        fmt::format("both ends of a range belong to it: let `{}` begin at row {}, or end before row {}", later,
-                                    to + 1, from)));
+                        fmt::format("both ends of a range belong to it: `{}` must begin at row {} or later, or end before row {}",
+                                    later, to + 1, from)));
 }
 
 std::string instead_of_size(ast::Declared const& declared) {

@@ -178,10 +178,11 @@ Diagnostic expansion_of_lags(Span span, std::string const& name) {
             "if the model is in discrete time, remove `within`; otherwise pass single values"));
 }
 Diagnostic expansion_unit(Span span, std::string const& name, Unit const& given, Unit const& wanted) {
-  return about({name},
-               error("E3234", span,
-                     fmt::format("an earlier argument of `{}` is in [{}], but this one is in [{}]", name, wanted.text, given.text),
-                     "declare a second function, or convert"));
+  return about(
+      {name},
+      error("E3234", span,
+            fmt::format("an earlier argument of `{}` is in [{}], but this one is in [{}]", name, wanted.text, given.text),
+            "declare a second function for arguments in this unit, or multiply or divide this argument so that its unit agrees"));
 }
 Diagnostic process_out_of_place(Span span, std::string const& what) {
   return error("E3209", span, fmt::format("a Gaussian process cannot be {}", what),
@@ -247,9 +248,11 @@ Diagnostic channel_without_process(Span span, std::string const& channel) {
                      "give it one, or fit it with a separate model"));
 }
 Diagnostic process_task(Span span, std::string const& verb, std::string const& model) {
-  return about({model},
-               error("E3217", span, fmt::format("`{}` has a Gaussian process without a range and cannot be {}", model, verb),
-                     "give the function a range: `gp(..., within = (LOW, HIGH))`; else it can only be fitted and predicted"));
+  return about(
+      {model},
+      error("E3217", span, fmt::format("`{}` has a Gaussian process without a range and cannot be {}", model, verb),
+            "give the function a range: `gp(..., within = (LOW, HIGH))`; without one the model can only be simulated, fitted and "
+            "predicted"));
 }
 Diagnostic process_beside_estimated_start(Span span, std::string const& model) {
   return about({model}, error("E3217", span, fmt::format("an estimated start of `{}` would ignore its Gaussian process", model),

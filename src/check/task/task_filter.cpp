@@ -161,7 +161,7 @@ void TaskChecker::refuse_input_errors(std::vector<ExperimentUse> const& experime
       if (bound.error)
         return diagnostics_.add(errors::input_error_refused(
             bound.error->span, bound.input, {"`discover` treats inputs as exact"}, Label{tree_.subject.span, "discovered here"},
-            "discover from a data block without `error`, then fit the model that was found to this one"));
+            "discover from a data block without `error`, then fit the resulting model to this data block"));
 }
 
 void TaskChecker::suit_filter(FitTask& task, Model const& model) {

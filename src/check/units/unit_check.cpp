@@ -261,7 +261,7 @@ bool UnitCheck::power(UnitOperand const& base, UnitOperand const& exponent, std:
   }
   if (!is_known(base) || base.value.unit.dimensionless()) return true;
   if (constant) {
-    if (!to_rational(*constant)) remember(base, "its exponent is not a fraction of small whole numbers");
+    if (!to_rational(*constant)) remember(base, "its exponent is neither a whole number nor a fraction of small whole numbers");
     return true;
   }
   std::string const unit = words(base.value.unit);

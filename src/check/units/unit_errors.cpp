@@ -172,20 +172,20 @@ void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function
 }
 
 std::string multiply_by(std::string const& kind, std::string const& names) {
-  return with_names(fmt::format("multiply it by {}", kind), names);
+  return with_names(fmt::format("multiply this by {}", kind), names);
 }
 std::string divide_by(std::string const& kind, std::string const& names) {
-  return with_names(fmt::format("divide it by {}", kind), names);
+  return with_names(fmt::format("divide this by {}", kind), names);
 }
 std::string or_else(std::string const& declaration, std::string const& factor) {
-  std::size_t const it = factor.find(" it ");
-  return declaration + ", or " + (it == std::string::npos ? factor : factor.substr(0, it) + " this term " + factor.substr(it + 4));
+  std::size_t const at = factor.find(" this ");
+  return declaration + ", or " + (at == std::string::npos ? factor : factor.substr(0, at) + " this term " + factor.substr(at + 6));
 }
 std::string declare_in(std::string const& name, std::string const& unit) {
   return fmt::format("declare `{}` in [{}]", name.substr(0, name.find('[')), unit);
 }
 std::string should_be_in(std::string const& unit) {
-  return unit == "-" ? "make it a pure number" : fmt::format("make it a quantity in [{}]", unit);
+  return unit == "-" ? "make this a pure number" : fmt::format("make this a quantity in [{}]", unit);
 }
 std::string tag_the_number(std::string const& number, std::string const& unit) {
   return fmt::format("a number as a factor has no unit: write `{} [{}]`", number, unit);

@@ -16,8 +16,9 @@ constexpr SettingRow rows[] = {
     {"first_threshold", SettingKind::real, "0", 0, infinity, "",
      "threshold of population 1; 0: every prior draw that can be simulated is accepted"},
     {"kernel", SettingKind::word, "gaussian", 0, 0, "gaussian component_gaussian uniform nearest_neighbours",
-     "how a particle moves; gaussian: normal with the population's covariance; component_gaussian: normal with its diagonal; "
-     "uniform: uniform over its range; nearest_neighbours: normal with the covariance of the nearest neighbours"},
+     "how a particle moves; gaussian: normal with the population's covariance; component_gaussian: normal with the "
+     "diagonal of this covariance; uniform: uniform in a box around the particle, as wide as the population's range; "
+     "nearest_neighbours: normal with the covariance of the nearest neighbours"},
     {"kernel_scale", SettingKind::real, "0", 0, 1e12, "",
      "factor on the covariance or range of the kernel; 0 stands for 2 with gaussian and component_gaussian, and for 1 with the "
      "others",
@@ -42,7 +43,7 @@ constexpr SettingRow rows[] = {
     {"polish", SettingKind::flag, "no", 0, 0, "",
      "sample the posterior of each model of probability 0.01 or more by Metropolis-Hastings on the likelihood, from its modes"},
     {"polish_samples", SettingKind::integer, "25000", 100, 1e8, "",
-     "iterations of each of the four chains of `polish`, a fifth of them burn-in"},
+     "iterations, a fifth of them burn-in, of each of the four chains of `polish`"},
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ constexpr SettingRow rows[] = {
     {"thin", SettingKind::integer, "4", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "8", 1, 65536, "", "number of independent chains"},
     {"pilot", SettingKind::integer, "2000", 100, 1e8, "",
-     "iterations of each of the four chains that learn a model's posterior beforehand, a quarter of them burn-in; up to 16 times "
+     "iterations, a quarter of them burn-in, of each of the four chains that learn a model's posterior beforehand; up to 16 times "
      "as many where these are not enough"},
 };
 

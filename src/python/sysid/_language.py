@@ -51,5 +51,5 @@ def explain(code: str) -> Page:
     """The page about a message or finding, ``sysid.explain("E2103")``."""
     found = _engine.explain(code)
     if found is None:
-        raise Error(f"sysid: error: there is no message `{code}`\nhelp: the code stands in brackets behind `error` or `warning`")
+        raise Error(f"sysid: error: there is no message `{code}`\nhelp: a message gives its code in brackets after `error` or `warning`")
     return Page(found.rstrip("\n"))

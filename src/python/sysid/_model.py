@@ -96,7 +96,7 @@ def _experiment(value: Any, names: Sequence[str]) -> int:
         found = [number for number, name in enumerate(names) if name == value]
         found = found or [number for number, name in enumerate(names) if name.split(".")[0] == value]
         if len(found) != 1:
-            raise KeyError(f"the fit has no single experiment {value!r}; it has {told}")
+            raise KeyError(f"{value!r} does not name exactly one experiment of the fit; it has {told}")
         return found[0]
     try:
         number = operator.index(value)
@@ -113,7 +113,7 @@ def _text(value: Any) -> str:
     try:
         value.encode()
     except UnicodeEncodeError as error:
-        raise ValueError(f"the text of a model has a character that is no text, {value[error.start]!r} at {error.start}") from None
+        raise ValueError(f"the text of a model has an invalid character, {value[error.start]!r} at position {error.start}") from None
     return value
 
 
@@ -441,7 +441,7 @@ class Model:
         result = Result(self._file, self._records, self._folder, run, name, exit, text, in_python(notices), self._state["from"])
         self._results[name] = result
         if requested and exit != 75:
-            raise KeyboardInterrupt(f"`{name}` had ended: its result is in model.results[{name!r}]")
+            raise KeyboardInterrupt(f"`{name}` ended before the interruption took effect: its result is in model.results[{name!r}]")
         return result
 
     def _folder_of_its_own(self, name: str, resume: bool) -> Folder:

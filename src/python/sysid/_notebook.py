@@ -100,7 +100,7 @@ class SysidMagics(Magics):
             self.shell.user_ns[name] = result
         elif taken:
             place = f"{model}.results[{name!r}]" if model else "the results of the model, if `%%sysid NAME` names it"
-            print(f"`{name}` is {taken} and stays so; the result of the task is in {place}", file=sys.stderr)
+            print(f"`{name}` is {taken} and is not replaced; the result of the task is in {place}", file=sys.stderr)
 
     def _run(self, asked: Any, cell: str) -> None:
         data = None

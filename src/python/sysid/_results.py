@@ -154,7 +154,7 @@ class Result:
                 take_along(self._run, each, run)
         if self._verb not in ("fit", "predict") or not (run.path / task).is_dir():
             raise Error(
-                f"sysid: error: `{self.task}` has no groups: it is no fit, and no prediction of one that lies beside it\n"
+                f"sysid: error: `{self.task}` has no groups: it is neither a fit nor a prediction whose fit is in the same folder of results\n"
                 f"help: its tables are {', '.join(name for name in self.files if name.endswith('.csv'))}"
             )
         asked = _engine.Asked(output=str(run.path))

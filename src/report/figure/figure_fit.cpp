@@ -240,7 +240,7 @@ Figure free_run_figure(Prediction const& run, PredictedQuantity const& quantity)
   std::string caption = fmt::format(
       "Measured {} and a free run of the equations found: its start is estimated from the {} rows before, and nothing that is "
       "measured later enters it{}.",
-      quantity.name, start, run.inputs.empty() ? "" : " but the inputs");
+      quantity.name, start, run.inputs.empty() ? "" : ", except the inputs");
   if (!mean.empty() && !std::isfinite(mean.back()))
     caption += " It is shown up to where it leaves ten times the range of what is measured.";
   figure.caption = caption + samples_excluded(run, window(run));

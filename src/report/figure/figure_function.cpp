@@ -79,8 +79,9 @@ Figure function_figure(FunctionReport const& function) {
       count == 1 ? "" : ", along each input, with the other inputs at a central value");
   if (visited)
     out.caption +=
-        " Bars along the bottom: how many of the fitted rows use the function there; without bars the curve follows from its "
-        "prior.";
+        " Bars along the bottom: how many of the fitted rows use the function there; where there are no bars, the curve follows "
+        "from "
+        "its prior.";
   return out;
 }
 

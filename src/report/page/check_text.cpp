@@ -89,7 +89,7 @@ std::string input_text(CoveragePage const& data, CoveragePage::Input const& inpu
   std::string const what = input.rule.empty() ? input.name : input.name + ", " + input.rule;
   if (data.rate == 0) return fmt::format("input {}", what);
   if (input.constant) return fmt::format("input {}: constant", what);
-  return fmt::format("input {}: 99 % of its power is between {} and {} {} ({} times the sampling rate)", what,
+  return fmt::format("input {}: 99 % of its power is between {} and {} {} (up to {} times the sampling rate)", what,
                      significant(frequency(data, input.low), 3), significant(frequency(data, input.high), 3), frequency_unit(data),
                      fmt::format("{:.2f}", input.high / data.rate));
 }

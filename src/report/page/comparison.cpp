@@ -78,7 +78,7 @@ std::string known(double error) { return std::isnan(error) ? "-" : fmt::format("
 ReportTable scores_table(ComparedScores const& scores) {
   ReportTable table;
   table.title = fmt::format("expected log predictive density (elpd) of {}, {}", counted(scores.samples, "sample"),
-                            scores.future ? "each predicted from the rows before the tenth part of the record that contains it "
+                            scores.future ? "each predicted from the rows before that tenth of the record to which it belongs "
                                             "(leave-future-out)"
                                           : "each left out (leave-one-out)");
   table.header = {"fit", "model", "elpd", "error", "difference", "error of difference", "stacking weight", "pseudo-BMA+ weight"};
@@ -98,7 +98,7 @@ ReportTable scores_table(ComparedScores const& scores) {
     if (fit.one_step) one_step.push_back(fit.name);
   if (scores.future && !one_step.empty())
     table.caption += fmt::format(
-        "{}{}: only the parameters are estimated from the rows before that part; each sample is predicted one step ahead, from "
+        "{}{}: only the parameters are estimated from the rows before that tenth; each sample is predicted one step ahead, from "
         "measured samples",
         table.caption.empty() ? "" : "\n", listed(one_step));
   if (scores.in_time && !scores.future)

@@ -100,10 +100,10 @@ std::string parameters(Report const& report) {
   for (std::string const& each : without_sd_texts(report)) out += paragraph(capitalised(each) + ".", "note");
   return out +
          paragraph(
-             std::string(optimum
-                             ? "sd: of the normal approximation at the optimum (Laplace); of a quantity that is derived from the "
-                               "others by its first derivatives there (the delta method). "
-                             : "Digits below the Monte Carlo error, or below a hundredth of the sd, are not shown. ") +
+             std::string(
+                 optimum ? "sd: of the normal approximation at the optimum (Laplace); that of a derived quantity is computed from "
+                           "its first derivatives there (the delta method). "
+                         : "Digits below the Monte Carlo error, or below a hundredth of the sd, are not shown. ") +
                  (priors ? "Below each prior is its 90 % interval. The bar beside it shows the 90 % interval of the posterior "
                            "(the thick bar, with a stroke at the mean) within that of the prior, on a logarithmic scale if the "
                            "prior's "
