@@ -35,6 +35,7 @@ Eigen::MatrixXd cholesky_or_diagonal(Eigen::MatrixXd const& symmetric) {
 }
 
 Eigen::MatrixXd solve_cholesky(Eigen::MatrixXd const& lower, Eigen::MatrixXd const& right) {
+  if (right.size() == 0) return right;
   Eigen::MatrixXd const half = lower.triangularView<Eigen::Lower>().solve(right);
   return lower.transpose().triangularView<Eigen::Upper>().solve(half);
 }
@@ -53,6 +54,7 @@ double log_absolute_determinant(Eigen::MatrixXd const& square) {
 }
 
 Eigen::MatrixXd solve_upper(Eigen::MatrixXd const& upper, Eigen::MatrixXd const& right) {
+  if (right.size() == 0) return right;  // Eigen would take the address of its first number
   return upper.triangularView<Eigen::Upper>().solve(right);
 }
 

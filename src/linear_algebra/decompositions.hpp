@@ -36,7 +36,7 @@ Eigen::MatrixXd inverse(Eigen::MatrixXd const& square);
 /// log |det|, as a sum: the product may leave the range of numbers.
 double log_absolute_determinant(Eigen::MatrixXd const& square);
 
-/// Upper triangular solve: x of upper * x = right.
+/// Upper triangular solve: x of upper * x = right, which may have no columns.
 Eigen::MatrixXd solve_upper(Eigen::MatrixXd const& upper, Eigen::MatrixXd const& right);
 
 /// matrix [n x m], n >= m, as Q R by Householder reflections.

@@ -64,6 +64,7 @@ TEST_CASE("solutions solve, determinants agree") {
   CHECK(log_absolute_determinant(a) == doctest::Approx(2 * lower.diagonal().array().log().sum()));
   Eigen::MatrixXd const upper = lower.transpose();
   CHECK(gap(upper * solve_upper(upper, right), right) < 1e-12);
+  for (auto const& solve : {solve_upper, solve_cholesky}) CHECK(solve(upper, Eigen::MatrixXd(6, 0)).cols() == 0);
   // The residual of least squares is orthogonal to the columns.
   Eigen::MatrixXd const known = some(9, 1), best = OrthogonalTriangular(tall).solve(known);
   CHECK((tall.transpose() * (known - tall * best)).cwiseAbs().maxCoeff() < 1e-12);
