@@ -1,11 +1,15 @@
-// Rules and shifts as candidates of one comparison: the one that explains most is told.
+// Rules and shifts as candidates of one comparison: the one that explains most is told. In discrete time, which reads nothing
+// between samples, the candidates are shifts by whole samples.
 #include "diagnostics/input_checks.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <numeric>
 #include <optional>
+#include <set>
 
 #include "core/numeric/statistics.hpp"
 #include "core/text/diagnostic.hpp"
@@ -26,6 +30,7 @@ constexpr std::size_t record_parts = 16;
 constexpr double steady_gain = 3.2;  // t with 15 degrees of freedom: 0.3 %, of a rule that is as good as the stated one
 constexpr double as_good = 3;        // nats: of two rules the simpler, of a rule and a shift the rule
 constexpr double noticeable = 1;     // sds, of a parameter's move
+constexpr int most_samples = 5;      // of a shift in whole samples
 constexpr int refit_rounds = 12, refit_evaluations = 60;  // by residuals; by gradients
 constexpr std::uint64_t refit_stream = 2;
 
@@ -66,6 +71,7 @@ class InputCheck {
         ledger_(ledger) {}
 
   Findings run() {
+    if (model_.dynamics == Dynamics::discrete) return run_by_samples();
     Findings findings;
     for (std::size_t e = 0; e < experiments_.size(); ++e)
       for (std::size_t i = 0; i < model_.inputs.size(); ++i)
@@ -87,6 +93,54 @@ class InputCheck {
     // The first of those that are as good as the best: rules stand before shifts.
     auto const told = std::find_if(all.begin(), all.end(), [&](Alternative const& each) { return each.gain > most - as_good; });
     return told->rule ? other_rule(*told, e, i, scored) : other_timing(*told, e, i, scored);
+  }
+
+  // A lag in the equation is the same for all experiments, the delay of a recorder need not be.
+  Findings run_by_samples() {
+    Findings findings;
+    std::vector<std::size_t> all(experiments_.size());
+    std::iota(all.begin(), all.end(), 0);
+    for (std::size_t i = 0; i < model_.inputs.size(); ++i) {
+      if (auto finding = check_by_samples(all, i)) {
+        findings.push_back(std::move(*finding));
+      } else if (all.size() > 1) {
+        for (std::size_t const e : all)
+          if (auto own = check_by_samples({e}, i)) findings.push_back(std::move(*own));
+      }
+    }
+    return findings;
+  }
+
+  // A shifted record lacks samples at one of its ends. Those that would read them are scored in no comparison.
+  std::optional<Finding> check_by_samples(std::vector<std::size_t> const& of, std::size_t i) {
+    std::vector<Experiment> cut = experiments_;
+    int scored = 0;
+    bool moves = false;
+    for (std::size_t const e : of) {
+      std::vector<std::uint8_t>& rows = cut[e].scored;
+      if (rows.size() < 4 * most_samples) return std::nullopt;
+      std::fill_n(rows.begin(), most_samples, 0);
+      std::fill_n(rows.rbegin(), most_samples, 0);
+      scored += scored_samples(cut[e]);
+      moves = moves || changes(cut[e].inputs[i]);
+    }
+    if (!moves || scored == 0) return std::nullopt;
+    Alternative stated{std::nullopt, 0, cut[of.front()].inputs[i]};
+    follow(stated, cut);
+    Alternative best = stated;
+    for (int const samples : {1, -1, 2, -2, 3, -3, 4, -4, 5, -5}) {
+      Alternative other{std::nullopt, static_cast<double>(samples), cut[of.front()].inputs[i].shifted(samples)};
+      std::vector<Experiment> changed = cut;
+      for (std::size_t const e : of) changed[e].inputs[i] = cut[e].inputs[i].shifted(samples);
+      follow(other, changed);
+      other.gain -= stated.gain;
+      other.clear = other.gain > gain_at_least &&
+                    (other.gain > gain_per_sample * scored ||
+                     everywhere(fit_.log_densities(cut, stated.declared), fit_.log_densities(changed, other.declared)));
+      if (other.clear && (!best.clear || best.gain < other.gain)) best = std::move(other);
+    }
+    if (!best.clear) return std::nullopt;
+    return other_sample(best, of, i, scored);
   }
 
   // Lines through a smooth curve act like a smaller input, which the parameters take up: the response cannot show it, but the
@@ -142,6 +196,14 @@ class InputCheck {
   void weigh(Alternative& other, std::size_t e, std::size_t i, int scored) {
     std::vector<Experiment> changed = experiments_;
     changed[e].inputs[i] = other.signal;
+    follow(other, changed);
+    other.clear = other.gain > gain_at_least && other.gain > gain_per_sample * scored;
+    if (other.clear || !other.rule || !(other.gain > rule_gain_at_least)) return;
+    other.clear = everywhere(fit_.log_densities(experiments_, mode_.declared), fit_.log_densities(changed, other.declared));
+  }
+
+  // The mode with these experiments in place of the fit's own: how much higher it is than the fit's, and where.
+  void follow(Alternative& other, std::vector<Experiment> const& changed) {
     std::shared_ptr<Target const> const target = fit_.target(changed);
     if (!widths_) {
       first_ = target;
@@ -158,9 +220,6 @@ class InputCheck {
     for (int p = 0; p < declared.rows(); ++p) other.declared.push_back(declared(p, 0));
     if (parameters_.empty())
       for (ParameterInfo const& each : target->parameters()) parameters_.push_back(each.name);
-    other.clear = other.gain > gain_at_least && other.gain > gain_per_sample * scored;
-    if (other.clear || !other.rule || other.gain <= rule_gain_at_least) return;
-    other.clear = everywhere(fit_.log_densities(experiments_, mode_.declared), fit_.log_densities(changed, other.declared));
   }
 
   // Whether the gain comes from all parts of the record.
@@ -197,6 +256,51 @@ class InputCheck {
                 "the fit is much better with input {}{} shifted {} by half a sample (log density higher by {:.0f} for {} samples)",
                 model_.inputs[i].name, on(e), other.shift > 0 ? "later" : "earlier", other.gain, scored),
             "check the delay of the recording: no other rule between input samples explains the record as well"};
+  }
+
+  // Samples back that the equations read of an input, each once.
+  std::set<int> lags_of(std::size_t input) const {
+    std::vector<NodeId> roots = model_.residuals;
+    for (State const& state : model_.states) roots.push_back(state.derivative);
+    for (Channel const& channel : model_.channels)
+      roots.insert(roots.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
+    std::set<int> lags;
+    for (NodeId const each : model_.graph.reachable(roots)) {
+      Node const& node = model_.graph[each];
+      if (node.operation == Operation::leaf && node.leaf_kind == LeafKind::input && node.index == static_cast<int>(input))
+        lags.insert(node.lag);
+    }
+    return lags;
+  }
+
+  // What to write where the input acts so many samples later than the equations have it.
+  std::string lag_advice(std::size_t i, int later) const {
+    std::string const& input = model_.inputs[i].name;
+    std::string const samples = std::to_string(std::abs(later)) + " " + plural("sample", static_cast<std::size_t>(std::abs(later)));
+    std::set<int> const lags = lags_of(i);
+    if (lags.empty() || *lags.begin() + later < 0)
+      return fmt::format(
+          "the column of {0} is {1} late against the response: move it up by {2} {3} in the file, or correct the "
+          "delay of the recording",
+          input, samples, std::abs(later), plural("row", static_cast<std::size_t>(std::abs(later))));
+    auto const written = [&](int lag) { return lag == 0 ? "`" + input + "`" : fmt::format("`lag({}, {})`", input, lag); };
+    std::string const read = lags.size() == 1
+                                 ? fmt::format("write {} in place of {}", written(*lags.begin() + later), written(*lags.begin()))
+                                 : fmt::format("{} {} {} each lag of `{}`", later > 0 ? "add" : "subtract", std::abs(later),
+                                               later > 0 ? "to" : "from", input);
+    return fmt::format("{} if the system has this delay; otherwise correct the delay of the recording of {}", read, input);
+  }
+
+  Finding other_sample(Alternative const& other, std::vector<std::size_t> const& of, std::size_t i, int scored) const {
+    int const later = static_cast<int>(other.shift);
+    auto const size = static_cast<std::size_t>(std::abs(later));
+    return {FindingCode::input_timing,
+            Severity::warning,
+            {model_.inputs[i].name, experiments_[of.front()].name},
+            fmt::format("the fit is much better with input {}{} shifted {} by {} {} (log density higher by {:.0f} for {} samples)",
+                        model_.inputs[i].name, of.size() == experiments_.size() ? "" : on(of.front()),
+                        later > 0 ? "later" : "earlier", size, plural("sample", size), other.gain, scored),
+            lag_advice(i, later)};
   }
 
   FitOfExperiments const& fit_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <numbers>
 
@@ -103,7 +104,55 @@ best = fit rig to bench with map, seed = 1
   return fitted.found("best", "input_timing") ? "shifted" : "";
 }
 
+/// What a fit of a difference equation says about the time of its input, where the column of the input is so many rows late
+/// (negative: early): "" or the message.
+struct Said {
+  std::string message, help;
+};
+Said said_of_lag(std::uint64_t seed, int late, std::string const& lag = "lag(u, 1)") {
+  Stream stream({seed, Purpose::test, 1, 0});
+  constexpr int rows = 220, margin = 10;
+  std::vector<double> u, y = {0, 0};
+  for (int i = 0; i < rows + 2 * margin; ++i) u.push_back(i % 5 == 0 || u.empty() ? 1 + 5 * stream.uniform() : u.back());
+  for (std::size_t i = 2; i < u.size(); ++i)
+    y.push_back(1.2 * y[i - 1] - 0.32 * y[i - 2] + 0.05 * u[i - 1] + 0.004 * stream.normal());
+  std::string csv = "u,y\n";
+  for (int i = margin; i < rows + margin; ++i)
+    csv += fmt::format("{:.10g},{:.10g}\n", u[static_cast<std::size_t>(i - late)], y[static_cast<std::size_t>(i)]);
+  Fitted const fitted = run_file(
+      "model tank {\n time discrete\n input u [V]\n parameter a1 [-] ~ normal(0, sd = 2)\n parameter a2 [-] ~ normal(0, sd = 2)\n"
+      " parameter b [m/V] ~ normal(0, sd = 2)\n parameter sigma [m] ~ log_uniform(1e-4, 1)\n observe level [m] ~ "
+      "normal(a1*lag(measured(level), 1) + a2*lag(measured(level), 2) + b*" +
+          lag +
+          ", sd = sigma)\n}\ndata plant { file \"plant.csv\"; step 0.5 [s]; input u = u [V]; measure level = y [m] }\n"
+          "best = fit tank to plant with map, seed = 1\n",
+      {}, {{"plant.csv", csv}});
+  for (auto const& finding : fitted.summary.at("best").at("findings"))
+    if (finding.at("code") == "input_timing") return {finding.at("message"), finding.at("help")};
+  return {};
+}
+
 }  // namespace
+
+TEST_CASE("an input of a difference equation that is whole samples out of step is named, with the number") {
+  for (std::uint64_t const seed : seeds(2, 10)) {
+    for (int const late : {1, 2, -2})
+      CHECK(said_of_lag(seed, late)
+                .message.find(fmt::format("shifted {} by {} sample{}", late > 0 ? "earlier" : "later", std::abs(late),
+                                          std::abs(late) == 1 ? " (" : "s (")) != std::string::npos);
+    CHECK(said_of_lag(seed, 2).help.find("move it up by 2 rows") != std::string::npos);
+    // The equation has the wrong lag: the line of the help is the right one.
+    CHECK(said_of_lag(seed, 0, "u").help.starts_with("write `lag(u, 1)` in place of `u` if"));
+    CHECK(said_of_lag(seed, 0, "lag(u, 3)").help.starts_with("write `lag(u, 1)` in place of `lag(u, 3)` if"));
+  }
+}
+
+// In 1000 records of a full run none is doubted; more than one of 40 would be found here.
+TEST_CASE("an input of a difference equation that is in step is not doubted") {
+  int doubted = 0;
+  for (std::uint64_t const seed : seeds(40, 1000, 100)) doubted += !said_of_lag(seed, 0).message.empty();
+  CHECK(doubted == 0);
+}
 
 // A rule that is never named, or named wrongly, is found with any of the records; a full run makes more.
 TEST_CASE("a wrong rule between input samples is named with the right one") {

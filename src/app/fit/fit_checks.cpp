@@ -38,7 +38,7 @@ Findings residuals(FinishedFit& fit) {
 
 std::string without_timing(FinishedFit const& fit) {
   Model const& model = fit.likelihood.model();
-  if (model.dynamics != Dynamics::continuous) return "the model uses no input between samples";
+  if (model.dynamics == Dynamics::none) return "the model uses no input between samples";
   if (model.inputs.empty()) return "the model has no input";
   if (fit.preparation.modes.empty()) return "the search found no mode";
   bool const explains = std::none_of(fit.report.findings.begin(), fit.report.findings.end(),
