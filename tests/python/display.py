@@ -123,6 +123,9 @@ class Words(unittest.TestCase):
 
         for said, expected in {
             "run the fit first: sysid run FILE, or sysid fit FILE": "run the fit first: model.fit()",
+            "run the fit first: sysid run FILE -o a/b, or sysid fit FILE -o a/b": 'run the fit first: model.fit(output="a/b")',
+            "run the fit again first: sysid fit FILE --force -o 'my results'":
+                'run the fit again first: model.fit(force=True, output="my results")',
             "run the select again first: sysid select FILE --force": "run the select again first: model.select(force=True)",
             "finish it first: sysid fit FILE --resume": "finish it first: model.fit(resume=True)",
             "run it again: `sysid predict FILE --force`": "run it again: model.predict(force=True)",

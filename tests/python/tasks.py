@@ -218,7 +218,7 @@ class Results(Desk):
         with self.assertRaises(sysid.Error) as caught:
             model.predict(output="empty")
         self.assertEqual(caught.exception.code, "E6202")
-        self.assertIn("run the fit first: model.fit()\n", str(caught.exception))
+        self.assertIn('run the fit first: model.fit(output="empty")\n', str(caught.exception))
         self.assertIn('more: sysid.explain("E6202")', str(caught.exception))
         self.assertTrue(sysid.explain("E6202").startswith("E6202: "))
         model.fit(output="results")

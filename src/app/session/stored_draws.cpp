@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/session/repetition.hpp"
 #include "app/session/reporting.hpp"
 #include "app/session/results.hpp"
 #include "app/session/solver_record.hpp"
@@ -16,6 +17,7 @@
 #include "report/file/number_table.hpp"
 #include "report/file/selection.hpp"
 #include "report/file/stored_files.hpp"
+#include "report/file/task_folder.hpp"
 #include "result/selection.hpp"
 
 namespace sysid {
@@ -71,6 +73,12 @@ FittedModel read_fitted(std::filesystem::path const& folder, std::vector<std::st
 
 namespace {
 
+/// " -o DIR", where the results of this run are not where they are without it.
+std::string elsewhere(RunOptions const& options) {
+  bool const usual = options.temporary_output || options.output == RunOptions().output;
+  return usual ? "" : " -o " + quoted_for_shell(options.output.string());
+}
+
 /// The folder of a task's complete results; UserError when there are none or they are of another text.
 std::filesystem::path stored_results(Session& session, Task const& task, std::string_view verb) {
   auto folder = session.result_folder(task);
@@ -78,17 +86,20 @@ std::filesystem::path stored_results(Session& session, Task const& task, std::st
     diagnostic.primary = Label{task.span, {}};
     return diagnostic;
   };
+  std::string const there = elsewhere(session.options);
   if (std::filesystem::exists(folder / "checkpoint.cbor"))
-    throw UserError(at_task(result_error(
-        "E6202", fmt::format("`{}` in `{}` is unfinished", task.name, folder.string()),
-        {fmt::format("finish it first: sysid {} FILE --resume", verb), fmt::format("finish it first: `resume {}`", task.name)})));
-  if (!complete(folder))
-    throw UserError(at_task(result_error("E6202", fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
-                                         {fmt::format("run the {0} first: sysid run FILE, or sysid {0} FILE", verb),
-                                          fmt::format("run it first: `run {}`", task.name)})));
+    throw UserError(at_task(result_error("E6202", fmt::format("`{}` in `{}` is unfinished", task.name, folder.string()),
+                                         {fmt::format("finish it first: sysid {} FILE --resume{}", verb, there),
+                                          fmt::format("finish it first: `resume {}`", task.name)})));
   // To force the task that reads the draws would only ask for them again.
-  Help const again{fmt::format("run the {0} again first: sysid {0} FILE --force", verb),
+  Help const again{fmt::format("run the {0} again first: sysid {0} FILE --force{1}", verb, there),
                    fmt::format("run it again first: `run {}`", task.name)};
+  if (!complete(folder))
+    throw UserError(at_task(result_error(
+        "E6202", fmt::format("there are no draws of `{}` in `{}`", task.name, folder.string()),
+        holds_result(folder) ? again
+                             : Help{fmt::format("run the {0} first: sysid run FILE{1}, or sysid {0} FILE{1}", verb, there),
+                                    fmt::format("run it first: `run {}`", task.name)})));
   std::optional<Diagnostic> wrong;
   try {
     wrong = stored_otherwise(session, task, std::nullopt);

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import re
 from typing import Optional
 
 # Verbs that are methods of a model.
 _METHODS = "fit|predict|select|discover|check"
+# A path as a word of a shell.
+_PATH = r"'[^']*'|[^\s',`]+"
+
+
+def _text(path: str) -> str:
+    """A word of a shell as a string of Python."""
+    return json.dumps(path.strip("'"), ensure_ascii=False)
+
 
 _REPLACED = [(re.compile(pattern), replacement) for pattern, replacement in (
+    (rf"sysid run FILE -o ({_PATH}), or sysid ({_METHODS}) FILE -o ({_PATH})", lambda found: f"model.{found[2]}(output={_text(found[1])})"),
     (rf"sysid run FILE, or sysid ({_METHODS}) FILE", r"model.\1()"),
+    (rf"`?sysid ({_METHODS}) FILE --(force|resume) -o ({_PATH})`?",
+     lambda found: f"model.{found[1]}({found[2]}=True, output={_text(found[3])})"),
     (rf"`?sysid ({_METHODS}) FILE --(force|resume)`?", r"model.\1(\2=True)"),
     (rf"`?sysid ({_METHODS}) FILE`?(?! --)", r"model.\1()"),
     (r"`sysid check`", "model.check()"),

@@ -73,7 +73,7 @@ TEST_CASE("a prediction without stored draws says what to run first") {
         "example.sysid:13:13: error[E6202]: there are no draws of `posterior` in `OUT/posterior`\n"
         "  13 | posterior = fit decay to dish with mh(samples = 60, burn_in = 20, thin = 1, chains = 2), seed = 1\n"
         "     |             ^^^\n"
-        "help: run the fit first: sysid run FILE, or sysid fit FILE\n"
+        "help: run the fit first: sysid run FILE -o OUT, or sysid fit FILE -o OUT\n"
         "more: sysid explain E6202\n");
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("complete results of another statement are not kept by --resume, nor p
   CHECK(predicted.messages.find("error[E6201]: the results in `OUT/posterior` were computed with another statement") !=
         std::string::npos);
   // To force the prediction would lead here again.
-  CHECK(predicted.messages.find("help: run the fit again first: sysid fit FILE --force\n") != std::string::npos);
+  CHECK(predicted.messages.find("help: run the fit again first: sysid fit FILE --force -o OUT\n") != std::string::npos);
   CHECK(predicted.messages.starts_with("example.sysid:13:13: "));
   RunOptions forced;
   forced.force = true;
