@@ -82,11 +82,13 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
 }
 
 std::optional<double> OptionReader::number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit,
-                                           double least, double most, bool whole) {
+                                           double least, double most, bool whole, std::optional<OtherPlace> const& elsewhere) {
   auto const value = scope_.expression(tree);
   if (!value) return std::nullopt;
   if (unit && value->kind == Typed::Kind::known)
     if (auto refused = refuse_number(tree.span, errors::named(name), value->unit, *unit)) {
+      if (elsewhere && !refuse_number(tree.span, errors::named(name), value->unit, elsewhere->unit))
+        refused->help = elsewhere->help;
       diagnostics_.add(std::move(*refused));
       return std::nullopt;
     }

@@ -32,9 +32,14 @@ class OptionReader {
   OptionReader(std::string verb, Diagnostics& diagnostics)
       : verb_(std::move(verb)), diagnostics_(diagnostics), scope_(graph_, diagnostics, {}) {}
 
+  /// What a number of another kind would be right for, and how it is written there.
+  struct OtherPlace {
+    Unit unit;
+    std::string help;
+  };
   /// A number known before the run, SI. unit: absent where nothing is declared, and anything goes.
   std::optional<double> number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit, double least,
-                               double most, bool whole = false);
+                               double most, bool whole = false, std::optional<OtherPlace> const& elsewhere = std::nullopt);
   void whole(ast::Option const& option, std::string const& name, double least, double most, int& place);
   /// yes or no.
   void flag(ast::Option const& option, std::string const& name, bool& place);

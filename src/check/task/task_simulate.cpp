@@ -1,6 +1,8 @@
 // `simulate`: values, inputs, noise and sampling of a record that is made.
 #include "check/task/task_checker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "check/data/data.hpp"
@@ -10,6 +12,7 @@
 #include "core/setting/table.hpp"
 #include "data/input_rule.hpp"
 #include "solver/linear_structure.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid {
 namespace {
@@ -117,8 +120,14 @@ void TaskChecker::simulate_spacing(TaskChecker& checker, ast::Option const& opti
   std::string const key = key_of(option);
   if (options.spacing) checker.diagnostics_.add(errors::stated_twice(option.span, *options.spacing, {"the time between samples"}));
   options.spacing = option.span;
-  if (auto const value = checker.options_.number(option.value, key, unit_of(key == "rate" ? "Hz" : "s"), 1e-300, 1e300))
-    options.task.step = key == "rate" ? 1 / *value : *value;
+  bool const rate = key == "rate";
+  std::string const number = unparse(option.value);
+  OptionReader::OtherPlace const other =
+      rate
+          ? OptionReader::OtherPlace{unit_of("s"), fmt::format("this is the time between two samples: write `step = {}`", number)}
+          : OptionReader::OtherPlace{unit_of("Hz"), fmt::format("this is a number of samples per time: write `rate = {}`", number)};
+  if (auto const value = checker.options_.number(option.value, key, unit_of(rate ? "Hz" : "s"), 1e-300, 1e300, false, other))
+    options.task.step = rate ? 1 / *value : *value;
 }
 
 void TaskChecker::simulate_solver(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
