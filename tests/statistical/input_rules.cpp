@@ -147,7 +147,7 @@ TEST_CASE("an input of a difference equation that is whole samples out of step i
   }
 }
 
-// In 1000 records of a full run none is doubted; more than one of 40 would be found here.
+// Of 160 records of two generators none was doubted.
 TEST_CASE("an input of a difference equation that is in step is not doubted") {
   int doubted = 0;
   for (std::uint64_t const seed : seeds(40, 1000, 100)) doubted += !said_of_lag(seed, 0).message.empty();

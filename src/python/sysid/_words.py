@@ -18,7 +18,8 @@ def _text(path: str) -> str:
 
 
 _REPLACED = [(re.compile(pattern), replacement) for pattern, replacement in (
-    (rf"sysid run FILE -o ({_PATH}), or sysid ({_METHODS}) FILE -o ({_PATH})", lambda found: f"model.{found[2]}(output={_text(found[1])})"),
+    (rf"sysid run FILE -o ({_PATH}), or sysid ({_METHODS}) FILE -o ({_PATH})",
+     lambda found: f"model.{found[2]}(output={_text(found[1])})"),
     (rf"sysid run FILE, or sysid ({_METHODS}) FILE", r"model.\1()"),
     (rf"`?sysid ({_METHODS}) FILE --(force|resume) -o ({_PATH})`?",
      lambda found: f"model.{found[1]}({found[2]}=True, output={_text(found[3])})"),
