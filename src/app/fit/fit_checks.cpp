@@ -40,6 +40,9 @@ std::string without_timing(FinishedFit const& fit) {
   Model const& model = fit.likelihood.model();
   if (model.dynamics == Dynamics::none) return "the model uses no input between samples";
   if (model.inputs.empty()) return "the model has no input";
+  // Each shift is a fit of all of them, and a function of several past samples takes most shifts up.
+  if (model.dynamics == Dynamics::discrete && !model.processes.empty())
+    return "in discrete time, the inputs of Gaussian processes are not shifted";
   if (fit.preparation.modes.empty()) return "the search found no mode";
   bool const explains = std::none_of(fit.report.findings.begin(), fit.report.findings.end(),
                                      [](Finding const& each) { return each.code == FindingCode::worse_than_the_mean; });
