@@ -14,7 +14,9 @@ std::string with_split(std::string const& parts) {
 TEST_CASE("parts that share rows at their ends are refused, with the rows") {
   std::string const one = with_split("train = rows 1..4, test = rows 4..8");
   CHECK(one.find("error[E4116]: row 4 is in both ranges `train` and `test`") != std::string::npos);
-  CHECK(one.find("`test` must begin at row 5 or later, or end before row 4") != std::string::npos);
+  CHECK(one.find("begin `test` at row 5") != std::string::npos);
+  CHECK(with_split("train = rows 1..4, test = rows 5..8") == "");
+  CHECK(with_split("test = rows 4..8, train = rows 1..4").find("end `train` at row 3") != std::string::npos);
   CHECK(with_split("test = rows 4..8\nsplit train = rows 1..6").find("rows 4 to 6 are in both ranges `test` and `train`") !=
         std::string::npos);
   CHECK(with_split("a = rows 1..4, b = rows 1..4").find("E4116") != std::string::npos);

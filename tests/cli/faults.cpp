@@ -171,7 +171,7 @@ TEST_CASE("a long simulation hears a request within a second, with any input") {
     desk.save("long.sysid", simulation(std::string("samples = 2000000, input x = ") + input));
     desk.save("stop.sh",
               "'" SYSID_PROGRAM
-              "' simulate long.sysid --quiet &\nsleep 0.7\nkill -HUP $!\n"
+              "' simulate long.sysid --quiet &\nwhile [ ! -e results ] && kill -0 $!; do sleep 0.05; done\nsleep 0.3\nkill -HUP $!\n"
               "began=$(date +%s%N)\nwait $!\ncode=$?\necho \"$(( ($(date +%s%N) - began) / 1000000 )) ms\"\nexit $code\n");
     Said const said = said_by("cd '" + desk.path(".").string() + "' && sh stop.sh");
     CHECK_MESSAGE(said.exit == 75, said.text);

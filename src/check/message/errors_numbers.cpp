@@ -38,13 +38,13 @@ Diagnostic value_not_finite(Span span, Subject const& what) {
                                  "write a number; an unknown parameter has a prior in place of a value: `~ log_uniform(0.1, 10)`"));
 }
 
-Diagnostic parts_overlap(Span second, Span first, std::string const& later, std::string const& earlier, int from, int to) {
+Diagnostic parts_overlap(Span second, Span first, std::string const& later, std::string const& earlier, int from, int to,
+                         std::string const& cure) {
   std::string const rows = from == to ? fmt::format("row {}", from) : fmt::format("rows {} to {}", from, to);
   return about({later, earlier},
                conflict("E4116", second, "again here", first, "first here",
                         fmt::format("{} {} in both ranges `{}` and `{}`", rows, from == to ? "is" : "are", earlier, later),
-                        fmt::format("both ends of a range belong to it: `{}` must begin at row {} or later, or end before row {}",
-                                    later, to + 1, from)));
+                        "both ends of a range belong to it: " + cure));
 }
 
 std::string instead_of_size(ast::Declared const& declared) {

@@ -13,7 +13,9 @@ Diagnostic argument_not_finite(Span span, std::string const& spelling, std::stri
 /// E2015: `parameter m = inf`.
 Diagnostic value_not_finite(Span span, Subject const& what);
 /// E4116: rows that two parts of a record have in common, neither being part of the other.
-Diagnostic parts_overlap(Span second, Span first, std::string const& later, std::string const& earlier, int from, int to);
+/// cure: "begin `test` at row 3".
+Diagnostic parts_overlap(Span second, Span first, std::string const& later, std::string const& earlier, int from, int to,
+                         std::string const& cure);
 
 /// What is meant in place of a size that is no number: a unit, the time, the argument of a function; empty where that is unknown.
 std::string instead_of_size(ast::Declared const& declared);

@@ -212,7 +212,7 @@ Diagnostic process_with_moving_noise(Span span, std::string const& channel) {
       error("E3211", span,
             fmt::format("the noise of `{}` changes along the record, which is not supported together with a Gaussian process",
                         channel),
-            "make its sd a parameter"));
+            "make the sd of the noise a parameter, without a factor that changes"));
 }
 Diagnostic process_without_normal_noise(Span span, std::string const& channel, std::string const& noise) {
   return about({channel},

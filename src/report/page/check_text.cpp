@@ -157,9 +157,9 @@ std::string information_text(InformationPage const& page) {
   std::vector<std::string> lines;
   lines.push_back(fmt::format("computed at the {} prior draws whose response is closest in size to the data{}", page.draws,
                               page.noise.empty() ? std::string() : "; assumed noise: " + page.noise));
-  lines.push_back("prior width: half the width of the central 68 % interval of the prior (the sd of a normal prior)");
+  lines.push_back("prior width: half the width of the central 68 % interval of the prior draws (about the sd of a normal prior)");
   if (std::any_of(page.lines.begin(), page.lines.end(), [](InformationPage::Line const& line) { return line.relative; }))
-    lines.push_back("percentages and factors are those of the logarithm: factor 5 means times or divided by 5");
+    lines.push_back("percentages are relative to the value of the parameter; factor 5 means times or divided by 5");
   if (page.rows > 0)
     lines.push_back(fmt::format("over the first {} scored rows only; the whole record contains more information", page.rows));
   for (std::string const& direction : page.null_directions) lines.push_back(direction);
