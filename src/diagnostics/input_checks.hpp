@@ -33,9 +33,10 @@ struct FitOfExperiments {
 /// In discrete time, where nothing is read between samples, every input is shifted by one to five whole samples, in all experiments
 /// together and, where that is not clearly better, in each alone; clearly better is there
 ///
-///   G > 20   and   G > 0.2 n  or  mean(g) > 3.2 sd(g)/sqrt(16)
+///   G > 20   and   (G > 0.2 n  or  mean(g) > 3.2 sd(g)/sqrt(16))
 ///
-/// without the first and the last five samples, of which a shifted record lacks some; at most one `input_timing` for an input.
+/// without the first and the last five samples, of which a shifted record lacks some. So there is at most one `input_timing` for
+/// an input in all experiments, or one in each of them.
 ///
 /// g: the gains of the log likelihood in 16 successive parts of the record. A gain that is chance, however correlated the residuals
 /// are in time, comes from few parts of it. mode: the best one of the density that `objective_kind` names.

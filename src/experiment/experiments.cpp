@@ -57,9 +57,8 @@ void check_steps(Record const& record, DataBlock const& block, Model const& mode
       record.rounded && (!model.step || same_step(1 / record.rounded->rate, *model.step))
           ? fmt::format("equal steps give these times when they are rounded: write `rate {} [Hz]` in place of `time` in `{}`",
                         shortest(record.rounded->rate), block.name)
-          : "correct `time discrete`, or resample the record to equal steps; differences of up to 1 % of the step, such as those "
-            "of "
-            "rounded times, are accepted";
+          : "correct `time discrete`, or resample the record to equal steps; differences of up to 1 % of the step, such as "
+            "those of rounded times, are accepted";
   for (std::size_t i = 1; i < record.time.size(); ++i) {
     double const step = record.time[i] - record.time[i - 1];
     if (same_step(step, wanted)) continue;

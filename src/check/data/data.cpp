@@ -206,10 +206,8 @@ class DataChecker {
           (part.first >= other.first && part.last <= other.last) || (other.first >= part.first && other.last <= part.last);
       bool const same = part.first == other.first && part.last == other.last;
       if (from > to || (inside && !same)) continue;
-      std::string const cure = same                       ? fmt::format("remove `{}`, or give it other rows", part.name)
-                               : part.first > other.first ? fmt::format("begin `{}` at row {}", part.name, to + 1)
-                                                          : fmt::format("end `{}` at row {}", part.name, from - 1);
-      diagnostics_.add(errors::parts_overlap(part.span, other.span, part.name, other.name, from, to, cure));
+      diagnostics_.add(
+          errors::parts_overlap({part.name, part.first, part.last, part.span}, {other.name, other.first, other.last, other.span}));
       return;
     }
   }

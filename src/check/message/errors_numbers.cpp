@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "check/message/error_words.hpp"
 #include "core/numeric/unit.hpp"
 #include "syntax/unparse.hpp"
@@ -38,13 +40,17 @@ Diagnostic value_not_finite(Span span, Subject const& what) {
                                  "write a number; an unknown parameter has a prior in place of a value: `~ log_uniform(0.1, 10)`"));
 }
 
-Diagnostic parts_overlap(Span second, Span first, std::string const& later, std::string const& earlier, int from, int to,
-                         std::string const& cure) {
+Diagnostic parts_overlap(NamedRows const& later, NamedRows const& earlier) {
+  int const from = std::max(later.first, earlier.first), to = std::min(later.last, earlier.last);
   std::string const rows = from == to ? fmt::format("row {}", from) : fmt::format("rows {} to {}", from, to);
-  return about({later, earlier},
-               conflict("E4116", second, "again here", first, "first here",
-                        fmt::format("{} {} in both ranges `{}` and `{}`", rows, from == to ? "is" : "are", earlier, later),
-                        "both ends of a range belong to it: " + cure));
+  std::string const crossing = later.first > earlier.first ? fmt::format("begin `{}` at row {}", later.name, to + 1)
+                                                           : fmt::format("end `{}` at row {}", later.name, from - 1);
+  bool const same = later.first == earlier.first && later.last == earlier.last;
+  return about({later.name, earlier.name}, conflict("E4116", later.span, "again here", earlier.span, "first here",
+                                                    fmt::format("{} {} in both ranges `{}` and `{}`", rows,
+                                                                from == to ? "is" : "are", earlier.name, later.name),
+                                                    same ? fmt::format("remove `{}`, or give it other rows", later.name)
+                                                         : "both ends of a range belong to it: " + crossing));
 }
 
 std::string instead_of_size(ast::Declared const& declared) {

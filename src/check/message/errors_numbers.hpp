@@ -12,10 +12,14 @@ namespace sysid::errors {
 Diagnostic argument_not_finite(Span span, std::string const& spelling, std::string const& distribution);
 /// E2015: `parameter m = inf`.
 Diagnostic value_not_finite(Span span, Subject const& what);
-/// E4116: rows that two parts of a record have in common, neither being part of the other.
-/// cure: "begin `test` at row 3".
-Diagnostic parts_overlap(Span second, Span first, std::string const& later, std::string const& earlier, int from, int to,
-                         std::string const& cure);
+/// A range of a data block, both ends included.
+struct NamedRows {
+  std::string name;
+  int first = 0, last = 0;
+  Span span;
+};
+/// E4116: rows that two parts of a record have in common, where neither lies inside the other, or both are the same.
+Diagnostic parts_overlap(NamedRows const& later, NamedRows const& earlier);
 
 /// What is meant in place of a size that is no number: a unit, the time, the argument of a function; empty where that is unknown.
 std::string instead_of_size(ast::Declared const& declared);
