@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/system/kept_memory.hpp"
+
 namespace {
 
 /// Processor seconds of this program and of the programs it has waited for.
@@ -20,8 +22,8 @@ double processor_time() {
   return seconds;
 }
 
-/// Appends `seconds file: name` of each case to the file that SYSID_TEST_TIMES names. Unlike doctest's durations these hold on a
-/// machine that does something else, too.
+/// The memory of tests is that of the program. Appends `seconds file: name` of each case to the file that SYSID_TEST_TIMES names.
+/// Unlike doctest's durations these hold on a machine that does something else, too.
 struct ProcessorTimes final : doctest::IReporter {
   explicit ProcessorTimes(doctest::ContextOptions const&) {}
   void test_case_start(doctest::TestCaseData const& test) override {
@@ -37,7 +39,7 @@ struct ProcessorTimes final : doctest::IReporter {
     }
   }
   void report_query(doctest::QueryData const&) override {}
-  void test_run_start() override {}
+  void test_run_start() override { sysid::keep_freed_memory(); }
   void test_run_end(doctest::TestRunStats const&) override {}
   void test_case_reenter(doctest::TestCaseData const&) override {}
   void test_case_exception(doctest::TestCaseException const&) override {}

@@ -1,11 +1,10 @@
 // The command line: a table of verbs in, an exit code out. What they do is in app/, exchange/, repl/ and lsp/.
-#include <malloc.h>
-
 #include "cli/command.hpp"
 #include "cli/help.hpp"
 #include "cli/usage.hpp"
 #include "core/numeric/instruction_set.hpp"
 #include "core/ranks/ranks.hpp"
+#include "core/system/kept_memory.hpp"
 
 namespace sysid::cli {
 namespace {
@@ -107,9 +106,6 @@ ExitCode main(int argument_count, char** arguments) {
 }  // namespace sysid::cli
 
 int main(int argument_count, char** arguments) {
-  // A fit asks for the same megabytes again and again: what has been returned is kept, since each page that comes from the system
-  // anew costs as much as reading it twice.
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  sysid::keep_freed_memory();
   return static_cast<int>(sysid::cli::main(argument_count, arguments));
 }
