@@ -25,7 +25,9 @@ constexpr double long_jacobian = 4e3;  // numbers
 constexpr int stage_rounds = 6;
 constexpr double stage_simulations = 200;  // whole ones, of the rounds of a stage where its breadth allows
 constexpr double least_breadth_at_first = 16, least_breadth = 4, most_breadth = 256, most_with_functions = 16;
-constexpr double lost = 0.7;  // nats of each residual: the misfit doubles
+constexpr double lost = 0.7;        // nats of each residual: the misfit doubles
+constexpr double crept_away = 0.5;  // nats of each residual, over all stages: the misfit is 1.6 times as large
+constexpr double worth_another_pass = 0.1;
 constexpr int most_setbacks = 24;
 constexpr std::size_t few_known = 6;
 constexpr double doubtful = 0.1;  // share of the record up to which any stage may show what the ones before it did not
@@ -74,6 +76,11 @@ class GrowingSearch {
       }
       int const finer = finer_;
       std::vector<Climber> last = pass_once();
+      if (looking_again_ && last.empty() && !stop_()) {  // the modes known stay, and the solver that they are of
+        finer_ = finer;
+        break;
+      }
+      looking_again_ = false;
       if (finer_ != finer) ended.clear();  // of another solver
       found.begun = found.begun || begun_;
       found.draws += static_cast<std::uint64_t>(breadth_.draws);
@@ -83,7 +90,10 @@ class GrowingSearch {
         found.modes = modes_of(objective, ended, context_.ledger, stop_, context_.journal, affordable_curvatures());
       if (stop_()) break;
       bool const enough = !found.modes.empty() && !may_be_missed(found.modes, searches_in(ended));
-      if (enough || (!ended.empty() && budget_.left() < budget_.spent() - before)) break;
+      if (enough && pass == 0 && has_crept_away())
+        looking_again_ = true;
+      else if (enough || (!ended.empty() && budget_.left() < budget_.spent() - before))
+        break;
     }
     if (stop_()) found.modes.clear();
     found.finer = finer_;
@@ -156,7 +166,7 @@ class GrowingSearch {
     Stage now = climb_on(first_share_, {}, Further::all);
     begun_ = !now.climbers.empty();
     double step = first_share_;
-    int setbacks = 0;
+    int setbacks = 0, stages_of_pass = 0;
     while (now.share < 1 && !now.climbers.empty() && !stop_()) {
       double const next = now.share + 1.5 * step > 1 ? 1 : now.share + step;
       bool const doubted = now.share < doubtful;
@@ -181,10 +191,18 @@ class GrowingSearch {
       }
       step = std::min(setbacks > 0 ? 1.5 * step : 2 * step, longer.share);
       now = std::move(longer);
+      if (looking_again_ && stages_of_pass == 0) {
+        if (now.fitted < fitted_second_ + worth_another_pass) return {};
+        budget_.add(static_cast<std::uint64_t>(std::max(0.0, cost_from(now.share) + usual_end() - budget_.left())));
+      }
+      if (++stages_of_pass == 1 && !looking_again_) fitted_second_ = now.fitted;
     }
     return stop_() ? std::vector<Climber>() : finish(std::move(now.climbers));
   }
 
+  /// Searches of one pass descend from the first rows, and may agree on a wrong mode. It follows a longer record less and less
+  /// well, though no single stage loses it. So does a wrong model: other draws of the prior tell them apart in two stages.
+  bool has_crept_away() const { return fitted_at_end_ < fitted_before_ - crept_away; }
   static bool has_lost(Stage const& longer, Stage const& before) { return longer.fitted < before.fitted - lost; }
   bool affords_more(double share) const { return budget_.left() > usual_end() + cost_from(share); }
 
@@ -229,6 +247,8 @@ class GrowingSearch {
     if (!stage.climbers.empty()) stage.fitted = stage.climbers.front().log_density / target.residual_count();
     budget_.count(nullptr, 1);
     context_.ledger.merge(scaled(ledger, part.share));
+    double& fitted = share < 1 ? fitted_before_ : fitted_at_end_;
+    fitted = std::max(fitted, stage.fitted);
     return stage;
   }
 
@@ -292,7 +312,9 @@ class GrowingSearch {
   std::uint64_t stage_ = 0;
   int finer_ = 0, finer_of_ = 0;  // refinements of the solver; those of the target below
   std::unique_ptr<Target const> finer_whole_;
-  bool begun_ = false;
+  bool begun_ = false, looking_again_ = false;
+  double fitted_second_ = -infinity;                              // of the second stage
+  double fitted_before_ = -infinity, fitted_at_end_ = -infinity;  // of the best stage on a part of the record, and on all of it
 };
 
 }  // namespace

@@ -37,6 +37,8 @@ class SearchBudget {
 
   /// Counts the solves of `part`, each as `share` of one, beside those of the context; null: the context's alone.
   void count(Ledger const* part, double share);
+  /// More than was announced at the beginning.
+  void add(std::uint64_t simulations) { announced_ += simulations; }
   /// What is being done, and about how much follows it.
   void plan(std::string note, double later);
   double spent() const;

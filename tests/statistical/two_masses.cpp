@@ -53,3 +53,15 @@ TEST_CASE("the solver of two coupled masses is silent as chosen, and a step too 
       }
   }
 }
+
+// With these seeds all searches that the first rows begin end in one wrong mode, which leaves 5 and 23 % of the variance.
+TEST_CASE("searches of the first rows that agree on a wrong mode are made again") {
+  std::string text = two_masses("");
+  text = with(text, "with mh(samples = 8000, burn_in = 3000, thin = 5)", "with map");
+  for (std::uint64_t const seed : {28, 124}) {
+    CAPTURE(seed);
+    Fitted const fitted = run_file(text, seeded(seed));
+    CHECK_FALSE(fitted.found("posterior", "explains_little"));
+    CHECK(fitted.of("posterior", "k").at("mean").get<double>() == doctest::Approx(2000).epsilon(0.01));
+  }
+}
