@@ -10,8 +10,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <span>
 
 #include "inference/abc/kernel.hpp"
+#include "inference/backend/checkpoint.hpp"
 #include "inference/selection_toys.hpp"
 
 using namespace sysid;
@@ -370,12 +372,20 @@ TEST_CASE("a checkpoint of another seed, or one whose populations do not follow 
                                        {"/last/number", -1},
                                        {"/next/number", 1},
                                        {"/departures/0/0", 99},
+                                       {"/departures/0/0", 1},  // of a model that lives
                                        {"/departures/0/1", true}}) {
     CAPTURE(pointer);
     nlohmann::json forged = stored;
     forged[nlohmann::json::json_pointer(pointer)] = value;
     CHECK(fails(forged));
   }
+  // All that the model had; what its record counts stays.
+  nlohmann::json forged = stored;
+  nlohmann::json const nothing = checkpoint::encode(std::span<double const>());
+  for (nlohmann::json& each : forged.at("last").at("models").at(0)) each = nothing;
+  CHECK(fails(forged));
+  forged.at("records").back().at("models").at(0).at(2) = 0;
+  CHECK(fails(forged));
 }
 
 namespace {

@@ -94,6 +94,18 @@ bool in_order(State const& state) {
           std::any_of(last.models.begin(), last.models.end(), [](Particles const& each) { return each.count() > 0; }));
 }
 
+/// Whether models have as many particles as the record of their population counts, and one of those has a probability.
+bool counted(Population const& population, PopulationRecord const& record) {
+  bool probable = false;
+  for (std::size_t m = 0; m < record.models.size(); ++m) {
+    int const count = population.models[m].count();
+    double const probability = record.models[m].probability;
+    if (record.models[m].particles != count || !(probability >= 0) || (probability > 0 && count == 0)) return false;
+    probable = probable || probability > 0;
+  }
+  return probable;
+}
+
 }  // namespace
 
 std::uint64_t State::simulations() const {
@@ -134,6 +146,8 @@ State restore(json const& stored, SelectionTarget const& candidates, Ledger& led
   state.record = restore_record(stored.at("record"), candidates.size());
   for (json const& each : stored.at("records")) state.records.push_back(restore_record(each, candidates.size()));
   if (!in_order(state)) throw checkpoint::Mismatch("its populations do not follow each other");
+  if (!state.records.empty() && !counted(state.last, state.records.back()))
+    throw checkpoint::Mismatch("its particles are not those that were counted");
   for (int m = 0; m < candidates.size(); ++m) {
     json const& departure = stored.at("departures").at(static_cast<std::size_t>(m));
     state.departures.push_back(
@@ -141,6 +155,8 @@ State restore(json const& stored, SelectionTarget const& candidates, Ledger& led
     State::Departure const& last = state.departures.back();
     if (last.population < (last.by_chance ? 1 : 0) || last.population > state.last.number)
       throw checkpoint::Mismatch("a model died in a population that does not exist");
+    if (last.population > 0 && state.last.models[static_cast<std::size_t>(m)].count() > 0)
+      throw checkpoint::Mismatch("a model died and has particles");
   }
   ledger = checkpoint::decode_ledger(stored.at("ledger"));
   return state;
