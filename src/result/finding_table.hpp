@@ -73,6 +73,7 @@ enum class FindingCode {
   prior_fails,
   prior_far_from_data,
   prior_at_rest,
+  initial_far_off,
   length_and_inputs,
   input_band,
   model_lost_by_chance,

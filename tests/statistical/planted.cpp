@@ -1,6 +1,10 @@
 // Each diagnostic on a case where it must fire and on a sound one where it must be silent.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <cmath>
+
+#include "core/numeric/random.hpp"
 #include "fits.hpp"
 
 using namespace sysid;

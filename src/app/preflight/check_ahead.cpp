@@ -66,6 +66,7 @@ void run_preflight(Session& session, FitTask const& what, std::vector<Experiment
   std::string const skipped_words = preflight.model().integrated() ? "identifiability and the solver: " : "identifiability: ";
   PriorDraws const prior = draw_prior(preflight);
   std::vector<int> const sized = describe_prior(preflight, prior);
+  check_initial(preflight, prior);
   Findings const method = check_method(session, what);
   page.findings.insert(page.findings.end(), method.begin(), method.end());
   describe_disturbances(preflight, prior, sized);

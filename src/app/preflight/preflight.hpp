@@ -85,6 +85,10 @@ PriorDraws draw_prior(Preflight const& preflight);
 /// nearest first.
 std::vector<int> describe_prior(Preflight const& preflight, PriorDraws const& prior);
 
+/// `initial_far_off` where every draw begins far from the first sample of a channel, in units of its noise and of what it measures
+/// in all, and the second sample is near the first: an initial value in another unit, or of another quantity.
+void check_initial(Preflight const& preflight, PriorDraws const& prior);
+
 /// A draw whose response ever finer solvers leave where it is, with its slopes.
 struct LocalResponse {
   LocalSlopes slopes;

@@ -1,0 +1,57 @@
+// Candidates that are one model under two names, and initial values that belong to another unit.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "app/checking.hpp"
+#include "app/running.hpp"
+
+using namespace sysid;
+
+namespace {
+
+/// A car that slows down in air, from 12 m/s.
+std::string const drag = R"(
+model viscous {
+  state v [m/s]
+  initial v = 12
+  parameter b [1/s] ~ log_uniform(0.01, 10)
+  v' = -b*v
+  observe speed ~ normal(v, sd = 0.06)
+}
+model quadratic {
+  state v [m/s]
+  initial v = 12
+  parameter d [1/m] ~ log_uniform(0.001, 1)
+  v' = -d*abs(v)*v
+  observe speed ~ normal(v, sd = 0.06)
+}
+candidates drag { viscous; quadratic }
+data run { file "coast.csv"; time t [s]; measure speed = speed [m/s] }
+which = select drag to run with abc_smc(particles = 200), seed = 1
+)";
+
+CheckResult check_drag(std::string const& text) {
+  std::string table = "t,speed\n";
+  for (int row = 0; row < 60; ++row)
+    table += fmt::format("{},{:.4g}\n", 0.25 * row, 12 / (1 + 12 * 0.09 * 0.25 * row) + 0.05 * (row % 3 - 1));
+  TemporaryFolder folder;
+  write_file(folder.path() / "coast.csv", table);
+  return checked(folder.path() / "m.sysid", text);
+}
+
+}  // namespace
+
+TEST_CASE("an initial value in another unit is named beside the first sample, and the right one is not") {
+  std::size_t const second = drag.find("model quadratic");
+  std::string const wrong = drag.substr(0, second) + with(drag.substr(second), "initial v = 12", "initial v = 12 [km/h]");
+  CheckResult const result = check_drag(wrong);
+  std::vector<std::string> const said = messages(result, "initial_far_off");
+  REQUIRE(said.size() == 1);
+  CHECK(said.front() == "`quadratic` begins with speed = 3.33 m/s, but its first sample, row 1 of run, is 11.9 m/s");
+  CHECK(preflight(result, "which", "quadratic").findings.front().help.starts_with("check `initial v` and its unit;"));
+  CHECK(messages(check_drag(drag), "initial_far_off").empty());
+  // A parameter that may have the right value is not doubted.
+  CHECK(
+      messages(check_drag(with(drag, "initial v = 12", "parameter v0 [m/s] ~ uniform(0, 30)\n  initial v = v0")), "initial_far_off")
+          .empty());
+}
