@@ -72,4 +72,24 @@ Findings find_crossed_columns(CheckedFile const& file, ExperimentData const& dat
   return findings;
 }
 
+std::vector<ExchangedColumns> exchanged_columns(DataBlock const& block, Model const& model) {
+  std::vector<Binding> const all = bindings(block, model);
+  std::vector<ExchangedColumns> exchanges;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      Binding const &one = all[i], &other = all[j];
+      if (one.column == other.column) return {};
+      if (!one.input) continue;  // inputs come first
+      ExchangedColumns exchange{block, one.column, other.column, !other.input,
+                                one.line(other.column) + " and " + other.line(one.column)};
+      auto const exchanged = [&](std::string const& column) {
+        return column == one.column ? other.column : column == other.column ? one.column : column;
+      };
+      for (DataInputUse& use : exchange.block.inputs) use.column = exchanged(use.column);
+      for (DataMeasureUse& use : exchange.block.measured) use.column = exchanged(use.column);
+      exchanges.push_back(std::move(exchange));
+    }
+  return exchanges;
+}
+
 }  // namespace sysid

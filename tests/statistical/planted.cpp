@@ -101,3 +101,57 @@ TEST_CASE("noise stated too small is told from noise stated right") {
   CHECK(run_file(wrong, seeded(7)).found("posterior", "noise_size"));
   CHECK_FALSE(sound_fit().found("posterior", "noise_size"));
 }
+
+TEST_CASE("two columns that have changed places are named with the lines that change them back") {
+  std::string const right = sound();
+  std::string wrong = with(right, "input   x = x [N]", "input   x = displacement [N]");
+  wrong = with(wrong, "measure displacement = displacement [m]", "measure displacement = x [m]");
+  wrong = with(wrong, "with mh(samples = 5000, burn_in = 1500, thin = 5, chains = 4)", "with map");
+  Fitted const fitted = run_file(wrong, seeded(7));
+  CHECK(fitted.found("posterior", "column_used_twice"));
+  CHECK(fitted.out.find("if so, write `input x = x [N] hold zero_order` and `measure displacement = displacement [m]`") !=
+        std::string::npos);
+}
+
+TEST_CASE("two inputs that have changed places are named, and none of a record whose motion the model lacks in part") {
+  std::string table = "minutes,power,ambient,temp\n", disturbed = table;
+  double temperature = 21;
+  Stream stream({5, Purpose::test, 0, 0});
+  for (int i = 0; i < 200; ++i) {
+    double const power = i % 37 < 18 ? 120 : 20, ambient = 21 + 3 * std::sin(0.045 * i), noise = 0.05 * stream.normal();
+    std::string const row = fmt::format("{},{},{:.5g},", i, power, ambient);
+    table += row + fmt::format("{:.5g}\n", temperature + noise);
+    disturbed += row + fmt::format("{:.5g}\n", temperature + noise + 2.5 * std::sin(0.31 * i));
+    double const rest = ambient + 0.7 * power;  // C = 4.2 kJ/K, R = 0.7 K/W
+    temperature = rest + (temperature - rest) * std::exp(-60 / (4200 * 0.7));
+  }
+  std::string const right = R"(
+model oven {
+  input P [W], Ta [degC]
+  state T [degC]
+  initial T = 21 [degC]
+  parameter C [kJ/K] ~ log_uniform(0.5, 50)
+  parameter R [K/W] ~ log_uniform(0.05, 20)
+  parameter sigma [K] ~ log_uniform(0.001, 10)
+  C*T' = P - (T - Ta)/R
+  observe temperature ~ normal(T, sd = sigma)
+}
+data day {
+  file "oven.csv"
+  time minutes [min]
+  input P = power [W] hold zero_order
+  input Ta = ambient [degC] hold zero_order
+  measure temperature = temp [degC]
+}
+warm = fit oven to day with map, seed = 1
+)";
+  std::string const wrong = with(with(right, "P = power", "P = ambient"), "Ta = ambient", "Ta = power");
+  Fitted const exchanged = run_file(wrong, {}, {{"oven.csv", table}});
+  CHECK(exchanged.found("warm", "column_used_twice"));
+  CHECK(exchanged.out.find("if so, write `input P = power [W] hold zero_order` and `input Ta = ambient [degC] hold zero_order`") !=
+        std::string::npos);
+  CHECK_FALSE(run_file(right, {}, {{"oven.csv", table}}).found("warm", "column_used_twice"));
+  Fitted const lacking = run_file(right, {}, {{"oven.csv", disturbed}});
+  CHECK(lacking.found("warm", "residuals_not_white"));
+  CHECK_FALSE(lacking.found("warm", "column_used_twice"));
+}

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/fit/exchanged_columns.hpp"
 #include "app/fit/hierarchies.hpp"
 #include "app/session/fit_end.hpp"
 #include "diagnostics/bound_check.hpp"
@@ -33,6 +34,10 @@ Findings parameter_use(FinishedFit& fit) { return check_use(fit.likelihood.model
 Findings residuals(FinishedFit& fit) {
   FitCheck check = fit.likelihood.check_residuals(fit.result, fit.report.draws);
   fit.report.fit = std::move(check.lines);
+  if (std::ranges::any_of(check.findings, &doubts_columns)) {
+    Findings const exchanged = check_exchanged_columns(fit);
+    check.findings.insert(check.findings.begin(), exchanged.begin(), exchanged.end());
+  }
   return std::move(check.findings);
 }
 

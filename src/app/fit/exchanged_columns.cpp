@@ -1,0 +1,148 @@
+// Likelihoods of different records are compared by what each explains of its own.
+#include "app/fit/exchanged_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/statistics.hpp"
+#include "core/text/number.hpp"
+#include "experiment/crossed_columns.hpp"
+#include "model/lags.hpp"
+#include "search/descent.hpp"
+#include "search/laplace.hpp"
+#include "search/objective.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr std::size_t most_pairs = 6, search_starts = 8;
+constexpr int searched_draws = 256, search_rounds = 20;
+constexpr double explained_share = 0.05, better_by = 4, worth_a_search = 0.003;
+constexpr std::uint64_t search_step = 7;  // of Purpose::start
+
+/// Of normal noise about the mean of each channel of each experiment, with the sd that fits; and the number of samples.
+struct Baseline {
+  double log_likelihood = 0, samples = 0;
+};
+Baseline baseline(Model const& model, std::vector<Experiment> const& experiments) {
+  Baseline sum;
+  for (Experiment const& each : experiments)
+    for (std::size_t c = 0; c < each.measured.size(); ++c) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < each.measured[c].size(); ++i)
+        if (each.is_scored(c, i)) values.push_back(model.channels[c].from_si(each.measured[c][i]));
+      if (values.size() < 2) continue;
+      auto const n = static_cast<double>(values.size());
+      sum.log_likelihood -= 0.5 * n * (elementary::log(2 * std::numbers::pi * population_variance(values)) + 1);
+      sum.samples += n;
+    }
+  return sum;
+}
+
+/// About the share of the variance that is not explained.
+double unexplained(double log_likelihood, Baseline const& of) {
+  double const share = elementary::exp(-2 * (log_likelihood - of.log_likelihood) / of.samples);
+  return std::isfinite(share) ? share : 1e300;
+}
+
+double log_likelihood_at(Target const& target, Eigen::VectorXd const& theta, Ledger& ledger) {
+  double value = 0;
+  target.log_likelihood(to_lanes({theta}), {&value, 1}, ledger);
+  return value;
+}
+
+/// The largest log likelihood that a short search finds.
+double search_otherwise(FinishedFit& fit, Target const& target) {
+  LaneArray draws(target.dimension(), searched_draws);
+  target.sample_prior({fit.seed, Purpose::start, 0, search_step}, draws);
+  Objective const objective = make_objective(target, fit.objective_kind, draws);
+  std::vector<double> const density = log_density_in_blocks(objective, draws, fit.extra);
+  std::vector<int> order(searched_draws);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return density[static_cast<std::size_t>(a)] > density[static_cast<std::size_t>(b)]; });
+  std::vector<Climber> climbers;
+  for (int const lane : order)
+    if (climbers.size() < search_starts && std::isfinite(density[static_cast<std::size_t>(lane)]))
+      climbers.push_back(climber_at(column(draws, lane), density[static_cast<std::size_t>(lane)]));
+  if (climbers.empty()) return -1e300;
+  climb(objective, climbers, search_rounds, fit.extra, {});
+  auto const best = std::ranges::max_element(climbers, {}, [](Climber const& each) { return each.log_density; });
+  return log_likelihood_at(target, best->theta, fit.extra);
+}
+
+/// The experiments of a fit with a data block as it might be instead; nothing where that cannot be read so.
+std::vector<Experiment> read_otherwise(FinishedFit const& fit, int data, DataBlock const& block) {
+  Model const& model = fit.session.file.models[static_cast<std::size_t>(fit.what.model)];
+  Model const as_predicted = with_prediction(model, fit.what.prediction).value_or(model);
+  std::vector<Experiment> experiments = experiments_of(fit.data);
+  try {
+    Record const record = load_record(block, model, fit.session.folder());
+    for (std::size_t e = 0; e < fit.data.size(); ++e) {
+      if (fit.data[e].use.data != data) continue;
+      std::string name = experiments[e].name;
+      experiments[e] = cut(record, block, as_predicted, fit.data[e].use.part, fit.what.start);
+      experiments[e].name = std::move(name);
+    }
+  } catch (UserError const&) {  // an input with gaps, a unit that the file states
+    return {};
+  } catch (IoError const&) {
+    return {};
+  }
+  return experiments;
+}
+
+}  // namespace
+
+bool doubts_columns(Finding const& finding) {
+  return finding.code == FindingCode::noise_size || finding.code == FindingCode::explains_little ||
+         finding.code == FindingCode::worse_than_the_mean || finding.code == FindingCode::residuals_not_white ||
+         finding.code == FindingCode::input_in_residuals;
+}
+
+Findings check_exchanged_columns(FinishedFit& fit) {
+  Model const& model = fit.likelihood.model();
+  bool const normal = std::ranges::all_of(model.channels, [](Channel const& each) { return each.noise.row->gaussian; });
+  if (model.dynamics == Dynamics::none || model.filtered() || !model.processes.empty() || !normal || fit.target.is_expensive() ||
+      fit.target.is_estimated() || model.improper() != nullptr || fit.preparation.modes.empty())
+    return {};
+  double const stated = unexplained(log_likelihood_at(fit.target, theta_of(fit.preparation.modes.front()), fit.extra),
+                                    baseline(model, experiments_of(fit.data)));
+  if (stated < worth_a_search) return {};
+  Findings findings;
+  std::vector<int> seen;
+  for (ExperimentData const& each : fit.data) {
+    if (std::ranges::find(seen, each.use.data) != seen.end()) continue;
+    seen.push_back(each.use.data);
+    DataBlock const& block = fit.session.file.data[static_cast<std::size_t>(each.use.data)];
+    std::vector<ExchangedColumns> const exchanges = exchanged_columns(block, model);
+    if (exchanges.size() > most_pairs) continue;
+    ExchangedColumns const* best = nullptr;
+    double least = std::min(explained_share, stated / better_by);
+    for (ExchangedColumns const& exchange : exchanges) {
+      std::vector<Experiment> experiments = read_otherwise(fit, each.use.data, exchange.block);
+      if (experiments.empty()) continue;
+      Baseline const of = baseline(model, experiments);
+      auto const target = fit.likelihood.make_target(std::move(experiments), fit.preparation.solver, fit.session.interruptible());
+      double const left = unexplained(search_otherwise(fit, *target), of);
+      if (left < least) least = left, best = &exchange;
+    }
+    if (best == nullptr) continue;
+    findings.push_back(
+        {FindingCode::column_used_twice,
+         Severity::warning,
+         {best->one, best->other, block.name},
+         fmt::format("with the columns `{}` and `{}` of {} exchanged, the model leaves {} % of the variance, in place of {} %: "
+                     "exchanged?",
+                     best->one, best->other, block.name, significant(100 * least, 2), significant(100 * std::min(1.0, stated), 2)),
+         fmt::format("if so, write {}", best->lines)});
+  }
+  return findings;
+}
+
+}  // namespace sysid

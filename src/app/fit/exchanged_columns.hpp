@@ -1,0 +1,22 @@
+// Whether a record that a fit does not explain is explained once two of its columns have changed places.
+#pragma once
+#include "app/fit/fit_checks.hpp"
+
+namespace sysid {
+
+/// Whether what was found may be the doing of exchanged columns.
+bool doubts_columns(Finding const& finding);
+
+/// `column_used_twice`, a warning, of a fit with such findings: the model is fitted, by a short search from draws of the
+/// prior, to the record with two columns exchanged, one of them that of an input. With G the log likelihood above that of a
+/// constant with its own noise, per scored sample, and so exp(-2 G) about the unexplained share of the variance, it is reported
+/// where
+///
+///   exp(-2 G) < 0.05   and   exp(-2 G) < exp(-2 G0)/4,   G0 that of the fit
+///
+/// and nothing is tried where exp(-2 G0) < 0.003: a record that is explained so far is not one with exchanged columns.
+/// Nothing of models without dynamics, whose equations hold in both directions, with random states, unknown functions or noise that
+/// is not normal, nor of more than six pairs.
+Findings check_exchanged_columns(FinishedFit& fit);
+
+}  // namespace sysid
