@@ -75,6 +75,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::prior_far_from_data, "prior_far_from_data", warning},
     {FindingCode::prior_at_rest, "prior_at_rest", warning},
     {FindingCode::initial_far_off, "initial_far_off", warning},
+    {FindingCode::candidates_alike, "candidates_alike", warning},
     {FindingCode::length_and_inputs, "length_and_inputs", warning},
     {FindingCode::input_band, "input_band", warning},
     {FindingCode::model_lost_by_chance, "model_lost_by_chance", warning},

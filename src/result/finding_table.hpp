@@ -74,6 +74,7 @@ enum class FindingCode {
   prior_far_from_data,
   prior_at_rest,
   initial_far_off,
+  candidates_alike,
   length_and_inputs,
   input_band,
   model_lost_by_chance,

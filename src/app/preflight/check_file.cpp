@@ -7,9 +7,11 @@
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/resolved.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "experiment/experiments.hpp"
+#include "model/same_equations.hpp"
 #include "syntax/parse.hpp"
 
 namespace sysid {
@@ -88,6 +90,46 @@ void check_rules(TaskPage& page) {
     }
 }
 
+/// [SI] between which the prior of a parameter of the model has its mass; infinite where it depends on other parameters.
+std::pair<double, double> support_of(ParameterSpace const& space, int parameter) {
+  for (int k = 0; k < space.dimension(); ++k) {
+    FittedParameter const& row = space.rows()[static_cast<std::size_t>(space.sampled()[static_cast<std::size_t>(k)])];
+    ParameterInfo const& info = space.infos()[static_cast<std::size_t>(k)];
+    if (row.parameter == parameter) return {row.to_si(info.lower), row.to_si(info.upper)};
+  }
+  return {-infinity, infinity};
+}
+
+// Equal equations are two hypotheses where their priors exclude each other, or where nothing but the priors differs; else they are
+// one, counted twice.
+void compare_candidates(Session const& session, SelectTask const& selection, TaskPage& page) {
+  CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(selection.candidates)];
+  auto const model = [&](std::size_t k) -> Model const& {
+    return session.file.models[static_cast<std::size_t>(selection.fits[k].model)];
+  };
+  for (std::size_t j = 0; j < selection.fits.size(); ++j)
+    for (std::size_t k = j + 1; k < selection.fits.size(); ++k) {
+      std::optional<Likeness> const alike = same_equations(model(j), model(k));
+      if (!alike || (alike->same_names && !alike->same_priors)) continue;
+      auto const first = parameter_space(model(j), selection.fits[j].experiments);
+      auto const second = parameter_space(model(k), selection.fits[k].experiments);
+      if (std::ranges::any_of(alike->parameters, [&](auto const& pair) {
+            auto const [low, high] = support_of(*first, pair.first);
+            auto const [other_low, other_high] = support_of(*second, pair.second);
+            return high <= other_low || other_high <= low;
+          }))
+        continue;
+      page.findings.push_back(
+          {FindingCode::candidates_alike,
+           Severity::warning,
+           {set.models[j].name, set.models[k].name},
+           fmt::format(
+               "candidates `{}` and `{}` have the same equations and the same noise: they differ at most in names and priors",
+               set.models[j].name, set.models[k].name),
+           "correct the equations of one of them, or leave it out: the two share the probability of one model"});
+    }
+}
+
 // Each candidate as the fit of it would be, unless the selection cannot begin.
 void preflight_candidates(Session& session, Task const& task, SelectTask const& selection, TaskPage& page) {
   std::vector<std::vector<ExperimentData>> data;
@@ -133,6 +175,7 @@ void preflight_select(Session& session, Task const& task, TaskDataList const& da
   auto const experiments = cover(session, data.front(), page);
   check_bands(page);
   check_rules(page);
+  compare_candidates(session, what, page);
   if (experiments) preflight_candidates(session, task, what, page);
 }
 

@@ -39,7 +39,38 @@ CheckResult check_drag(std::string const& text) {
   return checked(folder.path() / "m.sysid", text);
 }
 
+std::string const copied = with(with(drag, "d [1/m]", "d [1/s]"), "v' = -d*abs(v)*v", "v' = -d*v");
+
 }  // namespace
+
+TEST_CASE("two candidates with one equation are named, in any order of its factors") {
+  std::vector<std::string> const said = messages(check_drag(copied), "candidates_alike");
+  REQUIRE(said.size() == 1);
+  CHECK(said.front().starts_with("candidates `viscous` and `quadratic` have the same equations"));
+  CHECK(
+      messages(check_drag(with(with(copied, "v' = -b*v", "v' = -(b*v)"), "v' = -d*v", "v' = -(v*d)")), "candidates_alike").size() ==
+      1);
+  CHECK(messages(check_drag(with(copied, "speed ~ normal(v, sd = 0.06)", "speed ~ normal(v, sd = 0.05)")), "candidates_alike")
+            .size() == 1);
+}
+
+TEST_CASE("candidates that differ in an equation, an initial value, the noise or a fixed number are not taken for one") {
+  CHECK(messages(check_drag(drag), "candidates_alike").empty());
+  std::size_t const second = copied.find("model quadratic");
+  for (auto const& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"initial v = 12", "initial v = 11.9"}, {"sd = 0.06", "sd = 0.05"}, {"-d*v", "-d*v*2"}, {"-d*v", "-d*v - d*1 [m/s]"}})
+    CHECK(messages(check_drag(copied.substr(0, second) + with(copied.substr(second), from, to)), "candidates_alike").empty());
+}
+
+TEST_CASE("one equation with priors that exclude each other is two hypotheses, and so are two priors of one model") {
+  CHECK(messages(check_drag(with(copied, "d [1/s] ~ log_uniform(0.001, 1)", "d [1/s] ~ uniform(-1, 0)")), "candidates_alike")
+            .empty());
+  std::size_t const second = copied.find("model quadratic");
+  std::string const renamed = with(with(copied.substr(second), "d [1/s]", "b [1/s]"), "-d*v", "-b*v");
+  CHECK(messages(check_drag(copied.substr(0, second) + renamed), "candidates_alike").empty());
+  std::string const twice = copied.substr(0, second) + with(renamed, "log_uniform(0.001, 1)", "log_uniform(0.01, 10)");
+  CHECK(messages(check_drag(twice), "candidates_alike").size() == 1);
+}
 
 TEST_CASE("an initial value in another unit is named beside the first sample, and the right one is not") {
   std::size_t const second = drag.find("model quadratic");
