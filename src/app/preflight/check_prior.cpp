@@ -30,7 +30,7 @@ PriorPage counts(Preflight const& preflight, PriorSimulations const& simulations
   SolverRow const& stated = preflight.what.solver.row();
   PriorPage page;
   page.draws = preflight.effort.prior_draws;
-  page.stated = preflight.what.solver.text();
+  page.stated = preflight.stated.text();
   page.failed_as_stated = simulations.failed_as_stated;
   page.spent = stated.adaptive;
   page.failed_explicit = simulations.failed_explicit;
@@ -63,7 +63,8 @@ std::string unit_of_time_first(Preflight const& preflight) {
   constexpr double nearly_all = 0.9;
   PriorPage const& page = *preflight.page.prior;
   SolverSettings const& solver = preflight.what.solver;
-  if (!solver.fixed_step() || solver.row().exact || page.failed_as_stated < nearly_all * page.draws) return {};
+  bool const coarse = preflight.bounded() || (solver.fixed_step() && !solver.row().exact);
+  if (!coarse || page.failed_as_stated < nearly_all * page.draws) return {};
   Experiment const& first = preflight.experiments.front();
   if (first.time.size() < 2) return {};
   double const step = (first.time.back() - first.time.front()) / static_cast<double>(first.time.size() - 1);
@@ -125,7 +126,13 @@ void check_failures(Preflight const& preflight) {
   double const share = static_cast<double>(page.failed) / page.draws;
   double const stiff = static_cast<double>(page.failed_explicit - page.failed) / page.draws;
   double const lost = solver.row().stiff ? stiff : static_cast<double>(page.failed_as_stated - page.failed_explicit) / page.draws;
-  if (page.failed == page.draws)
+  if (preflight.bounded() && share > many_failures)
+    preflight.add(
+        FindingCode::prior_fails, Severity::warning, {},
+        fmt::format("{:.0f} % of the prior draws take more than {} steps of {} between two samples: `check` leaves them out",
+                    100 * share, solver.steps, solver.method),
+        unit_of_time_first(preflight) + "narrow the priors if such fast motion is not intended");
+  else if (page.failed == page.draws)
     preflight.add(FindingCode::prior_fails, Severity::error, {},
                   fmt::format("all {} prior draws fail: the simulation or its likelihood is not finite", page.draws),
                   fmt::format("check the named expression (for example for a noise sd of 0), the priors, {}",
@@ -141,7 +148,7 @@ void check_failures(Preflight const& preflight) {
   if (preflight.scales) return;  // no solver mends that
   check_stiffness(preflight, stiff);
   if (stiff <= many_failures) check_search(preflight);
-  if (preflight.refines_solver() && solver.fixed_step()) return;
+  if (preflight.bounded() || (preflight.refines_solver() && solver.fixed_step())) return;
   if (lost > many_failures)
     preflight.add(
         FindingCode::integration_step, solver.as_model ? Severity::note : Severity::warning, {},

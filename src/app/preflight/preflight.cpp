@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/preflight/time_scales.hpp"
+#include "app/session/fit_target.hpp"
 #include "experiment/sticking.hpp"
 #include "expression/switching.hpp"
 #include "simulate/thread_pool.hpp"
@@ -65,9 +66,10 @@ Effort effort_of(double work, int coordinates, Effort effort) {
 
 }  // namespace
 
-Preflight::Preflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page)
+Preflight::Preflight(Session& session, FitTask const& stated, std::vector<ExperimentData> const& data, PreflightPage& page)
     : session(session),
-      what(what),
+      stated(stated.solver),
+      what(stated),
       page(page),
       compiled(session.compiled(what, what.solver.method)),
       space(parameter_space(compiled->model, what.experiments)),
@@ -87,11 +89,39 @@ Preflight::Preflight(Session& session, FitTask const& what, std::vector<Experime
     --effort.refinements;
   step_work = work_of(model(), experiments) * what.solver.substeps;
   effort = effort_of(what.solver.row().in_program ? step_work : step_work * solver_work(), space->dimension(), effort);
+  bound_steps();
   solvers.push_back(what.solver);
   while (static_cast<int>(solvers.size()) <= effort.refinements) solvers.push_back(solvers.back().finer());
   pool_ = make_pool(session.options.execution);
   outputs_ = std::vector<Lazily<Output>>(solvers.size());
   jumps_ = what.solver.fixed_step() && jumps(model());
+}
+
+// What a solver does lane by lane costs what its steps cost, and how many it takes between two samples only a trial shows: at few
+// draws, along few rows. A stiff transient, which some draws have within one interval, is no reason.
+void Preflight::bound_steps() {
+  constexpr int tried_draws = 8, tried_rows = 16, fewest_steps = 100;
+  constexpr double most_own_steps = 2e6;  // of all draws together: some seconds
+  if (!what.solver.row().adaptive || what.solver.row().in_program || !model().integrated()) return;
+  std::vector<Experiment> begun;
+  double samples = 0;
+  for (Experiment const& each : experiments) {
+    begun.push_back(slice(each, 0, std::min(tried_rows, static_cast<int>(each.time.size()))));
+    samples += static_cast<double>(each.time.size());
+  }
+  int const affordable = std::max(fewest_steps, static_cast<int>(most_own_steps / (samples * effort.prior_draws)));
+  if (affordable >= what.solver.steps) return;
+  SolverSettings bounded = what.solver;
+  bounded.steps = affordable;
+  LaneArray theta(space->dimension(), tried_draws);
+  space->sample_prior({1, Purpose::start, 0, 0}, theta);
+  std::vector<double> density(tried_draws);
+  Ledger solves;
+  make_fit_target(session, what, compiled, space, begun, bounded, session.abandonable())->log_likelihood(theta, density, solves);
+  std::uint64_t too_many = 0;
+  for (Failure const& each : solves.failures())
+    if (each.kind == FailureClass::step_limit) too_many += each.count;
+  if (2 * too_many > tried_draws * experiments.size()) what.solver.steps = affordable;
 }
 
 Output Preflight::output_of(std::shared_ptr<CompiledModel const> const& with_method, SolverSettings const& solver) const {

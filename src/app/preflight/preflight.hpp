@@ -26,10 +26,11 @@ struct Effort {
 
 class Preflight {
  public:
-  Preflight(Session& session, FitTask const& what, std::vector<ExperimentData> const& data, PreflightPage& page);
+  Preflight(Session& session, FitTask const& stated, std::vector<ExperimentData> const& data, PreflightPage& page);
 
   Session& session;
-  FitTask const& what;
+  SolverSettings stated;  // by the task
+  FitTask what;           // with fewer steps of its solver between two samples, where so many would take long
   PreflightPage& page;
   std::shared_ptr<CompiledModel const> compiled;
   std::shared_ptr<ParameterSpace const> space;
@@ -54,6 +55,8 @@ class Preflight {
   /// Of a trajectory with the stated solver, in trajectories of one step of rk4 for each substep, about.
   double solver_work() const;
   Model const& model() const { return compiled->model; }
+  /// Whether its solver may take fewer steps here than the task allows.
+  bool bounded() const { return what.solver.steps < stated.steps; }
   bool candidate() const { return !page.candidate.empty(); }
   /// Whether the task makes the solver finer until the result has converged: fits do, selections take theirs as it is.
   bool refines_solver() const { return what.refine_solver && !candidate(); }
@@ -63,6 +66,7 @@ class Preflight {
 
  private:
   Output output_of(std::shared_ptr<CompiledModel const> const& with_method, SolverSettings const& solver) const;
+  void bound_steps();
 
   std::shared_ptr<ThreadPool> pool_;
   bool jumps_ = false;

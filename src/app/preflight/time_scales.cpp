@@ -12,6 +12,7 @@
 #include "core/numeric/unit.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "data/table/reading_rules.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
@@ -20,6 +21,7 @@ namespace {
 constexpr int scale_draws = 64;
 constexpr std::size_t most_states = 12;
 constexpr double part_of_record = 1e-5;
+constexpr double within_a_step = 6.283185307179586;  // a whole oscillation, or a decay to 0.2 %, between two rows
 
 /// The Jacobian of the derivatives by the states, as expressions.
 class Linearisation {
@@ -31,8 +33,12 @@ class Linearisation {
         slopes_.push_back(graph_.differentiate(of.derivative, graph_.leaf(LeafKind::state, static_cast<int>(j))));
   }
 
-  /// [1/s] of the slowest motion at the start; 0 where there is none. parameters [SI], inputs [SI], time [s].
-  double slowest_rate(std::vector<double> const& parameters, std::vector<double> const& inputs, double time) const {
+  struct Motion {
+    double rate = 0;     // [1/s] of the slowest motion at the start; 0 where there is none
+    bool grows = false;  // a volume of states
+  };
+  /// parameters [SI], inputs [SI], time [s].
+  Motion slowest(std::vector<double> const& parameters, std::vector<double> const& inputs, double time) const {
     std::vector<double> state;
     auto const value = [&](NodeId leaf) {
       Node const& node = graph_[leaf];
@@ -59,20 +65,21 @@ class Linearisation {
     Eigen::MatrixXd jacobian(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < n; ++j) jacobian(i, j) = slopes[static_cast<std::size_t>(i * n + j)];
-    if (!jacobian.allFinite() || !std::isfinite(log_absolute_determinant(jacobian))) return 0;
+    if (!jacobian.allFinite() || !std::isfinite(log_absolute_determinant(jacobian))) return {};
     Eigen::MatrixXd power = inverse(jacobian);
     constexpr int squarings = 7;
     double log_size = 0, exponent = 1;  // of the inverse to the power of `exponent`, which is `power` times exp(log_size)
     for (int k = 0; k < squarings; ++k) {
       double const norm = power.norm();
-      if (!std::isfinite(norm) || norm == 0) return 0;
+      if (!std::isfinite(norm) || norm == 0) return {};
       power /= norm;
       log_size = 2 * (log_size + elementary::log(norm));
       exponent *= 2;
       power = (power * power).eval();
     }
     double const norm = power.norm();
-    return std::isfinite(norm) && norm > 0 ? elementary::exp(-(log_size + elementary::log(norm)) / exponent) : 0;
+    if (!std::isfinite(norm) || norm <= 0) return {};
+    return {elementary::exp(-(log_size + elementary::log(norm)) / exponent), jacobian.trace() > 0};
   }
 
  private:
@@ -83,6 +90,7 @@ class Linearisation {
 
 struct Rates {
   double least = std::numeric_limits<double>::infinity(), most = 0;  // [1/s] of the slowest motion, over draws
+  bool grow = false;                                                 // at any of them
 };
 
 Rates rates_of(Linearisation const& linear, ParameterSpace const& space, LaneArray const& values, int experiment,
@@ -95,9 +103,10 @@ Rates rates_of(Linearisation const& linear, ParameterSpace const& space, LaneArr
   for (int w = 0; w < values.width(); ++w) {
     std::vector<double> own;
     for (int p = 0; p < parameters.rows(); ++p) own.push_back(parameters(p, w));
-    double const rate = linear.slowest_rate(own, inputs, along.time.front());
+    auto const [rate, grows] = linear.slowest(own, inputs, along.time.front());
     rates.least = std::min(rates.least, rate);
     rates.most = std::max(rates.most, rate);
+    rates.grow = rates.grow || grows;
   }
   return rates;
 }
@@ -125,6 +134,30 @@ std::vector<std::string> declared_in(Model const& model, std::string const& of_t
 }
 
 std::string in_seconds(double seconds) { return significant(seconds, 2) + " s"; }
+
+/// "`time t [ms]`" where the times are read in seconds; empty otherwise.
+std::string in_milliseconds(DataBlock const& block, double scale) {
+  if (scale != 1 || !block.time) return "";
+  return fmt::format(": `time {}` if its numbers are milliseconds", column_text(block.time->column, "ms"));
+}
+
+Finding fast_finding(CheckedFile const& file, Model const& model, ExperimentData const& data, Rates const& rates, double step) {
+  DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
+  double const scale = data.experiment.time_unit ? data.experiment.time_unit->scale : 1;
+  return {
+      FindingCode::time_scales_apart,
+      Severity::warning,
+      {data.experiment.name},
+      fmt::format("rows of {} are {} apart, but at every prior draw even the slowest motion of `{}` is over, or has made a "
+                  "whole oscillation, before the next row: its rate is {} to {} rad/s",
+                  data.experiment.name, in_seconds(step), model.name, significant(rates.least, 2), significant(rates.most, 2)),
+      fmt::format("correct the unit of {} in `{}`{}; or the units of the parameters that contain a time. If all are right, no row "
+                  "shows this motion: replace its equation by its steady state",
+                  block.time          ? "`time`"
+                  : block.step_stated ? "`step`"
+                                      : "`rate`",
+                  block.name, in_milliseconds(block, scale))};
+}
 
 Finding apart_finding(CheckedFile const& file, Model const& model, ExperimentData const& data, Rates const& rates) {
   Experiment const& experiment = data.experiment;
@@ -169,6 +202,8 @@ std::optional<Finding> time_scales_apart(CheckedFile const& file, Model const& m
       Rates const rates = rates_of(linear, space, values, static_cast<int>(e), data[e].experiment);
       if (rates.least * (time.back() - time.front()) * part_of_record > 1 && rates.least * shortest > 1)
         return apart_finding(file, model, data[e], rates);
+      if (!model.filtered() && !rates.grow && rates.least * shortest > within_a_step)
+        return fast_finding(file, model, data[e], rates, shortest);
     }
   } catch (InternalError const&) {  // a function without a derivative
   }

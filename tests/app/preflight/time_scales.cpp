@@ -68,6 +68,57 @@ TEST_CASE("a model with one fast motion and one as slow as the record is stiff, 
   CHECK_FALSE(messages(result, "stiff_prior").empty());
 }
 
+namespace {
+
+/// An oscillator of 1 to 350 Hz whose record has a row every 2 ms.
+std::string const vibration =
+    "model rig {\n input x [N]\n state y [mm]\n initial y = 0, y' = 0\n parameter m [kg] ~ log_uniform(0.1, 20)\n"
+    " parameter c [N s/m] ~ log_uniform(1, 200)\n parameter k [N/mm] ~ log_uniform(1, 500)\n m*y'' + c*y' + k*y = x\n"
+    " observe position ~ normal(y, sd = 0.01)\n}\n"
+    "data shaker { file \"record.csv\"; time t [ms]; input x = force [N] hold zero_order; measure position = pos [mm] }\n"
+    "post = fit rig to shaker with map, solver = rk4, seed = 1\n";
+
+CheckResult check_vibration(std::string const& text) {
+  std::string table = "t,force,pos\n";
+  for (int row = 0; row < 120; ++row)
+    table += fmt::format("{},{},{:.5g}\n", 2 * row, row % 7 - 3, 0.5 * elementary::sin(0.2 * row));
+  TemporaryFolder folder;
+  write_file(folder.path() / "record.csv", table);
+  return checked(folder.path() / "m.sysid", text);
+}
+
+}  // namespace
+
+TEST_CASE("milliseconds that are read as seconds are named, by any solver, and its line is the cure") {
+  CHECK(apart(check_vibration(vibration)) == nullptr);
+  for (std::string const solver : {"rk4", "dopri5", "cvode"}) {
+    CAPTURE(solver);
+    std::string const wrong = with(with(vibration, "t [ms]", "t [s]"), "solver = rk4", "solver = " + solver);
+    CheckResult const result = check_vibration(wrong);
+    Finding const* const found = apart(result);
+    REQUIRE(found != nullptr);
+    CHECK(found->message.starts_with(
+        "rows of shaker are 2.0 s apart, but at every prior draw even the slowest motion of `rig` is over"));
+    CHECK(found->help.starts_with("correct the unit of `time` in `shaker`: `time t [ms]` if its numbers are milliseconds"));
+    CHECK(messages(result, "stiff_prior").empty());
+  }
+}
+
+TEST_CASE("a check ends where a solver with its own steps needs very many of them") {
+  // The same with a slow state beside the fast motion, so that the rows show something: only the number of steps is left.
+  std::string text = with(with(vibration, "t [ms]", "t [s]"), "solver = rk4", "solver = cvode");
+  text = with(with(text, " state y [mm]\n initial y = 0", " state y [mm], s [-]\n initial s = 1, y = 0"), " observe position",
+              " parameter r [1/s] ~ log_uniform(0.001, 0.01)\n s' = -r*s\n observe position");
+  CheckResult const result = check_vibration(text);
+  CHECK(apart(result) == nullptr);
+  std::vector<std::string> const said = messages(result, "prior_fails");
+  REQUIRE(said.size() == 1);
+  CHECK(said.front().find(" steps of cvode between two samples: `check` leaves them out") != std::string::npos);
+  for (Finding const& each : preflight(result, "post").findings)
+    if (each.code == FindingCode::prior_fails) CHECK(each.help.starts_with("check the unit of time in the data block first"));
+  CHECK(messages(check_vibration(with(text, "t [s]", "t [ms]")), "prior_fails").empty());
+}
+
 TEST_CASE("a run names the units where it finds no start") {
   std::string table = "year,N\n", said;
   for (int row = 0; row < 40; ++row) table += fmt::format("{},{}\n", 0.5 * row, 5 + 2 * row);
