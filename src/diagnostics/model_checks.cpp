@@ -96,4 +96,82 @@ Findings check_use(Model const& model, StartRule const& start) {
   return findings;
 }
 
+namespace {
+
+constexpr std::uint64_t influence_step = 8;  // of Purpose::start
+
+/// Whether priors of others read it, or nothing does but what no data measure.
+bool acts_on_data_alone(Model const& model, std::vector<ParameterRole> const& roles, std::string const& name) {
+  auto const declared = [&](std::string const& as) {
+    return std::ranges::find_if(model.parameters, [&](Parameter const& each) { return each.name == as; });
+  };
+  auto found = declared(name);                                                            // `k[2]`, an element of a vector,
+  if (found == model.parameters.end()) found = declared(name.substr(0, name.find('[')));  // or `k` of one experiment
+  if (found == model.parameters.end() || found->coefficient) return false;
+  auto const index = static_cast<int>(found - model.parameters.begin());
+  ParameterRole const role = roles[static_cast<std::size_t>(index)];
+  if (role != ParameterRole::response && role != ParameterRole::noise) return false;
+  auto const reads = [&](NodeId node) {
+    return model.graph.depends(node, [&](Node const& leaf) {
+      return leaf.operation == Operation::leaf && leaf.leaf_kind == LeafKind::parameter && leaf.index == index;
+    });
+  };
+  return std::ranges::none_of(model.parameters, [&](Parameter const& each) {
+    return each.prior && (std::ranges::any_of(each.prior->arguments, reads) || (each.prior->lower && reads(*each.prior->lower)) ||
+                          (each.prior->upper && reads(*each.prior->upper)));
+  });
+}
+
+}  // namespace
+
+Findings check_influence(Model const& model, Target const& target, std::vector<std::vector<double>> const& draws) {
+  constexpr int looked_at = 24, most_values = 4096;
+  constexpr double nothing = 1e-6;  // nats
+  int const parameters = target.dimension(), width = looked_at;
+  if (static_cast<int>(draws.size()) < width || parameters * width > most_values || target.is_expensive() ||
+      target.is_estimated() || model.improper() != nullptr)
+    return {};
+  std::vector<ParameterRole> const roles = parameter_roles(model);
+  std::vector<int> asked;
+  for (int p = 0; p < parameters; ++p)
+    if (acts_on_data_alone(model, roles, target.parameters()[static_cast<std::size_t>(p)].name)) asked.push_back(p);
+  LaneArray of_prior(parameters, width), prior(parameters, width);
+  target.sample_prior({1, Purpose::start, 0, influence_step}, of_prior);
+  target.constrain(of_prior, prior);
+  // The draws themselves first, then for each parameter the same with its value in a draw of the prior: within the posterior a
+  // moment of switching, for one, changes nothing either, where it stays between two samples.
+  LaneArray declared(parameters, width * (1 + static_cast<int>(asked.size())));
+  LaneArray theta(parameters, declared.width());
+  for (int block = 0; block * width < declared.width(); ++block)
+    for (int w = 0; w < width; ++w) {
+      auto const& draw = draws[static_cast<std::size_t>(w) * draws.size() / static_cast<std::size_t>(width)];
+      for (int p = 0; p < parameters; ++p) declared(p, block * width + w) = draw[static_cast<std::size_t>(p)];
+      if (block == 0) continue;
+      int const moved = asked[static_cast<std::size_t>(block) - 1];
+      declared(moved, block * width + w) = prior(moved, w);
+    }
+  target.unconstrain(declared, theta);
+  std::vector<double> value(static_cast<std::size_t>(declared.width()));
+  Ledger untold;
+  target.log_likelihood(theta, value, untold);
+  Findings findings;
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    bool idle = true;
+    for (int w = 0; w < width && idle; ++w) {
+      double const change =
+          value[(k + 1) * static_cast<std::size_t>(width) + static_cast<std::size_t>(w)] - value[static_cast<std::size_t>(w)];
+      idle = std::fabs(change) < nothing;  // not of two that failed
+    }
+    if (!idle) continue;
+    std::string const& name = target.parameters()[static_cast<std::size_t>(asked[k])].name;
+    findings.push_back(
+        {FindingCode::flat_direction,
+         Severity::warning,
+         {name},
+         fmt::format("the data do not determine {}: the likelihood does not depend on it, and its posterior is its prior", name),
+         "fix it to a value, give it a narrower prior, or measure something that depends on it"});
+  }
+  return findings;
+}
+
 }  // namespace sysid

@@ -22,4 +22,10 @@ Findings check_populations(Model const& model);
 /// Parameters with a prior that nothing in the model uses: their posterior is their prior.
 Findings check_use(Model const& model, StartRule const& start);
 
+/// `flat_direction`, a warning, of draws: parameters on which the log likelihood does not depend. At 24 draws, spread over all,
+/// each takes a value from its prior, and no log likelihood changes by more than 1e-6. Nothing is looked at that is a coefficient,
+/// or that priors of others read; nor an expensive or an estimated likelihood, nor one with an improper prior. draws: declared
+/// values of the parameters of the target, one vector each.
+Findings check_influence(Model const& model, Target const& target, std::vector<std::vector<double>> const& draws);
+
 }  // namespace sysid

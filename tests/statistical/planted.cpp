@@ -155,3 +155,49 @@ warm = fit oven to day with map, seed = 1
   CHECK(lacking.found("warm", "residuals_not_white"));
   CHECK_FALSE(lacking.found("warm", "column_used_twice"));
 }
+
+TEST_CASE("a parameter that the likelihood does not contain in its prior's range is named by a sampler too") {
+  std::string table = "t,u,y\n";
+  for (int i = 0; i < 80; ++i) {
+    double const u = i % 9 < 5 ? 0.8 : -0.4;
+    table += fmt::format("{},{},{:.6g}\n", 0.1 * i, u, 0.5 * u + 0.02 * ((i * 37) % 11 - 5));
+  }
+  std::string const text = R"(
+model zone {
+  input u [V]
+  parameter g [-] ~ normal(0, sd = 2)
+  parameter edge [V] ~ uniform(-5, -0.9)
+  parameter sigma [V] ~ log_uniform(0.001, 10)
+  observe out [V] ~ normal(g*max(u, edge), sd = sigma)
+}
+data rec { file "rec.csv"; input u = u [V]; measure out = y [V] }
+post = fit zone to rec with mh(samples = 6000, burn_in = 2000, thin = 4), seed = 1
+)";
+  Fitted const fitted = run_file(text, {}, {{"rec.csv", table}});
+  CHECK(fitted.found("post", "flat_direction"));
+  CHECK(fitted.out.find("the data do not determine edge: the likelihood does not depend on it") != std::string::npos);
+  CHECK(fitted.out.find("determine g") == std::string::npos);
+  CHECK_FALSE(
+      run_file(with(text, "uniform(-5, -0.9)", "uniform(-5, 0.5)"), {}, {{"rec.csv", table}}).found("post", "flat_direction"));
+}
+
+TEST_CASE("a moment of switching that the rows leave free within one interval is not taken for a parameter without influence") {
+  std::string table = "x,y\n";
+  for (int i = 0; i < 60; ++i) table += fmt::format("{},{:.6g}\n", i, (i > 40 ? 2.0 : 0.5) + 0.02 * ((i * 37) % 11 - 5));
+  std::string const text = R"(
+model step {
+  input x [-]
+  parameter low [V] ~ normal(0, sd = 5)
+  parameter high [V] ~ normal(0, sd = 5)
+  parameter moment [-] ~ uniform(30, 50)
+  parameter sigma [V] ~ log_uniform(0.001, 10)
+  observe out [V] ~ normal(if x > moment then high else low, sd = sigma)
+}
+data rec { file "rec.csv"; input x = x; measure out = y [V] }
+post = fit step to rec with mh(samples = 6000, burn_in = 2000, thin = 4), seed = 1
+)";
+  Fitted const fitted = run_file(text, {}, {{"rec.csv", table}});
+  CHECK(fitted.of("post", "moment").at("q5").get<double>() > 39);
+  CHECK(fitted.of("post", "moment").at("q95").get<double>() < 42);
+  CHECK(fitted.out.find("the likelihood does not depend on it") == std::string::npos);
+}

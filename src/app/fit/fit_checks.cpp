@@ -29,7 +29,20 @@ std::string without_proper_prior(FinishedFit const& fit) {
 }
 
 // --- the model and the record
-Findings parameter_use(FinishedFit& fit) { return check_use(fit.likelihood.model(), fit.what.start); }
+Findings parameter_use(FinishedFit& fit) {
+  Findings findings = check_use(fit.likelihood.model(), fit.what.start);
+  if (fit.result.interrupted) return findings;
+  std::vector<std::vector<double>> draws;
+  for (Chain const& chain : fit.result.draws.chains) draws.insert(draws.end(), chain.values.begin(), chain.values.end());
+  for (Finding& each : check_influence(fit.likelihood.model(), fit.target, draws)) {
+    bool const told = std::ranges::any_of(fit.report.findings, [&](Finding const& earlier) {
+      return earlier.code == FindingCode::flat_direction &&
+             std::ranges::find(earlier.names, each.names.front()) != earlier.names.end();
+    });
+    if (!told) findings.push_back(std::move(each));
+  }
+  return findings;
+}
 
 Findings residuals(FinishedFit& fit) {
   FitCheck check = fit.likelihood.check_residuals(fit.result, fit.report.draws);
