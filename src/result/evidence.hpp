@@ -18,8 +18,8 @@ struct SampledEvidence {
   double effective = 0;  // number of equally weighted draws that they are worth
   std::uint64_t draws = 0;
 
-  /// By more than two tenths, and by more than chance.
-  bool differs() const { return state == State::known && std::fabs(above) > 0.2 && std::fabs(above) > 2 * error; }
+  /// By more than a tenth, to which the number is written, and by more than chance.
+  bool differs() const { return state == State::known && std::fabs(above) > 0.1 && std::fabs(above) > 2 * error; }
 };
 
 struct Evidence {
