@@ -11,6 +11,8 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/words.hpp"
+#include "diagnostics/law/noise_law.hpp"
+#include "diagnostics/law/residual_law.hpp"
 #include "diagnostics/outliers.hpp"
 #include "diagnostics/prior_checks.hpp"
 #include "diagnostics/residual_offset.hpp"
@@ -256,6 +258,22 @@ void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& l
   }
 }
 
+// Of residuals that the other tests take for noise: whether it is the normal noise of one size that the model has.
+void check_law(ScoredChannel const& of, Tested const& tested, int together, UserText const& text, Findings& findings) {
+  Channel const& channel = of.described();
+  if (!channel.noise.row->gaussian || channel.noise.lower || channel.noise.upper) return;
+  std::vector<double> const residuals = without(of.residuals, tested.far);
+  std::vector<double> left;
+  for (std::size_t const place : of.places) left.push_back(residuals[place]);
+  LawWords const words{of.names(), of.name(), text.mentions,
+                       [&] { return text.heavy_tailed ? text.heavy_tailed(channel) : std::nullopt; },
+                       [&](std::string const& relative) {
+                         bool const interval = channel.unit && channel.unit->offset != 0;  // 0 degC is no zero
+                         return text.proportional && !interval ? text.proportional(channel, relative) : std::nullopt;
+                       }};
+  if (auto finding = noise_law(residual_law(left, of.predicted), rare / (2 * together), words)) findings.push_back(*finding);
+}
+
 FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits const& limits, UserText const& text,
                       Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
@@ -268,6 +286,7 @@ FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits cons
   // Deviances of small counts are neither centred nor alike.
   bool const coloured = tested.white && tested.white->fires(limits.white) && !of.described().noise.row->discrete;
   check_share(of, tested, coloured, findings);
+  if (shape.empty()) check_law(of, tested, limits.channels, text, shape);
   findings.insert(findings.end(), shape.begin(), shape.end());
   return line;
 }

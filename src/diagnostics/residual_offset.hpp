@@ -38,6 +38,9 @@ struct UserText {
   std::function<bool(std::string const& name)> mentions;
   /// The noise statement of a channel with `parameter` added to what the noise lies about; nothing where it is not in the text.
   std::function<std::optional<std::string>(Channel const& channel, std::string const& parameter)> noise_statement_with;
+  /// The same with heavy tails, and with a part of the noise that is proportional to what it lies about, as `relative` times that.
+  std::function<std::optional<std::string>(Channel const& channel)> heavy_tailed = {};
+  std::function<std::optional<std::string>(Channel const& channel, std::string const& relative)> proportional = {};
 };
 
 /// size: the mean of measured minus predicted samples where the channel is scored, in its declared unit; largest: of those of all

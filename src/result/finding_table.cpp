@@ -57,6 +57,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::residual_offset, "residual_offset", warning},
     {FindingCode::residuals_not_white, "residuals_not_white", warning},
     {FindingCode::input_in_residuals, "input_in_residuals", warning},
+    {FindingCode::noise_law, "noise_law", warning},
     {FindingCode::input_timing, "input_timing", warning},
     {FindingCode::input_rule, "input_rule", warning_or_note},
     {FindingCode::optimum_of_hierarchy, "optimum_of_hierarchy", warning},

@@ -56,6 +56,7 @@ enum class FindingCode {
   residual_offset,
   residuals_not_white,
   input_in_residuals,
+  noise_law,
   input_timing,
   input_rule,
   optimum_of_hierarchy,

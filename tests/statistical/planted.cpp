@@ -201,3 +201,37 @@ post = fit step to rec with mh(samples = 6000, burn_in = 2000, thin = 4), seed =
   CHECK(fitted.of("post", "moment").at("q95").get<double>() < 42);
   CHECK(fitted.out.find("the likelihood does not depend on it") == std::string::npos);
 }
+
+TEST_CASE("noise of another law than normal is named, and the line of its help ends the finding") {
+  std::string tails = "x,y\n", proportional = tails, plain = tails;
+  Stream stream({3, Purpose::test, 0, 0});
+  for (int i = 0; i < 200; ++i) {
+    double const x = 0.05 * i, y = 2 + 3 * x, noise = stream.normal();
+    plain += fmt::format("{},{:.6g}\n", x, y + 0.1 * noise);
+    // Each of 200 quantiles of Student's distribution with 4 degrees of freedom once (Shaw 2006, J. Comput. Finance 9, 37).
+    double const p = (i * 77 % 200 + 0.5) / 200, alpha = 4 * p * (1 - p);
+    double const tail = 2 * std::sqrt(std::cos(std::acos(std::sqrt(alpha)) / 3) / std::sqrt(alpha) - 1);
+    tails += fmt::format("{},{:.6g}\n", x, y + 0.1 * (p < 0.5 ? -tail : tail));
+    proportional += fmt::format("{},{:.6g}\n", x, y + 0.1 * y * noise);
+  }
+  std::string const text =
+      "model line {\n input x [-]\n parameter a [m] ~ normal(0, sd = 10)\n parameter b [m] ~ normal(0, sd = 10)\n"
+      " parameter sigma [m] ~ log_uniform(1e-3, 10)\n observe reading [m] ~ normal(a + b*x, sd = sigma)\n}\n"
+      "data rec { file \"rec.csv\"; input x = x; measure reading = y [m] }\npost = fit line to rec with map, seed = 1\n";
+  CHECK_FALSE(run_file(text, {}, {{"rec.csv", plain}}).found("post", "noise_law"));
+  std::string const observed = "observe reading [m] ~ normal(a + b*x, sd = sigma)";
+
+  Fitted const heavy = run_file(text, {}, {{"rec.csv", tails}});
+  CHECK(heavy.found("post", "noise_law"));
+  std::string const with_tails = "observe reading [m] ~ student_t(a + b*x, 4, scale = sigma)";
+  CHECK(heavy.out.find("`" + with_tails + "`") != std::string::npos);
+  CHECK_FALSE(run_file(with(text, observed, with_tails), {}, {{"rec.csv", tails}}).found("post", "noise_law"));
+
+  Fitted const grows = run_file(text, {}, {{"rec.csv", proportional}});
+  CHECK(grows.found("post", "noise_law"));
+  std::string const parameter = "parameter reading_relative [-] ~ log_uniform(1e-4, 1)",
+                    in_part = "observe reading [m] ~ normal(a + b*x, sd = sqrt(sigma^2 + (reading_relative*(a + b*x))^2))";
+  CHECK(grows.out.find("add `" + parameter + "` and write `" + in_part + "`") != std::string::npos);
+  CHECK_FALSE(
+      run_file(with(text, observed, parameter + "\n " + in_part), {}, {{"rec.csv", proportional}}).found("post", "noise_law"));
+}

@@ -119,12 +119,14 @@ class IndependentLikelihood : public FitLikelihood {
   }
 
   FitCheck check_residuals(FitResult const& result, Draws const&) const override {
-    return particles_ ? particles_->check_residuals(parameters_of_each(middle_of(result)))
-                      : sysid::check_residuals(*target_, best_of(result),
-                                               UserText{[&](std::string const& name) { return mentions(session_.source, name); },
-                                                        [&](Channel const& channel, std::string const& parameter) {
-                                                          return noise_statement_with(session_.source, channel, parameter);
-                                                        }});
+    if (particles_) return particles_->check_residuals(parameters_of_each(middle_of(result)));
+    Source const& source = session_.source;
+    UserText const text{
+        [&](std::string const& name) { return mentions(source, name); },
+        [&](Channel const& channel, std::string const& parameter) { return noise_statement_with(source, channel, parameter); },
+        [&](Channel const& channel) { return heavy_tailed_statement(source, channel); },
+        [&](Channel const& channel, std::string const& relative) { return proportional_statement(source, channel, relative); }};
+    return sysid::check_residuals(*target_, best_of(result), text);
   }
 
   std::vector<FunctionReport> functions(FitResult const& result, Draws const&) const override {

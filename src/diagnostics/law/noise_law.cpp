@@ -1,0 +1,51 @@
+// Growth first: noise of several sizes has heavy tails, too.
+#include "diagnostics/law/noise_law.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace sysid {
+namespace {
+
+std::string free_name(LawWords const& words) {
+  std::string name = words.names.front() + "_relative";
+  std::ranges::replace_if(
+      name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  while (words.taken && words.taken(name)) name += "_2";
+  return name;
+}
+
+std::string cure_of_growth(LawWords const& words) {
+  std::string const relative = free_name(words);
+  auto const line = words.proportional(relative);
+  std::string const cure = line ? fmt::format("add `parameter {} [-] ~ log_uniform(1e-4, 1)` and write `{}`", relative, *line)
+                                : std::string("let its sd grow with what is predicted");
+  return fmt::format(
+      "if the noise is in part proportional to the signal, {}; otherwise look for what the model lacks at large "
+      "amplitudes",
+      cure);
+}
+
+}  // namespace
+
+std::optional<Finding> noise_law(ResidualLaw const& law, double limit, LawWords const& words) {
+  if (law.grows(limit))
+    return Finding{
+        FindingCode::noise_law, Severity::warning, words.names,
+        fmt::format("the residuals of {} grow with the prediction: where |{}| is in its upper third they are {:.2g} times "
+                    "as large as in its lower third",
+                    words.channel, words.names.front(), law.growth),
+        cure_of_growth(words)};
+  if (!law.heavy(limit)) return std::nullopt;
+  return Finding{
+      FindingCode::noise_law, Severity::warning, words.names,
+      fmt::format("the residuals of {} have heavier tails than normal noise (excess kurtosis {:.2g}): a few samples have "
+                  "most of the influence",
+                  words.channel, law.excess_kurtosis),
+      fmt::format("check the largest residuals; if they are measurements, use noise with heavy tails: `{}`",
+                  words.heavy_tailed().value_or("student_t(y, 4, scale = sigma)"))};
+}
+
+}  // namespace sysid
