@@ -136,10 +136,12 @@ Diagnostic implicit_in_discrete_time(Span equation, std::string const& state) {
 }
 
 Diagnostic prediction_without_lags(Span span, std::string const& model, bool random) {
-  return about({model}, error("E6016", span, fmt::format("model `{}` is not in discrete time: it has no lagged samples", model),
-                              random ? "remove the option: with random states a fit predicts each sample from those before it; "
-                                       "`predict` has the option"
-                                     : "remove the option: a model in continuous time is always simulated in a free run"));
+  return about(
+      {model},
+      error("E6016", span, fmt::format("model `{}` is not in discrete time: it has no lagged samples", model),
+            random ? "remove the option: with random states a fit predicts each sample from those before it; "
+                     "`predict` has the option"
+                   : "remove the option: a model in continuous time without random states is always simulated in a free run"));
 }
 Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model) {
   return about({model},
