@@ -95,6 +95,14 @@ std::optional<std::string> heavy_tailed_statement(Source const& source, Channel 
 }
 
 std::optional<std::string> proportional_statement(Source const& source, Channel const& channel, std::string const& relative) {
+  // A bare number as sd takes the unit of the channel; beside the squared location it would take that of the location.
+  bool bare = false;
+  (void)rewritten(source, channel, [&](ast::Expression const&, ast::Expression const& sd) {
+    std::string const text = unparse(sd);
+    bare = std::ranges::none_of(text, [](unsigned char c) { return std::isalpha(c) != 0; });
+    return text;
+  });
+  if (bare) return std::nullopt;
   return rewritten(source, channel, [&](ast::Expression const& location, ast::Expression const& sd) {
     return fmt::format("normal({}, sd = sqrt({}^2 + ({}*{})^2))", unparse(location), grouped(sd), relative, grouped(location));
   });
