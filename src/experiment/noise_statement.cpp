@@ -45,7 +45,38 @@ std::string grouped(ast::Expression const& expression) {
   return word ? text : "(" + text + ")";
 }
 
-/// The statement with another distribution in place of `normal(LOCATION, sd = SD)`: what `write` makes of the two.
+/// Whether a number without unit is the expression or a summand of it: its unit is then that of what surrounds the expression.
+bool takes_unit_from_outside(ast::Expression const& expression) {
+  if (auto const* const number = std::get_if<ast::Number>(&expression.node)) return !number->unit;
+  if (auto const* const unary = std::get_if<ast::Box<ast::Unary>>(&expression.node))
+    return takes_unit_from_outside(*(*unary)->operand);
+  if (auto const* const binary = std::get_if<ast::Box<ast::Binary>>(&expression.node))
+    return ((*binary)->symbol == "+" || (*binary)->symbol == "-") &&
+           (takes_unit_from_outside(*(*binary)->left) || takes_unit_from_outside(*(*binary)->right));
+  if (auto const* const branch = std::get_if<ast::Box<ast::Conditional>>(&expression.node))
+    return takes_unit_from_outside(*(*branch)->then) || takes_unit_from_outside(*(*branch)->otherwise);
+  if (auto const* const call = std::get_if<ast::Box<ast::Call>>(&expression.node))
+    return std::ranges::any_of((*call)->arguments, [](ast::Argument const& each) { return takes_unit_from_outside(each.value); });
+  return false;
+}
+
+/// The spread of normal noise, as it is written: an sd, a variance or a precision.
+struct Spread {
+  std::string as;
+  ast::Expression const& value;
+
+  std::string sd() const {
+    if (as == "sd") return unparse(value);
+    return as == "variance" ? fmt::format("sqrt({})", unparse(value)) : fmt::format("1/sqrt({})", unparse(value));
+  }
+  std::string variance() const {
+    if (as == "sd") return grouped(value) + "^2";
+    return as == "variance" ? grouped(value) : "1/" + grouped(value);
+  }
+};
+
+/// The statement with another distribution in place of `normal(LOCATION, sd = SD)`: what `write` makes of location and spread, if
+/// anything.
 template <typename Write>
 std::optional<std::string> rewritten(Source const& source, Channel const& channel, Write const& write) {
   Diagnostics ignored;
@@ -53,13 +84,15 @@ std::optional<std::string> rewritten(Source const& source, Channel const& channe
   ast::Observation* const observation = tree ? observation_of(*tree, channel) : nullptr;
   if (observation == nullptr || observation->noise.function.text != "normal" || observation->noise.arguments.size() != 2) return {};
   ast::Argument const* const location = location_of(observation->noise, *channel.noise.row);
-  auto const sd = std::ranges::find_if(observation->noise.arguments,
-                                       [](ast::Argument const& each) { return each.name && each.name->text == "sd"; });
-  if (location == nullptr || sd == observation->noise.arguments.end() || location == &*sd) return {};
+  auto const spread = std::ranges::find_if(observation->noise.arguments, [](ast::Argument const& each) {
+    return each.name && (each.name->text == "sd" || each.name->text == "variance" || each.name->text == "precision");
+  });
+  if (location == nullptr || spread == observation->noise.arguments.end() || location == &*spread) return {};
+  std::optional<std::string> const after = write(location->value, Spread{spread->name->text, spread->value});
   std::string const before = unparse(ast::Expression{{}, ast::Box<ast::Call>(observation->noise)});
   std::string text = unparse(ast::ModelStatement{*observation});
   std::size_t const at = text.find(before);
-  return at == text.npos ? std::nullopt : std::optional(text.replace(at, before.size(), write(location->value, sd->value)));
+  return !after || at == text.npos ? std::nullopt : std::optional(text.replace(at, before.size(), *after));
 }
 
 }  // namespace
@@ -89,22 +122,17 @@ std::optional<std::string> noise_statement_with(Source const& source, Channel co
 }
 
 std::optional<std::string> heavy_tailed_statement(Source const& source, Channel const& channel) {
-  return rewritten(source, channel, [](ast::Expression const& location, ast::Expression const& sd) {
-    return fmt::format("student_t({}, 4, scale = {})", unparse(location), unparse(sd));
+  return rewritten(source, channel, [](ast::Expression const& location, Spread const& spread) -> std::optional<std::string> {
+    if (spread.as != "sd" && takes_unit_from_outside(spread.value)) return std::nullopt;
+    return fmt::format("student_t({}, 4, scale = {})", unparse(location), spread.sd());
   });
 }
 
 std::optional<std::string> proportional_statement(Source const& source, Channel const& channel, std::string const& relative) {
-  // A bare number as sd takes the unit of the channel; beside the squared location it would take that of the location.
-  bool bare = false;
-  (void)rewritten(source, channel, [&](ast::Expression const&, ast::Expression const& sd) {
-    std::string const text = unparse(sd);
-    bare = std::ranges::none_of(text, [](unsigned char c) { return std::isalpha(c) != 0; });
-    return text;
-  });
-  if (bare) return std::nullopt;
-  return rewritten(source, channel, [&](ast::Expression const& location, ast::Expression const& sd) {
-    return fmt::format("normal({}, sd = sqrt({}^2 + ({}*{})^2))", unparse(location), grouped(sd), relative, grouped(location));
+  return rewritten(source, channel, [&](ast::Expression const& location, Spread const& spread) -> std::optional<std::string> {
+    // Beside the squared location its unit would be that of the location, in place of the channel's.
+    if (takes_unit_from_outside(spread.value)) return std::nullopt;
+    return fmt::format("normal({}, sd = sqrt({} + ({}*{})^2))", unparse(location), spread.variance(), relative, grouped(location));
   });
 }
 

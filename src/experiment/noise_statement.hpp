@@ -16,8 +16,9 @@ bool mentions(Source const& source, std::string_view name);
 /// the noise lies about. Nothing where it is not in the text itself, but in a module.
 std::optional<std::string> noise_statement_with(Source const& source, Channel const& channel, std::string const& parameter);
 
-/// `observe displacement ~ student_t(y, 4, scale = sigma)`: the same with heavy tails, of a channel with `normal(y, sd = sigma)`.
-/// Nothing where it is written otherwise, or stands in a module.
+/// `observe displacement ~ student_t(y, 4, scale = sigma)`: the same with heavy tails, of a channel with `normal(y, sd = sigma)`,
+/// or with a variance or precision. Nothing where it is written otherwise, stands in a module, or has a number without unit that
+/// would get another unit.
 std::optional<std::string> heavy_tailed_statement(Source const& source, Channel const& channel);
 
 /// `observe displacement ~ normal(y, sd = sqrt(sigma^2 + (relative*y)^2))`: the same with a part of the noise that is proportional

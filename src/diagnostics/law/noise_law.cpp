@@ -39,13 +39,14 @@ std::optional<Finding> noise_law(ResidualLaw const& law, double limit, LawWords 
                     words.channel, words.names.front(), law.growth),
         cure_of_growth(words)};
   if (!law.heavy(limit)) return std::nullopt;
+  auto const line = words.heavy_tailed();
   return Finding{
       FindingCode::noise_law, Severity::warning, words.names,
       fmt::format("the residuals of {} have heavier tails than normal noise (excess kurtosis {:.2g}): a few samples have "
-                  "most of the influence",
+                  "more influence than they should",
                   words.channel, law.excess_kurtosis),
-      fmt::format("check the largest residuals; if they are measurements, use noise with heavy tails: `{}`",
-                  words.heavy_tailed().value_or("student_t(y, 4, scale = sigma)"))};
+      "check the largest residuals; if they are measurements, use noise with heavy tails, " +
+          (line ? "`" + *line + "`" : std::string("`student_t` in place of `normal`"))};
 }
 
 }  // namespace sysid
