@@ -1,4 +1,4 @@
-// Likelihoods of different records are compared by what each explains of its own.
+// Columns are tried the other way round; likelihoods of different records are compared by what each explains of its own.
 #include "app/fit/exchanged_columns.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include "core/text/number.hpp"
 #include "experiment/crossed_columns.hpp"
 #include "model/lags.hpp"
+#include "regression/column/spectrum.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
@@ -57,11 +58,11 @@ double log_likelihood_at(Target const& target, Eigen::VectorXd const& theta, Led
 }
 
 /// The largest log likelihood that a short search finds.
-double search_otherwise(FinishedFit& fit, Target const& target) {
+double search_otherwise(FinishedFit const& fit, Target const& target, Ledger& ledger) {
   LaneArray draws(target.dimension(), searched_draws);
   target.sample_prior({fit.seed, Purpose::start, 0, search_step}, draws);
   Objective const objective = make_objective(target, fit.objective_kind, draws);
-  std::vector<double> const density = log_density_in_blocks(objective, draws, fit.extra);
+  std::vector<double> const density = log_density_in_blocks(objective, draws, ledger);
   std::vector<int> order(searched_draws);
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -71,9 +72,37 @@ double search_otherwise(FinishedFit& fit, Target const& target) {
     if (climbers.size() < search_starts && std::isfinite(density[static_cast<std::size_t>(lane)]))
       climbers.push_back(climber_at(column(draws, lane), density[static_cast<std::size_t>(lane)]));
   if (climbers.empty()) return -1e300;
-  climb(objective, climbers, search_rounds, fit.extra, {});
+  climb(objective, climbers, search_rounds, ledger, {});
   auto const best = std::ranges::max_element(climbers, {}, [](Climber const& each) { return each.log_density; });
-  return log_likelihood_at(target, best->theta, fit.extra);
+  return log_likelihood_at(target, best->theta, ledger);
+}
+
+/// Whether the model reads measured samples: from them it predicts the next ones well, whichever column they come from.
+bool reads_measured(Model const& model) {
+  for (int channel = -1; channel < static_cast<int>(model.channels.size()); ++channel)
+    if (!lagged_samples(model, channel).empty()) return true;
+  return false;
+}
+
+/// Whether a channel of the data block is one sinusoid. A linear model with that as its output explains any input that is one, too.
+bool has_one_tone(FinishedFit const& fit, std::vector<Experiment> const& experiments, int data) {
+  constexpr double nearly_all = 0.95;
+  constexpr std::size_t around = 4;  // frequencies of its main lobe, to each side
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    if (fit.data[e].use.data != data) continue;
+    for (std::vector<double> const& samples : experiments[e].measured) {
+      std::vector<double> const power = regression::spectrum_of(samples, 1).power;
+      if (power.empty()) continue;
+      auto const peak = static_cast<std::size_t>(std::ranges::max_element(power) - power.begin());
+      double tone = 0, all = 0;
+      for (std::size_t k = 0; k < power.size(); ++k) {
+        all += power[k];
+        if (k + around >= peak && k <= peak + around) tone += power[k];
+      }
+      if (tone > nearly_all * all) return true;
+    }
+  }
+  return false;
 }
 
 /// The experiments of a fit with a data block as it might be instead; nothing where that cannot be read so.
@@ -109,9 +138,10 @@ Findings check_exchanged_columns(FinishedFit& fit) {
   Model const& model = fit.likelihood.model();
   bool const normal = std::ranges::all_of(model.channels, [](Channel const& each) { return each.noise.row->gaussian; });
   if (model.dynamics == Dynamics::none || model.filtered() || !model.processes.empty() || !normal || fit.target.is_expensive() ||
-      fit.target.is_estimated() || model.improper() != nullptr || fit.preparation.modes.empty())
+      fit.target.is_estimated() || model.improper() != nullptr || fit.preparation.modes.empty() || reads_measured(model))
     return {};
-  double const stated = unexplained(log_likelihood_at(fit.target, theta_of(fit.preparation.modes.front()), fit.extra),
+  Ledger ledger;  // failures with exchanged columns say nothing of the fit
+  double const stated = unexplained(log_likelihood_at(fit.target, theta_of(fit.preparation.modes.front()), ledger),
                                     baseline(model, experiments_of(fit.data)));
   if (stated < worth_a_search) return {};
   Findings findings;
@@ -126,10 +156,10 @@ Findings check_exchanged_columns(FinishedFit& fit) {
     double least = std::min(explained_share, stated / better_by);
     for (ExchangedColumns const& exchange : exchanges) {
       std::vector<Experiment> experiments = read_otherwise(fit, each.use.data, exchange.block);
-      if (experiments.empty()) continue;
+      if (experiments.empty() || (exchange.of_channel && has_one_tone(fit, experiments, each.use.data))) continue;
       Baseline const of = baseline(model, experiments);
       auto const target = fit.likelihood.make_target(std::move(experiments), fit.preparation.solver, fit.session.interruptible());
-      double const left = unexplained(search_otherwise(fit, *target), of);
+      double const left = unexplained(search_otherwise(fit, *target, ledger), of);
       if (left < least) least = left, best = &exchange;
     }
     if (best == nullptr) continue;
@@ -142,6 +172,7 @@ Findings check_exchanged_columns(FinishedFit& fit) {
                      best->one, best->other, block.name, significant(100 * least, 2), significant(100 * std::min(1.0, stated), 2)),
          fmt::format("if so, write {}", best->lines)});
   }
+  fit.extra.add_solves(ledger.solves());
   return findings;
 }
 

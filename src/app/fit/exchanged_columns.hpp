@@ -16,7 +16,8 @@ bool doubts_columns(Finding const& finding);
 ///
 /// and nothing is tried where exp(-2 G0) < 0.003: a record that is explained so far is not one with exchanged columns.
 /// Nothing of models without dynamics, whose equations hold in both directions, with random states, unknown functions or noise that
-/// is not normal, nor of more than six pairs.
+/// is not normal, of models that read measured samples, nor of more than six pairs; and no pair after which a channel is one
+/// sinusoid.
 Findings check_exchanged_columns(FinishedFit& fit);
 
 }  // namespace sysid
