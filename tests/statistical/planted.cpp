@@ -156,6 +156,94 @@ warm = fit oven to day with map, seed = 1
   CHECK_FALSE(lacking.found("warm", "column_used_twice"));
 }
 
+TEST_CASE("a model that predicts from measured samples is not tried with exchanged columns") {
+  // The input is smooth, so that its own past predicts it; the output has a memory of two samples, which the model lacks.
+  std::string table = "u,y\n";
+  Stream stream({12, Purpose::test, 0, 0});
+  double before = 0, now = 0;
+  for (int i = 0; i < 400; ++i) {
+    double const u = std::sin(0.11 * i) + 0.7 * std::sin(0.047 * i + 1) + 0.4 * std::sin(0.171 * i + 2);
+    double const next = 0.2 * now - 0.7 * before + 0.3 * u + 0.2 * stream.normal();
+    before = now;
+    now = next;
+    table += fmt::format("{:.6g},{:.6g}\n", u, now);
+  }
+  std::string const text = R"(
+model arx {
+  time discrete
+  input u
+  parameter a ~ uniform(-2, 2)
+  parameter b ~ normal(0, sd = 1)
+  parameter sigma ~ log_uniform(1e-3, 10)
+  observe output ~ normal(a*lag(measured(output), 1) + b*lag(u, 1), sd = sigma)
+}
+data rec { file "rec.csv"; input u = u; measure output = y }
+post = fit arx to rec with map, seed = 1
+)";
+  Fitted const fitted = run_file(text, {}, {{"rec.csv", table}});
+  CHECK(fitted.found("post", "residuals_not_white"));
+  CHECK_FALSE(fitted.found("post", "column_used_twice"));
+}
+
+TEST_CASE("columns are not taken for exchanged because a linear model explains a sinusoid by another") {
+  // The response has a second harmonic, which the model lacks; the force alone is a sinusoid.
+  std::string table = "t,x,y\n";
+  Stream stream({13, Purpose::test, 0, 0});
+  for (int i = 0; i < 500; ++i) {
+    double const t = 0.02 * i;
+    table += fmt::format("{},{:.6g},{:.6g}\n", t, 3 * std::sin(5 * t),
+                         0.1 * std::sin(5 * t - 0.4) + 0.05 * std::sin(10 * t) + 0.001 * stream.normal());
+  }
+  std::string const text = R"(
+model oscillator {
+  input x [N]
+  state y [m]
+  parameter m [kg] ~ log_uniform(0.1, 10)
+  parameter c [N s/m] ~ log_uniform(0.1, 100)
+  parameter k [N/m] ~ log_uniform(1, 1000)
+  parameter y0 [m] ~ normal(0, sd = 5)
+  parameter v0 [m/s] ~ normal(0, sd = 50)
+  parameter sigma [m] ~ log_uniform(1e-4, 1)
+  initial y = y0, y' = v0
+  m*y'' + c*y' + k*y = x
+  observe position ~ normal(y, sd = sigma)
+}
+data rec { file "rec.csv"; time t [s]; input x = x [N] hold linear; measure position = y [m] }
+post = fit oscillator to rec with map, seed = 1
+)";
+  Fitted const fitted = run_file(text, {}, {{"rec.csv", table}});
+  CHECK(fitted.found("post", "residuals_not_white"));
+  CHECK_FALSE(fitted.found("post", "column_used_twice"));
+}
+
+TEST_CASE("a parameter that `start` replaces is named once") {
+  std::string table = "t,u,y\n";
+  Stream stream({14, Purpose::test, 0, 0});
+  double level = 0;
+  for (int i = 0; i < 120; ++i) {
+    double const u = i % 23 < 11 ? 2 : -1;
+    table += fmt::format("{},{},{:.6g}\n", 0.1 * i, u, level + 0.02 * stream.normal());
+    level = u + (level - u) * std::exp(-0.15);
+  }
+  std::string const text = R"(
+model lag1 {
+  input u [V]
+  state y [V]
+  parameter r [1/s] ~ log_uniform(0.05, 50)
+  parameter y0 [V] ~ normal(0, sd = 1)
+  parameter sigma [V] ~ log_uniform(0.001, 10)
+  initial y = y0
+  y' = r*(u - y)
+  observe out ~ normal(y, sd = sigma)
+}
+data rec { file "rec.csv"; time t [s]; input u = u [V] hold zero_order; measure out = y [V] }
+post = fit lag1 to rec with mh(samples = 6000, burn_in = 2000, thin = 4), start = rest, seed = 1
+)";
+  Fitted const fitted = run_file(text, {}, {{"rec.csv", table}});
+  CHECK(fitted.found("post", "unused_parameter"));
+  CHECK_FALSE(fitted.found("post", "flat_direction"));
+}
+
 TEST_CASE("a parameter that the likelihood does not contain in its prior's range is named by a sampler too") {
   std::string table = "t,u,y\n";
   for (int i = 0; i < 80; ++i) {

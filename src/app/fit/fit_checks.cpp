@@ -34,13 +34,16 @@ Findings parameter_use(FinishedFit& fit) {
   if (fit.result.interrupted) return findings;
   std::vector<std::vector<double>> draws;
   for (Chain const& chain : fit.result.draws.chains) draws.insert(draws.end(), chain.values.begin(), chain.values.end());
-  for (Finding& each : check_influence(fit.likelihood.model(), fit.target, draws)) {
-    bool const told = std::ranges::any_of(fit.report.findings, [&](Finding const& earlier) {
-      return earlier.code == FindingCode::flat_direction &&
-             std::ranges::find(earlier.names, each.names.front()) != earlier.names.end();
-    });
-    if (!told) findings.push_back(std::move(each));
-  }
+  auto const names = [](Findings const& of, FindingCode code, std::string const& parameter) {
+    return std::ranges::any_of(
+        of, [&](Finding const& each) { return each.code == code && std::ranges::find(each.names, parameter) != each.names.end(); });
+  };
+  Findings flat = check_influence(fit.likelihood.model(), fit.target, draws);
+  std::erase_if(flat, [&](Finding const& each) {
+    return names(fit.report.findings, FindingCode::flat_direction, each.names.front()) ||
+           names(findings, FindingCode::unused_parameter, each.names.front());
+  });
+  findings.insert(findings.end(), flat.begin(), flat.end());
   return findings;
 }
 
