@@ -30,7 +30,7 @@ PriorPage counts(Preflight const& preflight, PriorSimulations const& simulations
   SolverRow const& stated = preflight.what.solver.row();
   PriorPage page;
   page.draws = preflight.effort.prior_draws;
-  page.stated = preflight.stated.text();
+  page.stated = (preflight.bounded() ? preflight.what.solver : preflight.stated).text();
   page.failed_as_stated = simulations.failed_as_stated;
   page.spent = stated.adaptive;
   page.failed_explicit = simulations.failed_explicit;
@@ -119,6 +119,17 @@ void check_search(Preflight const& preflight) {
     preflight.add(each.code, each.severity, each.names, each.message, each.help);
 }
 
+// Whether most draws fail because the solver was given fewer steps here than the task allows.
+bool out_of_steps(Preflight const& preflight) {
+  if (!preflight.bounded()) return false;
+  std::uint64_t of_steps = 0, all = 0;
+  for (Failure const& each : preflight.page.prior->failures) {
+    all += each.count;
+    if (each.kind == FailureClass::step_limit) of_steps += each.count;
+  }
+  return 2 * of_steps > all;
+}
+
 void check_failures(Preflight const& preflight) {
   PriorPage const& page = *preflight.page.prior;
   if (preflight.scales) preflight.page.findings.push_back(*preflight.scales);
@@ -126,7 +137,7 @@ void check_failures(Preflight const& preflight) {
   double const share = static_cast<double>(page.failed) / page.draws;
   double const stiff = static_cast<double>(page.failed_explicit - page.failed) / page.draws;
   double const lost = solver.row().stiff ? stiff : static_cast<double>(page.failed_as_stated - page.failed_explicit) / page.draws;
-  if (preflight.bounded() && share > many_failures)
+  if (out_of_steps(preflight) && share > many_failures)
     preflight.add(
         FindingCode::prior_fails, Severity::warning, {},
         fmt::format("{:.0f} % of the prior draws take more than {} steps of {} between two samples: `check` leaves them out",
