@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
+#include <limits>
 
 #include "core/numeric/elementary.hpp"
 
@@ -45,6 +46,11 @@ Eigen::VectorXd solve_symmetric(Eigen::MatrixXd const& symmetric, Eigen::VectorX
 }
 
 Eigen::MatrixXd inverse(Eigen::MatrixXd const& square) { return square.partialPivLu().inverse(); }
+
+double largest_real_eigenvalue(Eigen::MatrixXd const& square) {
+  Eigen::EigenSolver<Eigen::MatrixXd> const solver(square, false);
+  return solver.info() == Eigen::Success ? solver.eigenvalues().real().maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+}
 
 double log_absolute_determinant(Eigen::MatrixXd const& square) {
   Eigen::PartialPivLU<Eigen::MatrixXd> const factored(square);

@@ -33,6 +33,9 @@ Eigen::VectorXd solve_symmetric(Eigen::MatrixXd const& symmetric, Eigen::VectorX
 
 Eigen::MatrixXd inverse(Eigen::MatrixXd const& square);
 
+/// The largest real part of an eigenvalue, to about 1e-15 of the largest entry; NaN where the iteration does not converge.
+double largest_real_eigenvalue(Eigen::MatrixXd const& square);
+
 /// log |det|, as a sum: the product may leave the range of numbers.
 double log_absolute_determinant(Eigen::MatrixXd const& square);
 

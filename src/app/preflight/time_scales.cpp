@@ -35,7 +35,7 @@ class Linearisation {
 
   struct Motion {
     double rate = 0;     // [1/s] of the slowest motion at the start; 0 where there is none
-    bool grows = false;  // a volume of states
+    bool grows = false;  // one of them
   };
   /// parameters [SI], inputs [SI], time [s].
   Motion slowest(std::vector<double> const& parameters, std::vector<double> const& inputs, double time) const {
@@ -79,7 +79,7 @@ class Linearisation {
     }
     double const norm = power.norm();
     if (!std::isfinite(norm) || norm <= 0) return {};
-    return {elementary::exp(-(log_size + elementary::log(norm)) / exponent), jacobian.trace() > 0};
+    return {elementary::exp(-(log_size + elementary::log(norm)) / exponent), largest_real_eigenvalue(jacobian) > 0};
   }
 
  private:
@@ -137,7 +137,7 @@ std::string in_seconds(double seconds) { return significant(seconds, 2) + " s"; 
 
 /// "`time t [ms]`" where the times are read in seconds; empty otherwise.
 std::string in_milliseconds(DataBlock const& block, double scale) {
-  if (scale != 1 || !block.time) return "";
+  if (scale != 1 || !block.time || !block.rules.stamp.empty()) return "";
   return fmt::format(": `time {}` if its numbers are milliseconds", column_text(block.time->column, "ms"));
 }
 
@@ -151,8 +151,8 @@ Finding fast_finding(CheckedFile const& file, Model const& model, ExperimentData
       fmt::format("rows of {} are {} apart, but at every prior draw even the slowest motion of `{}` is over, or has made a "
                   "whole oscillation, before the next row: its rate is {} to {} rad/s",
                   data.experiment.name, in_seconds(step), model.name, significant(rates.least, 2), significant(rates.most, 2)),
-      fmt::format("correct the unit of {} in `{}`{}; or the units of the parameters that contain a time. If all are right, no row "
-                  "shows this motion: replace its equation by its steady state",
+      fmt::format("correct the unit of {} in `{}`{}; or the units of the parameters that contain a time. If all are right, replace "
+                  "the equation of a motion that decays between two rows by its steady state, and sample one that lasts faster",
                   block.time          ? "`time`"
                   : block.step_stated ? "`step`"
                                       : "`rate`",
