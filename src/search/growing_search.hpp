@@ -51,11 +51,11 @@ struct GrownModes {
 /// followed over short steps. If it stays lost, the new rows show something new, and the stage begins at prior draws, too, as all
 /// stages do up to a tenth of the record.
 ///
-/// What is announced at the beginning, in simulations of the whole record, is kept: local searches that are not done when it is
-/// used up stay where they are, and say what they have left to gain. Another pass, from other draws, is made while the best mode
-/// may have been missed and the rest pays for it. Where the whole record is followed worse than a part, two stages are made from
-/// other draws; if they follow these rows better than the first pass did, it is made again from there, paid for or not. Simulations
-/// of a part count as their share in the ledger.
+/// What is announced at the beginning, in simulations of the whole record, is kept, with one exception: local searches that are
+/// not done when it is used up stay where they are, and say what they have left to gain. Another pass, from other draws, is made
+/// while the best mode may have been missed and the rest pays for it. Where the whole record is followed worse than a part, two
+/// stages are made from other draws; if they follow these rows better than the first pass did, it is made again from there, even if
+/// nothing is left to pay for it: that is the exception. Simulations of a part count as their share in the ledger.
 GrownModes search_growing(Target const& whole, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context);
 
 }  // namespace sysid

@@ -361,11 +361,12 @@ TEST_CASE("a checkpoint of another seed, or one whose populations do not follow 
                    {}, {},     {}};
   abc::run(toy, settings, later);
   REQUIRE(stored.at("records").size() > 1);
-  auto const fails = [&](nlohmann::json const& state) {
+  auto const failure = [&](nlohmann::json const& state) {
     RunContext context{5, silent, ledger, {}, {}, 60, kept(state), {}, {}};
-    return abc::run(toy, settings, context).failure.has_value();
+    auto const found = abc::run(toy, settings, context).failure;
+    return found ? found->message : std::string();
   };
-  CHECK_FALSE(fails(stored));
+  CHECK(failure(stored).empty());
   for (auto const& [pointer, value] : {std::pair<char const*, nlohmann::json>{"/records", nlohmann::json::array()},
                                        {"/records/0/models", nlohmann::json::array()},
                                        {"/record/models", nlohmann::json::array()},
@@ -377,15 +378,15 @@ TEST_CASE("a checkpoint of another seed, or one whose populations do not follow 
     CAPTURE(pointer);
     nlohmann::json forged = stored;
     forged[nlohmann::json::json_pointer(pointer)] = value;
-    CHECK(fails(forged));
+    CHECK_FALSE(failure(forged).empty());
   }
   // All that the model had; what its record counts stays.
   nlohmann::json forged = stored;
   nlohmann::json const nothing = checkpoint::encode(std::span<double const>());
   for (nlohmann::json& each : forged.at("last").at("models").at(0)) each = nothing;
-  CHECK(fails(forged));
+  CHECK(failure(forged).find("its particles are not those that were counted") != std::string::npos);
   forged.at("records").back().at("models").at(0).at(2) = 0;
-  CHECK(fails(forged));
+  CHECK(failure(forged).find("its particles are not those that were counted") != std::string::npos);
 }
 
 namespace {
