@@ -177,7 +177,7 @@ model arx {
   parameter sigma ~ log_uniform(1e-3, 10)
   observe output ~ normal(a*lag(measured(output), 1) + b*lag(u, 1), sd = sigma)
 }
-data rec { file "rec.csv"; input u = u; measure output = y }
+data rec { file "rec.csv"; rate 1 [Hz]; input u = u; measure output = y }
 post = fit arx to rec with map, seed = 1
 )";
   Fitted const fitted = run_file(text, {}, {{"rec.csv", table}});
