@@ -79,10 +79,10 @@ TEST_CASE("an initial value in another unit is named beside the first sample, an
   std::vector<std::string> const said = messages(result, "initial_far_off");
   REQUIRE(said.size() == 1);
   CHECK(said.front() == "`quadratic` begins with speed = 3.33 m/s, but its first sample, row 1 of run, is 11.9 m/s");
-  CHECK(preflight(result, "which", "quadratic").findings.front().help ==
-        "check `initial v` and its unit; if the initial value is not known, declare `parameter v_start [m/s] ~ normal(11.9, sd = "
-        "WIDTH)` "
-        "and write `initial v = v_start`");
+  CHECK(
+      preflight(result, "which", "quadratic").findings.front().help ==
+      "check `initial v` and its unit; if the initial value is not known, declare `parameter v_start [m/s] ~ normal(11.9, sd = 6)` "
+      "and write `initial v = v_start`");
   CHECK(messages(check_drag(drag), "initial_far_off").empty());
   // A parameter that may have the right value is not doubted.
   CHECK(
