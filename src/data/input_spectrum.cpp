@@ -2,13 +2,11 @@
 #include "data/input_spectrum.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <numbers>
+#include <utility>
 #include <vector>
 
-#include "core/numeric/elementary.hpp"
-#include "core/numeric/fourier.hpp"
+#include "core/numeric/periodogram.hpp"
 
 namespace sysid {
 namespace {
@@ -28,22 +26,6 @@ double chord_error(InputSignal const& signal, double sd) {
   return std::sqrt(square / (signal.rows() - 1)) / sd;
 }
 
-/// Powers at multiples of rate/size, from 0 to half the rate, of samples padded with zeros to `size`.
-std::vector<double> periodogram(std::vector<double> const& samples) {
-  std::size_t const size = std::max<std::size_t>(4, std::bit_ceil(samples.size()));
-  Fourier::Parts re(size, 0.0), im(size, 0.0);
-  int const bits = std::countr_zero(size);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    std::size_t reversed = 0;
-    for (int b = 0; b < bits; ++b) reversed |= ((i >> b) & 1U) << (bits - 1 - b);
-    re[reversed] = samples[i];
-  }
-  Fourier(size).from_reversed(re, im);
-  std::vector<double> power(size / 2 + 1);
-  for (std::size_t k = 0; k < power.size(); ++k) power[k] = re[k] * re[k] + im[k] * im[k];
-  return power;
-}
-
 void fill_band(std::vector<double> const& power, double rate, InputSpectrum& result) {
   double total = 0, sum = 0;
   for (double const each : power) total += each;
@@ -57,12 +39,9 @@ void fill_band(std::vector<double> const& power, double rate, InputSpectrum& res
   }
 }
 
-// Hann's window: the jump from the last sample to the first, as a periodogram has it, is no power of the signal.
 double top_share(std::vector<double> samples) {
-  double const n = static_cast<double>(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    samples[i] *= 1 - elementary::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / n);
-  std::vector<double> const power = periodogram(samples);
+  taper(samples);
+  std::vector<double> const power = periodogram(std::move(samples));
   double total = 0, top = 0;
   for (std::size_t k = 0; k < power.size(); ++k) {
     total += power[k];

@@ -7,13 +7,14 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/periodogram.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "experiment/crossed_columns.hpp"
 #include "model/lags.hpp"
-#include "regression/column/spectrum.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
@@ -84,24 +85,30 @@ bool reads_measured(Model const& model) {
   return false;
 }
 
-/// Whether a channel of the data block is one sinusoid. A linear model with that as its output explains any input that is one, too.
-bool has_one_tone(FinishedFit const& fit, std::vector<Experiment> const& experiments, int data) {
+/// Whether samples are one sinusoid about a constant; NaN where they are missing.
+bool is_one_tone(std::vector<double> samples) {
   constexpr double nearly_all = 0.95;
   constexpr std::size_t around = 4;  // frequencies of its main lobe, to each side
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
-    if (fit.data[e].use.data != data) continue;
-    for (std::vector<double> const& samples : experiments[e].measured) {
-      std::vector<double> const power = regression::spectrum_of(samples, 1).power;
-      if (power.empty()) continue;
-      auto const peak = static_cast<std::size_t>(std::ranges::max_element(power) - power.begin());
-      double tone = 0, all = 0;
-      for (std::size_t k = 0; k < power.size(); ++k) {
-        all += power[k];
-        if (k + around >= peak && k <= peak + around) tone += power[k];
-      }
-      if (tone > nearly_all * all) return true;
-    }
+  double sum = 0, count = 0;
+  for (double const each : samples)
+    if (std::isfinite(each)) sum += each, count += 1;
+  for (double& each : samples) each = std::isfinite(each) ? each - sum / count : 0;
+  taper(samples);
+  std::vector<double> const power = periodogram(std::move(samples));
+  auto const peak = static_cast<std::size_t>(std::ranges::max_element(power) - power.begin());
+  double tone = 0, all = 0;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    all += power[k];
+    if (k + around >= peak && k <= peak + around) tone += power[k];
   }
+  return tone > nearly_all * all;
+}
+
+/// Whether a channel of the data block is one sinusoid. A linear model with that as its output explains any input that is one, too,
+/// and one that is hardly damped has it as its free motion.
+bool has_one_tone(FinishedFit const& fit, std::vector<Experiment> const& experiments, int data) {
+  for (std::size_t e = 0; e < experiments.size(); ++e)
+    if (fit.data[e].use.data == data && std::ranges::any_of(experiments[e].measured, &is_one_tone)) return true;
   return false;
 }
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <utility>
 
 #include "core/numeric/elementary.hpp"
-#include "core/numeric/fourier.hpp"
+#include "core/numeric/periodogram.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/cell/stuck_sensor.hpp"
 
@@ -75,24 +75,13 @@ std::vector<SpectralPeak> peaks_of(std::vector<double> const& values, Line const
   constexpr std::size_t fewest = 32, most = std::size_t{1} << 22U, shown = 3;
   std::size_t const rows = std::min(values.size(), most);
   if (rows < fewest || line.spread == 0) return {};
-  std::size_t size = 4;
-  while (size < rows) size *= 2;
-  Fourier::Parts re(size, 0.0), im(size, 0.0);
-  for (std::size_t i = 0; i < rows; ++i) {
-    double const window = 1 - elementary::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(rows));
-    re[i] = (values[i] - line.begin - line.slope * static_cast<double>(i)) * window;
-  }
-  Fourier const transform(size);
-  transform.to_reversed(re, im, &stop_if_interrupted);
-  // From bit-reversed order.
-  std::vector<double> amplitudes(size / 2);
-  int bits = 0;
-  while ((std::size_t{1} << static_cast<unsigned>(bits)) < size) ++bits;
-  for (std::size_t i = 0; i < size; ++i) {
-    std::size_t k = 0;
-    for (int b = 0; b < bits; ++b) k |= ((i >> static_cast<unsigned>(b)) & 1U) << static_cast<unsigned>(bits - 1 - b);
-    if (k < amplitudes.size()) amplitudes[k] = 2 * std::sqrt(re[i] * re[i] + im[i] * im[i]) / static_cast<double>(rows);
-  }
+  std::vector<double> detrended(rows);
+  for (std::size_t i = 0; i < rows; ++i) detrended[i] = values[i] - line.begin - line.slope * static_cast<double>(i);
+  taper(detrended);
+  std::vector<double> amplitudes = periodogram(std::move(detrended), &stop_if_interrupted);
+  std::size_t const size = 2 * (amplitudes.size() - 1);
+  amplitudes.pop_back();
+  for (double& each : amplitudes) each = 2 * std::sqrt(each) / static_cast<double>(rows);
   std::vector<SpectralPeak> peaks;
   double const first = 2.5 * static_cast<double>(size) / static_cast<double>(rows);  // below, the window and the line are seen
   for (std::size_t k = 1; k + 1 < amplitudes.size(); ++k)

@@ -2,12 +2,10 @@
 #include "regression/column/spectrum.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
-#include "core/numeric/elementary.hpp"
-#include "core/numeric/fourier.hpp"
+#include "core/numeric/periodogram.hpp"
 
 namespace sysid::regression {
 
@@ -31,21 +29,13 @@ Spectrum spectrum_of(std::span<double const> samples, double step) {
 
   double mean = 0;
   for (double const value : filled) mean += value / static_cast<double>(n);
-  std::size_t const size = std::bit_ceil(std::max<std::size_t>(n, 4));
-  Fourier::Parts re(size, 0.0), im(size, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    double const angle = 2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-    re[i] = (filled[i] - mean) * (1 - elementary::cos(angle));
-  }
-  Fourier(size).to_reversed(re, im);
-  int const bits = std::countr_zero(size);
-  Spectrum out{std::vector<double>(size / 2 + 1), size, static_cast<double>(size) * step};
-  double const share = 2 / (1.5 * static_cast<double>(size) * static_cast<double>(n));  // 1.5: the mean square of the taper
-  for (std::size_t k = 0; k < out.power.size(); ++k) {
-    std::size_t reversed = 0;
-    for (int b = 0; b < bits; ++b) reversed |= ((k >> b) & 1) << (bits - 1 - b);
-    out.power[k] = share * (re[reversed] * re[reversed] + im[reversed] * im[reversed]);
-  }
+  for (double& value : filled) value -= mean;
+  taper(filled);
+  Spectrum out{periodogram(std::move(filled))};
+  out.size = 2 * (out.power.size() - 1);
+  out.length = static_cast<double>(out.size) * step;
+  double const share = 2 / (1.5 * static_cast<double>(out.size) * static_cast<double>(n));  // 1.5: the mean square of the taper
+  for (double& power : out.power) power *= share;
   return out;
 }
 
