@@ -21,6 +21,8 @@ constexpr int most_for_tempering = 20;
 constexpr int most_for_walks = 25;
 /// Independence moves that are worth more need no other help.
 constexpr double worth_enough = 0.01;
+/// Between modes they are the only ones that jump.
+constexpr double worth_jumping = 0.1;
 constexpr std::uint64_t choosing_step = 9'000'000;  // of Purpose::start
 
 double worth_of_normals(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger) {
@@ -46,6 +48,11 @@ Choice choose(Target const& target, std::vector<Mode> const& modes, std::uint64_
                                 modes_of_weight, count)};
     if (target.is_expensive())
       return {"mh", modes_of_weight + ": independence moves jump between them, and each density is too expensive for tempering"};
+    double const worth = worth_of_normals(target, modes, seed, ledger);
+    if (worth >= worth_jumping)
+      return {"mh", fmt::format("{}: 100 draws from the normal distributions at them count as {:.0f} independent draws from the "
+                                "posterior, so that moves to such draws jump between them",
+                                modes_of_weight, 100 * worth)};
     return {"tempering", modes_of_weight + ", and replicas cross between them"};
   }
   if (!modes.front().flat.empty())

@@ -71,6 +71,11 @@ TEST_CASE("several modes are sampled by tempering where parameters are few, else
   auto const many = choose(ChoiceTarget(21, normal_rows), {mode(21, 0.6), mode(21, 0.4, 2)});
   CHECK(many.backend == "mh");
   CHECK(contains(many.reason, "2 modes"));
+  // Where the normal distributions at the modes are the posterior, moves that are drawn from them jump.
+  auto const two_hills = [](std::vector<double> const& x, std::vector<double>& rows) { rows[0] = (x[0] * x[0] - 1) / 0.4; };
+  auto const known = choose(ChoiceTarget(1, two_hills), {mode(1, 0.5, 1), mode(1, 0.5, -1)});
+  CHECK(known.backend == "mh");
+  CHECK(contains(known.reason, "jump between them"));
   // One of a share that is not worth a word is none.
   CHECK(choose(ChoiceTarget(3, normal_rows), {mode(3, 0.995), mode(3, 0.005, 2)}).backend == "mh");
 }
