@@ -53,6 +53,13 @@ Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& 
 
 }  // namespace
 
+void replace_mode_findings(Findings& findings, Findings const& of_modes) {
+  std::erase_if(findings, [](Finding const& each) {
+    return each.code == FindingCode::second_mode || each.code == FindingCode::flat_direction;
+  });
+  findings.insert(findings.begin(), of_modes.begin(), of_modes.end());
+}
+
 bool refine_solver(Session& session, Task const& task, MakeTarget const& make, ObjectiveKind objective_kind,
                    SolverSettings const& stated, Preparation& preparation, RunContext& context) {
   // Modes may need fewer steps than far corners of the prior.
@@ -66,11 +73,7 @@ bool refine_solver(Session& session, Task const& task, MakeTarget const& make, O
   rank(objective_kind, preparation.modes);
   preparation.moves = refined.moves;
   // What looked like several may have been the solver's, and another may be the highest now.
-  std::erase_if(preparation.findings, [](Finding const& each) {
-    return each.code == FindingCode::second_mode || each.code == FindingCode::flat_direction;
-  });
-  Findings const found = mode_findings(*make(refined.solver), objective_kind, preparation.modes);
-  preparation.findings.insert(preparation.findings.begin(), found.begin(), found.end());
+  replace_mode_findings(preparation.findings, mode_findings(*make(refined.solver), objective_kind, preparation.modes));
   if (refined.solver != stated)
     session.notices << fmt::format("{}: the fit uses {}, because {} would be too coarse: with {}, {}\n", task.name,
                                    accuracy(refined.solver), accuracy(stated), stated.finer_words(),
@@ -99,6 +102,17 @@ std::string solver_advice(SolverSettings const& solver, Ledger const& ledger) {
 }
 
 Findings stiff_prior(SearchSolver const& search) {
+  if (!search.stiff() && search.still_falling())
+    return {
+        {FindingCode::stiff_prior,
+         Severity::warning,
+         {},
+         fmt::format("{:.0f} % of the prior draws overflow with {}, fewer than with longer steps: the motion is too fast for these "
+                     "steps there, and the search ignores that part of the prior",
+                     100 * search.failed, accuracy(search.solver)),
+         fmt::format("fit with `solver = {}`, which takes as many steps as the motion needs, or narrow the priors if such fast "
+                     "motion is not intended",
+                     adaptive_solver().name)}};
   if (!search.stiff()) return {};
   return {{FindingCode::stiff_prior,
            Severity::warning,

@@ -131,7 +131,7 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
   SearchSolver result{from, 0};
   if (!from.fixed_step()) return result;
   constexpr int draws = 256;
-  constexpr double tolerable = 0.2, worth_it = 0.05;
+  constexpr double tolerable = 0.2;
   double least = 1;
   SolverSettings solver = from;
   LaneArray lost(0, 0);
@@ -146,8 +146,9 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
     double const failed =
         static_cast<double>(std::count_if(density.begin(), density.end(), [](double v) { return !std::isfinite(v); })) / draws;
     if (factor == 1) result.failed_as_given = failed;
-    if (factor == 1 || failed < least - worth_it) {
+    if (factor == 1 || failed < least - SearchSolver::notable) {
       result.solver = solver;
+      result.failed_before = least;
       least = failed;
       lost = failing(theta, density);
     }
