@@ -136,15 +136,27 @@ Finding widths_unknown() {
       "fit with mh to get the sds of the posterior; use only the optimum of this result"};
 }
 
+/// A place that is not on the hill of the best mode, or on a part of it that the search has not climbed.
+bool is_higher(Target const& target, Eigen::VectorXd const& place, Mode const& best, std::uint64_t seed, Ledger& ledger) {
+  constexpr double higher = 1;  // nats
+  Objective const objective = make_objective(target, ObjectiveKind::declared_posterior, seed, bound_step);
+  return objective.log_density(to_lanes({place}), ledger).front() > best.log_density + higher;
+}
+
 /// Whether the posterior has the widths of the normal distribution at its highest mode. Several modes are a finding of their own.
+/// higher: set where draws have found a higher place.
 std::optional<Finding> check_widths(Target const& target, std::vector<Mode> const& modes, std::vector<ModeAtBound> const& at_bound,
-                                    RunContext& context) {
+                                    RunContext& context, std::vector<double>& higher) {
   Ledger extra;
   auto const stop = [&] { return context.stop_requested(); };
   std::vector<Mode> const sampled = sampled_modes(target, ObjectiveKind::declared_posterior, modes, context.seed, extra, stop);
-  if (sampled.size() != 1) return std::nullopt;
-  WeightedDraws const draws = weighted_draws(target, sampled, context.seed, extra, stop, &modes.front());
+  bool const one = sampled.size() == 1;
+  WeightedDraws const draws = weighted_draws(target, sampled, context.seed, extra, stop, one ? &modes.front() : nullptr);
   if (draws.draws == 0 || draws.sd.empty()) return std::nullopt;
+  bool const endless = std::ranges::any_of(at_bound, &ModeAtBound::unbounded);
+  if (!endless && is_higher(target, draws.highest, modes.front(), context.seed, extra))
+    higher.assign(draws.highest.begin(), draws.highest.end());
+  if (!one) return std::nullopt;
   std::vector<Misfit> const found = misfits(modes.front(), draws, at_bound);
   bool const some = !found.empty() && (draws.confirmed || draws.walked || found.front().wrong());
   if (some) return widths_wrong(target, modes.front(), draws, found);
@@ -219,7 +231,7 @@ FitResult run(std::string_view backend, Target const& target, ObjectiveKind obje
     result.findings.push_back(at_bounds(target, best, at_bound));
   }
   if (objective_kind == ObjectiveKind::declared_posterior)
-    if (std::optional<Finding> misfit = check_widths(target, result.modes, at_bound, context))
+    if (std::optional<Finding> misfit = check_widths(target, result.modes, at_bound, context, result.higher_place))
       result.findings.push_back(std::move(*misfit));
   write_draw(target, best, context, result);
   // One draw has no spread: the standard deviations are those of the Laplace approximation.

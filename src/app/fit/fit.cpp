@@ -13,6 +13,7 @@
 #include "app/fit/fit_criteria.hpp"
 #include "app/fit/fit_preparation.hpp"
 #include "app/fit/hierarchies.hpp"
+#include "app/fit/higher_place.hpp"
 #include "app/session/exact_steps.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/fit_target.hpp"
@@ -142,12 +143,19 @@ class Fit {
         stopped = stop_early(session_, task_, checkpoint_);
         return std::nullopt;
       }
-      check_draws_of(result);
-      if (!to_be_chosen_again(result)) return result;
-      session_.notices << fmt::format("{}: sampling again with a finer solver: {}\n", task_.name,
-                                      tolerance_findings(*accuracy_, preparation_.solver, true).front().message);
+      Again again{preparation_.solver, higher_place(result)};
+      if (again.place.empty()) {
+        check_draws_of(result);
+        if (!to_be_chosen_again(result)) return result;
+        session_.notices << fmt::format("{}: sampling again with a finer solver: {}\n", task_.name,
+                                        tolerance_findings(*accuracy_, preparation_.solver, true).front().message);
+        again.solver = fine_enough(preparation_.solver, accuracy_->largest());
+      } else {
+        session_.notices << fmt::format(
+            "{}: searching again, from a draw whose density is higher than that of the best mode found\n", task_.name);
+      }
       context.resume = {};
-      if (!choose_again(fine_enough(preparation_.solver, accuracy_->largest()), nullptr)) {
+      if (!choose_again(again, nullptr)) {
         stopped = stop_late(session_, task_, checkpoint_, preparation_);
         return std::nullopt;
       }
@@ -215,19 +223,41 @@ class Fit {
            fine_enough(preparation_.solver, accuracy_->largest()).within_limits();
   }
 
-  // The solver from `finer` on; steps: what an interrupted run has kept of it, or null. False: interrupted, and kept with what was
-  // sampled for the first solver, which then stays.
-  bool choose_again(SolverSettings const& finer, json const* steps) {
+  // What is to be done once more after a result: the solver from this one on, and before it the search from `place`, unless empty.
+  struct Again {
+    SolverSettings solver;
+    std::vector<double> place;
+  };
+
+  // A place that shows that the search has missed a mode; empty where there is none.
+  std::vector<double> higher_place(FitResult const& result) {
+    constexpr int most_searches = 2;
+    if (result.interrupted || session_.interrupted() || preparation_.searched_again >= most_searches) return {};
+    Target const& target = likelihood_->set_target(preparation_.solver, session_.abandonable());
+    return place_above_modes(result, target, backend_->objective_kind, preparation_.modes,
+                             likelihood_->with_hierarchies() != nullptr);
+  }
+
+  // steps: what an interrupted run has kept of it, or null. False: interrupted, and kept with what was sampled before, which then
+  // stays.
+  bool choose_again(Again const& from, json const* steps) {
     Preparation again = preparation_;
     RunContext context = searching(again.ledger);
     MakeTarget const make = [this](SolverSettings const& solver) { return preparing_.target(solver); };
     auto const content = [&](json const& kept) -> json {
       return {{"preparation", store(preparation_)},
-              {"again", {{"solver", write_solver(finer)}, {"ledger", checkpoint::encode(ledger_)}, {"journal", kept}}}};
+              {"again",
+               {{"solver", write_solver(from.solver)},
+                {"place", checkpoint::encode(std::span<double const>(from.place))},
+                {"ledger", checkpoint::encode(ledger_)},
+                {"journal", kept}}}};
     };
     bool const chosen = checkpoint_.keep_steps(steps, content, [&](Journal& journal) {
       context.journal = &journal;
-      bool const ended = refine_solver(session_, task_, make, backend_->objective_kind, finer, again, context);
+      bool const ended =
+          (from.place.empty() ||
+           search_from_place(from.place, *preparing_.target(again.solver), backend_->objective_kind, again, context)) &&
+          (!what_.refine_solver || refine_solver(session_, task_, make, backend_->objective_kind, from.solver, again, context));
       if (!ended) journal.save();  // the sampling before is not done again
       return ended;
     });
@@ -242,13 +272,13 @@ class Fit {
 
   // Where a run was interrupted in `choose_again`.
   bool go_on_choosing(json const& stored) {
-    SolverSettings finer;
+    Again from;
     checkpoint_.reading([&] {
-      finer = read_solver(stored.at("solver"));
+      from = {read_solver(stored.at("solver")), checkpoint::decode(stored.at("place"))};
       ledger_ = checkpoint::decode_ledger(stored.at("ledger"));
       (void)stored.at("journal");
     });
-    return choose_again(finer, &stored.at("journal"));
+    return choose_again(from, &stored.at("journal"));
   }
 
   // From what an interrupted run has kept, if there is anything. False: interrupted, and kept.

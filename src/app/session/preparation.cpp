@@ -23,7 +23,8 @@ nlohmann::json store(Preparation const& preparation) {
                            {"findings", checkpoint::encode(preparation.findings)},
                            {"ledger", checkpoint::encode(preparation.ledger)},
                            {"standardised", checkpoint::encode(std::span<double const>(standardised))},
-                           {"moves", preparation.moves}};
+                           {"moves", preparation.moves},
+                           {"searched_again", preparation.searched_again}};
   if (!references.empty()) stored["references"] = checkpoint::encode(std::span<double const>(references));
   return stored;
 }
@@ -50,6 +51,7 @@ Preparation restore_preparation(nlohmann::json const& stored) {
         {ImproperReference::Kind::normal, static_cast<int>(references[i]), references[i + 1], references[i + 2]});
   }
   preparation.moves = stored.at("moves").get<std::vector<double>>();
+  preparation.searched_again = stored.at("searched_again").get<int>();
   return preparation;
 }
 

@@ -19,6 +19,7 @@ struct Preparation {
   std::vector<MemberCoordinate> standardised;  // members of hierarchies, in whose coordinates the modes are
   std::vector<ImproperReference> references;   // in the place of draws of improper priors
   std::vector<double> moves;                   // of each solver tried: largest move to the next finer one [sd]
+  int searched_again = 0;                      // from places that a result has shown to be higher than the modes
 };
 
 nlohmann::json store(Preparation const& preparation);

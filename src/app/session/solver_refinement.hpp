@@ -13,6 +13,9 @@ namespace sysid {
 bool refine_solver(Session& session, Task const& task, MakeTarget const& make, ObjectiveKind objective_kind,
                    SolverSettings const& stated, Preparation& preparation, RunContext& context);
 
+/// Findings on modes, of a search or refinement before, give way to those of other modes.
+void replace_mode_findings(Findings& findings, Findings const& of_modes);
+
 /// What may help a result that no step of this solver settles.
 std::string settling_advice(SolverSettings const& solver);
 

@@ -45,6 +45,9 @@ struct FitResult {
   std::vector<FrozenProposal> proposals;
   Settings settings;
   Findings findings;
+  /// On the sampler's coordinates, where the density of which `modes` are modes is higher than at any of them: the search has
+  /// missed one. Empty: no such place was met, or none was looked for.
+  std::vector<double> higher_place;
   bool search_told = false;  // `findings` hold those of the search, or what stands in their place
   bool interrupted = false;
   /// Set when there is no result at all (no finite start, a checkpoint of another run): an error for the user, with the reason.

@@ -110,7 +110,6 @@ WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uin
   int const steps = 60 + 10 * objective.dimension();  // a few times what such walkers take to forget where they were
   std::uint64_t const cost = static_cast<std::uint64_t>(steps + 1) * static_cast<std::uint64_t>(walkers.width()) + draws_per_walk;
   WalkedDraws found;
-  std::vector<double> log_density;
   std::vector<Mixture> mixtures;
   std::vector<double> sds;
   if (2 * cost > most) return found;
@@ -127,10 +126,10 @@ WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uin
     StreamKey const drawn = here.with_step(here.step + steps_of_round - 1);
     for (int d = 0; d < draws_per_walk; ++d) mixture.draw(drawn.with_index(static_cast<std::uint64_t>(d)), more, d);
     std::vector<double> const density = log_density_in_blocks(objective, more, ledger, stopped);
-    log_density.insert(log_density.end(), density.begin(), density.end());
+    found.log_density.insert(found.log_density.end(), density.begin(), density.end());
     found.theta = appended(found.theta, more);
     mixtures.push_back(std::move(mixture));
-    found.log_weights = log_density;
+    found.log_weights = found.log_density;
     std::vector<double> const mixed = log_mixed(mixtures, found.theta);
     for (std::size_t d = 0; d < mixed.size(); ++d)
       found.log_weights[d] = std::isfinite(mixed[d]) ? found.log_weights[d] - mixed[d] : -infinity;

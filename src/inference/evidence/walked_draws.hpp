@@ -13,6 +13,7 @@ namespace sysid::marginal {
 struct WalkedDraws {
   LaneArray theta;                  // [P x N]
   std::vector<double> log_weights;  // [N] log of density over that of what they were drawn from
+  std::vector<double> log_density;  // [N]
   LaneArray walked;                 // [P x n] where the walkers of the last round have been
   double effective = 0;             // number of equally weighted draws that they are worth
   bool confirmed = false;           // healthy weights, and as wide as where the walkers have been

@@ -125,6 +125,10 @@ std::vector<double> sds_of(Moments const& moments) {
   return sds;
 }
 
+std::size_t index_of_largest(std::vector<double> const& values) {
+  return static_cast<std::size_t>(std::ranges::max_element(values) - values.begin());
+}
+
 /// Weights that stand out are cut, so that a single draw is no population (Ionides 2008).
 std::vector<double> cut_weights(Population const& population) {
   double mean = 0;
@@ -215,6 +219,7 @@ WeightedDraws summarised(Target const& target, std::vector<Mode> const& modes, P
   for (double const each : population.weight) logs.push_back(each > 0 ? elementary::log(each) : -infinity);
   double const k = smooth_weights(logs, pareto_tail_length(result.draws, 1)).k;
   result.confirmed = result.tell() && k < largest_k;
+  result.highest = population.places[index_of_largest(population.log_density)];
   add_evidence(population, result);
   add_widths(target, modes, population, result);
   return result;
@@ -259,6 +264,9 @@ void walk_on(Objective const& objective, Population const& population, std::uint
       marginal::walked_draws(objective, first_walkers(population), most, {seed, Purpose::start, 0, walk_step}, ledger, stop);
   if (walked.empty()) return;
   result.walked = true;
+  std::size_t const highest = index_of_largest(walked.log_density);
+  if (walked.log_density[highest] > *std::ranges::max_element(population.log_density))
+    result.highest = column(walked.theta, static_cast<int>(highest));
   result.confirmed = walked.confirmed;
   result.draws = walked.theta.width();
   result.effective = walked.effective;

@@ -1,6 +1,7 @@
 // What draws near the modes of a posterior, weighted by its density, tell of its mass and widths: whether the normal distributions
 // at its modes are the posterior.
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -20,6 +21,7 @@ struct WeightedDraws {
   double effective = 0;                // number of equally weighted draws that they are worth
   int draws = 0;
   std::vector<double> mean, sd;  // [P] of the posterior, declared units
+  Eigen::VectorXd highest;       // [P] where the density of the posterior is highest, sampler's coordinates
 
   /// As many as a width to a tenth takes.
   bool tell() const { return effective >= 50; }

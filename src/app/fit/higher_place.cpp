@@ -1,0 +1,47 @@
+#include "app/fit/higher_place.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "app/session/solver_refinement.hpp"
+#include "search/laplace.hpp"
+#include "search/objective.hpp"
+#include "search/search.hpp"
+
+namespace sysid {
+
+std::vector<double> place_above_modes(FitResult const& result, Target const& target, ObjectiveKind objective_kind,
+                                      std::vector<Mode> const& modes, bool hierarchical) {
+  constexpr double higher = 3;  // nats
+  if (modes.empty() || !result.higher_place.empty()) return result.higher_place;
+  if (objective_kind != ObjectiveKind::posterior || target.is_estimated() || hierarchical) return {};
+  double most = -std::numeric_limits<double>::infinity();
+  for (Mode const& mode : modes) most = std::max(most, mode.log_density + higher);
+  std::vector<double> const* best = nullptr;
+  for (Chain const& chain : result.draws.chains)
+    for (std::size_t d = 0; d < chain.log_density.size(); ++d)
+      if (chain.log_density[d] > most) most = chain.log_density[d], best = &chain.values[d];
+  if (best == nullptr) return {};
+  LaneArray declared(target.dimension(), 1), theta(target.dimension(), 1);
+  for (int p = 0; p < target.dimension(); ++p) declared(p, 0) = (*best)[static_cast<std::size_t>(p)];
+  target.unconstrain(declared, theta);
+  std::vector<double> place;
+  for (int p = 0; p < theta.rows(); ++p) place.push_back(theta(p, 0));
+  return place;
+}
+
+bool search_from_place(std::vector<double> const& place, Target const& target, ObjectiveKind objective_kind,
+                       Preparation& preparation, RunContext& context) {
+  std::vector<Eigen::VectorXd> starts{Eigen::Map<Eigen::VectorXd const>(place.data(), std::ssize(place))};
+  for (Mode const& mode : preparation.modes) starts.push_back(theta_of(mode));
+  SearchResult found = search_from(target, objective_kind, to_lanes(starts), context, "searching from a higher place");
+  if (found.interrupted) return false;
+  ++preparation.searched_again;
+  if (found.failure) return true;
+  preparation.modes = std::move(found.modes);
+  replace_mode_findings(preparation.findings, found.findings);
+  return true;
+}
+
+}  // namespace sysid
