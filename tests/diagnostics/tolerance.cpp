@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
+#include "app/session/solver_refinement.hpp"
 #include "core/numeric/random.hpp"
 #include "inference/targets.hpp"
 #include "search/journal.hpp"
@@ -276,6 +277,25 @@ TEST_CASE("a stiff part of the prior is named where an implicit solver follows w
   CHECK(search_of(true).stiff());
   CHECK(search_of(true).failed == doctest::Approx(0.5).epsilon(0.2));
   CHECK_FALSE(search_of(false).stiff());
+}
+
+TEST_CASE("a prior that is too fast for the shortest steps is named where shorter ones have followed more each time") {
+  // Explicit steps follow x < first + more*log4(substeps), no implicit solver anything else.
+  auto const search_of = [](double first, double more) {
+    return search_solver(
+        [=](SolverSettings const& solver) {
+          double const most = first + more * std::log2(std::max(1, solver.substeps)) / 2;
+          return std::make_unique<TestTarget>(
+              std::vector<std::string>{"x"}, std::vector<Prior>{{Prior::normal, 0, 10}}, 1, 0,
+              [=](std::vector<double> const& w, std::vector<double>& out) { out[0] = w[0] < most ? w[0] : std::nan(""); });
+        },
+        SolverSettings{}, 1);
+  };
+  CHECK(search_of(-10, 4).too_fast());
+  CHECK_FALSE(search_of(-10, 0).too_fast());   // what diverges does so with any steps
+  CHECK_FALSE(search_of(-10, 25).too_fast());  // the second are short enough for most
+  CHECK(stiff_prior(search_of(-10, 4)).size() == 1);
+  CHECK(stiff_prior(search_of(-10, 25)).empty());
 }
 
 TEST_CASE("the trials of solvers for a search go on where they were interrupted") {

@@ -102,7 +102,7 @@ std::string solver_advice(SolverSettings const& solver, Ledger const& ledger) {
 }
 
 Findings stiff_prior(SearchSolver const& search) {
-  if (!search.stiff() && search.still_falling())
+  if (!search.stiff() && search.too_fast())
     return {
         {FindingCode::stiff_prior,
          Severity::warning,

@@ -131,7 +131,6 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
   SearchSolver result{from, 0};
   if (!from.fixed_step()) return result;
   constexpr int draws = 256;
-  constexpr double tolerable = 0.2;
   double least = 1;
   SolverSettings solver = from;
   LaneArray lost(0, 0);
@@ -146,16 +145,16 @@ SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, s
     double const failed =
         static_cast<double>(std::count_if(density.begin(), density.end(), [](double v) { return !std::isfinite(v); })) / draws;
     if (factor == 1) result.failed_as_given = failed;
-    if (factor == 1 || failed < least - SearchSolver::notable) {
+    result.last_helped = factor > 1 && failed < least - SearchSolver::notable;
+    if (factor == 1 || result.last_helped) {
       result.solver = solver;
-      result.failed_before = least;
       least = failed;
       lost = failing(theta, density);
     }
-    if (failed <= tolerable) break;
+    if (failed <= SearchSolver::tolerable) break;
   }
   result.failed = least;
-  if (least > tolerable) try_stiff(make, lost, trials, result);
+  if (least > SearchSolver::tolerable) try_stiff(make, lost, trials, result);
   return result;
 }
 

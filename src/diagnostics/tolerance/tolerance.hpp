@@ -31,15 +31,16 @@ struct SearchSolver {
   SolverSettings solver;
   double failed_as_given = 0;   // share of the prior draws
   double failed = 0;            // with `solver`
-  double failed_before = 0;     // with the last solver before it
+  bool last_helped = false;     // whether with the last solver that was tried notably fewer fail than with all before
   int tried = 0, followed = 0;  // of the draws that fail with `solver`: by the solver for stiff equations
 
   /// Whether a large part of the prior is lost to explicit steps that an implicit method follows.
   bool stiff() const { return 2 * followed > tried; }
-  /// Whether a part of the prior is lost that still shorter steps would follow: fewer draws fail each time.
-  bool still_falling() const { return failed > notable && failed_before > failed + notable; }
+  /// Whether a large part of the prior is lost with the shortest steps, and still shorter ones would follow it: they have followed
+  /// more than those before.
+  bool too_fast() const { return failed > tolerable && last_helped; }
 
-  static constexpr double notable = 0.05;
+  static constexpr double tolerable = 0.2, notable = 0.05;
 };
 /// `stop` ends it early, with nothing that can be used.
 SearchSolver search_solver(MakeTarget const& make, SolverSettings const& from, std::uint64_t seed,
