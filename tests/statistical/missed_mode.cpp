@@ -105,9 +105,15 @@ TEST_CASE("draws far above all modes show a mode that was missed, and local sear
   SilentProgress silent;
   Ledger ledger;
   RunContext context{1, silent, ledger};
-  REQUIRE(search_from_place({0.9}, target, ObjectiveKind::posterior, preparation, context));
+  REQUIRE(search_from_place({0.9}, target, ObjectiveKind::posterior, preparation, context) == HigherSearch::found);
   CHECK(preparation.searched_again == 1);
   REQUIRE(preparation.modes.size() == 2);
   CHECK(preparation.modes.front().declared.front() == doctest::Approx(1).epsilon(0.01));
   CHECK(preparation.modes.back().declared.front() == doctest::Approx(-1).epsilon(0.01));
+
+  // From a place on a known hill nothing is found, and nothing changes.
+  std::vector<Mode> const before = preparation.modes;
+  REQUIRE(search_from_place({1.05}, target, ObjectiveKind::posterior, preparation, context) == HigherSearch::nothing);
+  CHECK(preparation.modes.size() == before.size());
+  CHECK(preparation.modes.front().theta == before.front().theta);
 }

@@ -156,6 +156,32 @@ warm = fit oven to day with map, seed = 1
   CHECK_FALSE(lacking.found("warm", "column_used_twice"));
 }
 
+TEST_CASE("the columns of a step response are found exchanged: a step is no sinusoid") {
+  std::string table = "t,u,y\n";
+  Stream stream({15, Purpose::test, 0, 0});
+  for (int i = 0; i < 200; ++i) {
+    double const t = 0.1 * i, u = i < 20 ? 0 : 1;
+    table += fmt::format("{:.6g},{},{:.6g}\n", t, u, (i < 20 ? 0 : 2 * (1 - std::exp(-0.5 * (t - 2)))) + 0.01 * stream.normal());
+  }
+  std::string const wrong = R"(
+model lag1 {
+  input u [V]
+  state y [V]
+  initial y = 0
+  parameter r [1/s] ~ log_uniform(0.01, 10)
+  parameter g [-] ~ log_uniform(0.1, 10)
+  parameter sigma [V] ~ log_uniform(0.001, 10)
+  y' = r*(g*u - y)
+  observe out ~ normal(y, sd = sigma)
+}
+data rec { file "rec.csv"; time t [s]; input u = y [V] hold zero_order; measure out = u [V] }
+post = fit lag1 to rec with map, seed = 1
+)";
+  CHECK(run_file(wrong, {}, {{"rec.csv", table}}).found("post", "column_used_twice"));
+  std::string const right = with(with(wrong, "input u = y [V]", "input u = u [V]"), "measure out = u", "measure out = y");
+  CHECK_FALSE(run_file(right, {}, {{"rec.csv", table}}).found("post", "column_used_twice"));
+}
+
 TEST_CASE("a model that predicts from measured samples is not tried with exchanged columns") {
   // The input is smooth, so that its own past predicts it; the output has a memory of two samples, which the model lacks.
   std::string table = "u,y\n";

@@ -85,10 +85,13 @@ bool reads_measured(Model const& model) {
   return false;
 }
 
-/// Whether samples are one sinusoid about a constant; NaN where they are missing.
+/// Whether samples are several periods of one sinusoid about a constant; NaN where they are missing.
 bool is_one_tone(std::vector<double> samples) {
   constexpr double nearly_all = 0.95;
-  constexpr std::size_t around = 4;  // frequencies of its main lobe, to each side
+  constexpr std::size_t around = 4;            // frequencies of its main lobe, to each side
+  constexpr std::size_t fewest = 32;           // samples, so that there are frequencies beside it
+  constexpr std::size_t slowest = 2 * around;  // below, the main lobe is that of a step or a drift
+  if (samples.size() < fewest) return false;
   double sum = 0, count = 0;
   for (double const each : samples)
     if (std::isfinite(each)) sum += each, count += 1;
@@ -101,7 +104,7 @@ bool is_one_tone(std::vector<double> samples) {
     all += power[k];
     if (k + around >= peak && k <= peak + around) tone += power[k];
   }
-  return tone > nearly_all * all;
+  return peak > slowest && tone > nearly_all * all;
 }
 
 /// Whether a channel of the data block is one sinusoid. A linear model with that as its output explains any input that is one, too,

@@ -143,22 +143,24 @@ class Fit {
         stopped = stop_early(session_, task_, checkpoint_);
         return std::nullopt;
       }
-      Again again{preparation_.solver, higher_place(result)};
-      if (again.place.empty()) {
+      HigherSearch chosen = HigherSearch::nothing;
+      if (std::vector<double> place = higher_place(result); !place.empty()) {
+        session_.notices << fmt::format(
+            "{}: searching again, from a draw whose density is higher than that of the best mode found\n", task_.name);
+        chosen = choose_again({preparation_.solver, std::move(place)}, nullptr);
+      }
+      if (chosen == HigherSearch::nothing) {
         check_draws_of(result);
         if (!to_be_chosen_again(result)) return result;
         session_.notices << fmt::format("{}: sampling again with a finer solver: {}\n", task_.name,
                                         tolerance_findings(*accuracy_, preparation_.solver, true).front().message);
-        again.solver = fine_enough(preparation_.solver, accuracy_->largest());
-      } else {
-        session_.notices << fmt::format(
-            "{}: searching again, from a draw whose density is higher than that of the best mode found\n", task_.name);
+        chosen = choose_again({fine_enough(preparation_.solver, accuracy_->largest()), {}}, nullptr);
       }
-      context.resume = {};
-      if (!choose_again(again, nullptr)) {
+      if (chosen == HigherSearch::interrupted) {
         stopped = stop_late(session_, task_, checkpoint_, preparation_);
         return std::nullopt;
       }
+      context.resume = {};
     }
   }
 
@@ -229,18 +231,20 @@ class Fit {
     std::vector<double> place;
   };
 
-  // A place that shows that the search has missed a mode; empty where there is none.
+  static constexpr int most_searches = 2;
+
+  // A place that shows that the search has missed a mode; empty where there is none. A search that the user has aimed stays there.
   std::vector<double> higher_place(FitResult const& result) {
-    constexpr int most_searches = 2;
-    if (result.interrupted || session_.interrupted() || preparation_.searched_again >= most_searches) return {};
+    bool const asked = !result.interrupted && !session_.interrupted() && !what_.near && preparation_.searched_again < most_searches;
+    if (!asked) return {};
     Target const& target = likelihood_->set_target(preparation_.solver, session_.abandonable());
     return place_above_modes(result, target, backend_->objective_kind, preparation_.modes,
                              likelihood_->with_hierarchies() != nullptr);
   }
 
-  // steps: what an interrupted run has kept of it, or null. False: interrupted, and kept with what was sampled before, which then
-  // stays.
-  bool choose_again(Again const& from, json const* steps) {
+  // steps: what an interrupted run has kept of it, or null. Interrupted: kept with what was sampled before, which then stays.
+  // Nothing: no higher mode lies near the place, and the result stays.
+  HigherSearch choose_again(Again const& from, json const* steps) {
     Preparation again = preparation_;
     RunContext context = searching(again.ledger);
     MakeTarget const make = [this](SolverSettings const& solver) { return preparing_.target(solver); };
@@ -252,22 +256,29 @@ class Fit {
                 {"ledger", checkpoint::encode(ledger_)},
                 {"journal", kept}}}};
     };
+    HigherSearch searched = HigherSearch::found;
     bool const chosen = checkpoint_.keep_steps(steps, content, [&](Journal& journal) {
       context.journal = &journal;
+      if (!from.place.empty())
+        searched = search_from_place(from.place, *preparing_.target(again.solver), backend_->objective_kind, again, context);
+      if (searched == HigherSearch::nothing) return true;
       bool const ended =
-          (from.place.empty() ||
-           search_from_place(from.place, *preparing_.target(again.solver), backend_->objective_kind, again, context)) &&
+          searched == HigherSearch::found &&
           (!what_.refine_solver || refine_solver(session_, task_, make, backend_->objective_kind, from.solver, again, context));
       if (!ended) journal.save();  // the sampling before is not done again
       return ended;
     });
-    if (!chosen) return false;
-    preparation_ = std::move(again);
-    preparation_.ledger.merge(ledger_);
-    ledger_ = {};
-    chosen_ = what_;
+    if (!chosen) return HigherSearch::interrupted;
+    if (searched == HigherSearch::nothing) {
+      preparation_.searched_again = most_searches;
+    } else {
+      preparation_ = std::move(again);
+      preparation_.ledger.merge(ledger_);
+      ledger_ = {};
+      chosen_ = what_;
+    }
     if (checkpoint_.kept()) checkpoint_.save({{"preparation", store(preparation_)}});
-    return true;
+    return searched;
   }
 
   // Where a run was interrupted in `choose_again`.
@@ -275,10 +286,12 @@ class Fit {
     Again from;
     checkpoint_.reading([&] {
       from = {read_solver(stored.at("solver")), checkpoint::decode(stored.at("place"))};
+      bool const fits = from.place.empty() || std::ssize(from.place) == likelihood_->space().dimension();
+      if (!fits) throw checkpoint::Mismatch("its parameters differ in number");
       ledger_ = checkpoint::decode_ledger(stored.at("ledger"));
       (void)stored.at("journal");
     });
-    return choose_again(from, &stored.at("journal"));
+    return choose_again(from, &stored.at("journal")) != HigherSearch::interrupted;
   }
 
   // From what an interrupted run has kept, if there is anything. False: interrupted, and kept.

@@ -10,14 +10,25 @@
 #include "search/search.hpp"
 
 namespace sysid {
+namespace {
+
+constexpr double rise = 0.5;  // nats: less is what two searches to one mode may differ by on a rough density
+
+double highest(std::vector<Mode> const& modes) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (Mode const& mode : modes) most = std::max(most, mode.log_density);
+  return most;
+}
+
+}  // namespace
 
 std::vector<double> place_above_modes(FitResult const& result, Target const& target, ObjectiveKind objective_kind,
                                       std::vector<Mode> const& modes, bool hierarchical) {
   constexpr double higher = 3;  // nats
-  if (modes.empty() || !result.higher_place.empty()) return result.higher_place;
-  if (objective_kind != ObjectiveKind::posterior || target.is_estimated() || hierarchical) return {};
-  double most = -std::numeric_limits<double>::infinity();
-  for (Mode const& mode : modes) most = std::max(most, mode.log_density + higher);
+  if (modes.empty() || hierarchical) return {};
+  if (!result.higher_place.empty()) return result.higher_place;
+  if (objective_kind != ObjectiveKind::posterior || target.is_estimated()) return {};
+  double most = highest(modes) + higher;
   std::vector<double> const* best = nullptr;
   for (Chain const& chain : result.draws.chains)
     for (std::size_t d = 0; d < chain.log_density.size(); ++d)
@@ -31,17 +42,18 @@ std::vector<double> place_above_modes(FitResult const& result, Target const& tar
   return place;
 }
 
-bool search_from_place(std::vector<double> const& place, Target const& target, ObjectiveKind objective_kind,
-                       Preparation& preparation, RunContext& context) {
+HigherSearch search_from_place(std::vector<double> const& place, Target const& target, ObjectiveKind objective_kind,
+                               Preparation& preparation, RunContext& context) {
   std::vector<Eigen::VectorXd> starts{Eigen::Map<Eigen::VectorXd const>(place.data(), std::ssize(place))};
   for (Mode const& mode : preparation.modes) starts.push_back(theta_of(mode));
+  double const before = highest(preparation.modes);
   SearchResult found = search_from(target, objective_kind, to_lanes(starts), context, "searching from a higher place");
-  if (found.interrupted) return false;
+  if (found.interrupted) return HigherSearch::interrupted;
   ++preparation.searched_again;
-  if (found.failure) return true;
+  if (found.failure || !(highest(found.modes) > before + rise)) return HigherSearch::nothing;
   preparation.modes = std::move(found.modes);
   replace_mode_findings(preparation.findings, found.findings);
-  return true;
+  return HigherSearch::found;
 }
 
 }  // namespace sysid

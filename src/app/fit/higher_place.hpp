@@ -17,9 +17,10 @@ namespace sysid {
 std::vector<double> place_above_modes(FitResult const& result, Target const& target, ObjectiveKind objective_kind,
                                       std::vector<Mode> const& modes, bool hierarchical);
 
-/// The modes that local searches from there and from the modes of the preparation end in, with their findings, take the place of
-/// those. False: interrupted.
-bool search_from_place(std::vector<double> const& place, Target const& target, ObjectiveKind objective_kind,
-                       Preparation& preparation, RunContext& context);
+enum class HigherSearch { interrupted, nothing, found };
+/// Local searches from there and from the modes of the preparation. Where one ends notably higher than all these, the modes found
+/// take their place, with their findings; `nothing`, which changes none, where the density is rough.
+HigherSearch search_from_place(std::vector<double> const& place, Target const& target, ObjectiveKind objective_kind,
+                               Preparation& preparation, RunContext& context);
 
 }  // namespace sysid

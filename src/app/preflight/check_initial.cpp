@@ -56,12 +56,12 @@ double noise_of(std::vector<double> const& samples) {
 /// A new parameter as the initial value of a state: "declare `parameter v_start [m/s] ~ normal(11.9, sd = 2)` and write
 /// `initial v = v_start`". first, width: of what a channel that is the state itself measures.
 std::string as_parameter(Source const& source, State const& state, bool itself, double first, double width) {
-  std::string name = state.name;
-  std::ranges::replace(name, '\'', '_');
+  std::string name;
+  for (char const each : state.name) name += each == '\'' ? std::string("_rate") : std::string(1, each);
   name += "_start";
   while (mentions(source, name)) name += "_2";
-  std::string const prior = itself ? fmt::format("normal({}, sd = {})", significant(first, 3), significant(width, 1))
-                                   : std::string("normal(MEAN, sd = SD)");
+  std::string const prior = itself && width > 0 ? fmt::format("normal({}, sd = {})", significant(first, 3), significant(width, 1))
+                                                : std::string("normal(MEAN, sd = SD)");
   return fmt::format("declare `parameter {} [{}] ~ {}` and write `initial {} = {}`", name, state.unit_text(), prior, state.name,
                      name);
 }

@@ -79,7 +79,9 @@ class Linearisation {
     }
     double const norm = power.norm();
     if (!std::isfinite(norm) || norm <= 0) return {};
-    return {elementary::exp(-(log_size + elementary::log(norm)) / exponent), largest_real_eigenvalue(jacobian) > 0};
+    constexpr double rounding = 1e-10;
+    return {elementary::exp(-(log_size + elementary::log(norm)) / exponent),
+            largest_real_eigenvalue(jacobian) > rounding * jacobian.norm()};
   }
 
  private:
@@ -151,12 +153,14 @@ Finding fast_finding(CheckedFile const& file, Model const& model, ExperimentData
       fmt::format("rows of {} are {} apart, but at every prior draw even the slowest motion of `{}` is over, or has made a "
                   "whole oscillation, before the next row: its rate is {} to {} rad/s",
                   data.experiment.name, in_seconds(step), model.name, significant(rates.least, 2), significant(rates.most, 2)),
-      fmt::format("correct the unit of {} in `{}`{}; or the units of the parameters that contain a time. If all are right, replace "
-                  "the equation of a motion that decays between two rows by its steady state, and sample one that lasts faster",
-                  block.time          ? "`time`"
-                  : block.step_stated ? "`step`"
-                                      : "`rate`",
-                  block.name, in_milliseconds(block, scale))};
+      fmt::format(
+          "correct the unit of {} in `{}`{}; or the units of the parameters that contain a time. If all are right, replace "
+          "the equation of a motion that decays between two rows by its steady state; where it oscillates through several rows, "
+          "sample faster",
+          block.time          ? "`time`"
+          : block.step_stated ? "`step`"
+                              : "`rate`",
+          block.name, in_milliseconds(block, scale))};
 }
 
 Finding apart_finding(CheckedFile const& file, Model const& model, ExperimentData const& data, Rates const& rates) {

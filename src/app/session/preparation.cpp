@@ -52,6 +52,7 @@ Preparation restore_preparation(nlohmann::json const& stored) {
   }
   preparation.moves = stored.at("moves").get<std::vector<double>>();
   preparation.searched_again = stored.at("searched_again").get<int>();
+  if (preparation.searched_again < 0) throw checkpoint::Mismatch("it has searched a negative number of times");
   return preparation;
 }
 

@@ -62,6 +62,7 @@ void replace_mode_findings(Findings& findings, Findings const& of_modes) {
 
 bool refine_solver(Session& session, Task const& task, MakeTarget const& make, ObjectiveKind objective_kind,
                    SolverSettings const& stated, Preparation& preparation, RunContext& context) {
+  std::erase_if(preparation.findings, [](Finding const& each) { return each.code == FindingCode::step_not_settled; });
   // Modes may need fewer steps than far corners of the prior.
   if (preparation.solver != stated)
     preparation.modes = refit(*make(stated), objective_kind, preparation.modes, context.seed, context.ledger, context.interrupted,

@@ -104,6 +104,17 @@ TEST_CASE("milliseconds that are read as seconds are named, by any solver, and i
   }
 }
 
+TEST_CASE("motions without damping do not count as growing by the last digit of an eigenvalue") {
+  std::string const chain =
+      "model rig {\n input x [N]\n state a [mm], b [mm], c [mm]\n initial a = 0, a' = 0, b = 0, b' = 0, c = 0, c' = 0\n"
+      " constant m [kg] = 1\n parameter k [N/mm] ~ log_uniform(1, 500)\n m*a'' = x - k*(a - b)\n m*b'' = k*(a - 2*b + c)\n"
+      " m*c'' = k*(b - 2*c)\n observe position ~ normal(a, sd = 0.01)\n}\n"
+      "data shaker { file \"record.csv\"; time t [s]; input x = force [N] hold zero_order; measure position = pos [mm] }\n"
+      "post = fit rig to shaker with map, solver = rk4, seed = 1\n";
+  CHECK(apart(check_vibration(chain)) != nullptr);
+  CHECK(apart(check_vibration(with(chain, "time t [s]", "time t [ms]"))) == nullptr);
+}
+
 TEST_CASE("a check ends where a solver with its own steps needs very many of them") {
   // The same with a slow state beside the fast motion, so that the rows show something: only the number of steps is left.
   std::string text = with(with(vibration, "t [ms]", "t [s]"), "solver = rk4", "solver = cvode");
