@@ -45,8 +45,8 @@ struct FitResult {
   std::vector<FrozenProposal> proposals;
   Settings settings;
   Findings findings;
-  /// On the sampler's coordinates, where the density of which `modes` are modes is higher than at any of them: the search has
-  /// missed one. Empty: no such place was met, or none was looked for.
+  /// A point, in the sampler's coordinates, whose density is higher than that of all `modes`: the search has missed one. Empty: no
+  /// such point was met, or none was looked for.
   std::vector<double> higher_place;
   bool search_told = false;  // `findings` hold those of the search, or what stands in their place
   bool interrupted = false;
