@@ -15,7 +15,7 @@ using namespace sysid;
 
 namespace {
 
-/// A decay at 7.3 Hz, 20 samples a second: of the prior of f a part in a thousand is near enough to be drawn to it.
+/// A decay at 7.3 Hz, 20 samples a second: of the prior of f only a small part leads a local search to it.
 std::string decay(std::uint64_t seed) {
   std::string table = "t,x\n";
   Stream stream({seed, Purpose::test, 0, 0});

@@ -1,3 +1,4 @@
+// The comparison with the modes, and the search that follows it.
 #include "app/fit/higher_place.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// By the Fourier transform of a power of two.
 #include "core/numeric/periodogram.hpp"
 
 #include <algorithm>
