@@ -137,7 +137,11 @@ class Columns {
     in_seconds(time);
     for (std::size_t i = 1; i < time.size() && !request_.independent_rows; ++i)
       if (!(time[i] > time[i - 1]))
-        throw UserError(data_errors::time_not_increasing(file_.place(i, column.column), time[i - 1], time[i], column.mention));
+        throw UserError(data_errors::time_not_increasing(file_.place(i, column.column), written[i - 1], written[i],
+                                                         file_.has_stamps() ? "s"
+                                                         : column.unit      ? column.unit->text
+                                                                            : std::string(),
+                                                         column.mention));
     if (whole && !request_.independent_rows && time.size() > 2 && unequal_step(time) > 0) {
       if (std::optional<std::vector<double>> equal = equal_times_before_rounding(written)) {
         time = std::move(*equal);

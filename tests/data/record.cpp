@@ -125,6 +125,15 @@ TEST_CASE("time must increase from row to row") {
   }
 }
 
+TEST_CASE("times that do not increase are shown as the file has them") {
+  TemporaryFile const file("t,y\n7.27,1\n4.82,1\n");
+  RecordRequest wanted = request(file.path(), {}, {"y"});
+  wanted.time->unit = unit_atom("h");
+  std::vector<Diagnostic> const found = errors(wanted);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].message.ends_with("4.82 h comes after 7.27 h"));
+}
+
 TEST_CASE("samples may be missing in measured columns only") {
   TemporaryFile const file("t,x,y\n0,1,\n1,2,5\n2,NA,NA\n");
   Record const record = loaded(request(file.path(), {}, {"y"}));
@@ -199,10 +208,12 @@ TEST_CASE("the message about a gap names how to fill a short one, and the longes
   TemporaryFile const brief(with_gap(100, 101)), longer(with_gap(60, 120));
   Record const record = loaded(request(brief.path(), {input("x", InputRule::zero_order)}, {"y"}));
   CHECK(refused_rows(record, 1, {1, 200}).help ==
-        "fill the gap in the file with numbers between its neighbours, which are 1 and 4, or use rows without it: `split part = rows 1..99`");
-  CHECK(refused_rows(record, 90, {90, 200}).help ==
-        "fill the gap in the file with numbers between its neighbours, which are 1 and 4, or use rows without it: `split part = rows "
-        "102..200` with `start = estimated(rows = 49)` in the task, or with `start = rest` if nothing moved just before row 102");
+        "fill the gap in the file with numbers between its neighbours, which are 1 and 4, or use rows without it: `split part = "
+        "rows 1..99`");
+  CHECK(
+      refused_rows(record, 90, {90, 200}).help ==
+      "fill the gap in the file with numbers between its neighbours, which are 1 and 4, or use rows without it: `split part = rows "
+      "102..200` with `start = estimated(rows = 49)` in the task, or with `start = rest` if nothing moved just before row 102");
   std::string const far =
       refused_rows(loaded(request(longer.path(), {input("x", InputRule::zero_order)}, {"y"})), 1, {1, 200}).help;
   CHECK(far.find("neighbours") == std::string::npos);

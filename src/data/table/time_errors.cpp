@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_stamp.hpp"
@@ -80,8 +81,10 @@ Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string cons
           : "YYYY, MM, DD stand for a date, hh, mm, ss, f for the time and the digits of its fraction, AP for AM or PM");
 }
 
-Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention) {
-  return error("E4014", mention, fmt::format("{}: time does not increase, {} comes after {}", place(cell), now, before),
+Diagnostic time_not_increasing(Cell const& cell, double before, double now, std::string const& unit, Mention mention) {
+  return error("E4014", mention,
+               fmt::format("{}: time does not increase, {}{} comes after {}{}", place(cell), now, unit_after_number(unit), before,
+                           unit_after_number(unit)),
                "sort the rows and remove repeated ones; if the file contains two runs, divide it into two files");
 }
 

@@ -22,7 +22,8 @@ Diagnostic zones_differ(Cell const& cell, std::string_view text, bool has_zone, 
 Diagnostic fractions_differ(Cell const& cell, std::string_view text, Mention mention);
 /// E4024. text: empty where it may not be shown.
 Diagnostic not_a_stamp(Cell const& cell, std::string_view text, std::string const& pattern, Mention mention);
-Diagnostic time_not_increasing(Cell const& cell, double before, double now, Mention mention);
+/// before, now: as the file has them. unit: of these numbers; empty where they have none.
+Diagnostic time_not_increasing(Cell const& cell, double before, double now, std::string const& unit, Mention mention);
 Diagnostic unequal_steps(int row, double step, double usual, Mention mention);
 
 }  // namespace sysid::data_errors
