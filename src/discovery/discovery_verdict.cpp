@@ -18,8 +18,10 @@ namespace {
 constexpr double decided_probability = 0.95;
 constexpr double probable = 0.8;  // between one half and this, one structure in five is wrong
 constexpr double majority = 0.5;
-constexpr double as_probable = 0;         // log odds of an equation with terms that the dictionary lacks
-constexpr double settled_residual = 1.5;  // of the noise
+constexpr double as_probable = 0;  // log odds of an equation with terms that the dictionary lacks
+constexpr double as_good = 0;      // its log likelihood, coefficients counted, against that of the dictionary's equation
+constexpr double far_more_probable = 10, nearly_as_good = -3;  // of a much simpler one, that the record hardly speaks against
+constexpr double settled_residual = 1.5;                       // of the noise
 constexpr double few_noises = 3;
 constexpr double shared_probability = 0.95;
 constexpr std::size_t most_named = 4;
@@ -40,13 +42,24 @@ std::vector<ValidatedStructure const*> sharing(ValidationReport const& validatio
   return leading;
 }
 
-bool other_terms_are_as_probable(ValidationReport const& validation) {
-  return !validation.outside.empty() && validation.outside_log_odds > as_probable;
+bool is_rival(OutsideEquation const& outside) {
+  return (outside.log_odds > as_probable && outside.criterion() > as_good) ||
+         (outside.log_odds > far_more_probable && outside.criterion() > nearly_as_good);
+}
+
+/// "its log likelihood is 2.5 lower, with 1 coefficient fewer"
+std::string likelihood_clause(OutsideEquation const& outside) {
+  int const more = outside.coefficients;
+  return fmt::format("its log likelihood is {} {}, with {}", significant(std::abs(outside.log_likelihood), 2),
+                     outside.log_likelihood < 0 ? "lower" : "higher",
+                     more == 0 ? "as many coefficients"
+                               : fmt::format("{} {} {}", std::abs(more), std::abs(more) == 1 ? "coefficient" : "coefficients",
+                                             more < 0 ? "fewer" : "more"));
 }
 
 std::string form_clause(ValidationReport const& validation) {
   double const probability = validation.structures.front().probability;
-  if (probability >= probable && other_terms_are_as_probable(validation))
+  if (probability >= probable && validation.outside && is_rival(*validation.outside))
     return fmt::format("the form is decided among the terms of the dictionary (probability {}), but not against other terms",
                        probability_text(probability));
   return fmt::format("the form is {} (probability {})",
@@ -81,8 +94,9 @@ std::string elsewhere_clause(ValidationReport const& validation) {
     for (ValidatedChannel const& each : best.channels)
       if (each.free_run && each.residual > 0) noises = std::max(noises, *each.free_run / each.residual);
     return noises > 0 && noises <= few_noises
-               ? fmt::format("the equation holds on {} (rms error of a free run: {} times the noise)", validation.held_out,
-                             significant(noises, 2))
+               ? fmt::format("the equation holds on {} (rms error of a free run: {} times {})", validation.held_out,
+                             significant(noises, 2),
+                             best.residual_over_noise <= settled_residual ? "the noise" : "the residual of the fitted rows")
                : fmt::format("the equation holds on {} (rms error of a free run: {} % of the sd)", validation.held_out, size);
   }
   if (run == FreeRun::chaotic)
@@ -136,14 +150,22 @@ Findings undecided_form(ValidationReport const& validation) {
 }
 
 Findings other_terms(ValidationReport const& validation) {
-  if (!checked(validation) || !other_terms_are_as_probable(validation)) return {};
+  if (!checked(validation) || !validation.outside || !(validation.outside->log_odds > as_probable)) return {};
+  OutsideEquation const& outside = *validation.outside;
+  bool const rival = is_rival(outside);
   return {{FindingCode::other_terms_fit,
-           Severity::warning,
-           {validation.outside},
-           fmt::format("an equation with terms outside the dictionary describes the record as well or better: `{}`; "
-                       "the terms that were found may only imitate it",
-                       validation.outside),
-           "if such terms make sense, add them to the dictionary and run again; a record of another amplitude decides"}};
+           rival ? Severity::warning : Severity::note,
+           {outside.text},
+           rival
+               ? fmt::format(
+                     "an equation with terms outside the dictionary describes the record about as well or better, its coefficients "
+                     "counted: `{}` ({}); the terms that were found may only imitate it",
+                     outside.text, likelihood_clause(outside))
+               : fmt::format("an equation with terms outside the dictionary is as probable by the prior of terms and coefficients, "
+                             "but the record does not favour it: `{}` ({})",
+                             outside.text, likelihood_clause(outside)),
+           rival ? "if such terms make sense, add them to the dictionary and run again; a record of another amplitude decides"
+                 : "nothing, unless such terms make sense: then add them to the dictionary and run again"}};
 }
 
 Findings merged(Findings const& findings) {

@@ -19,8 +19,8 @@ void temper_by_form(ValidationReport const& validation, std::string const& targe
 /// That the record does not decide the form; nothing where it does, or where no structure could be checked.
 Findings undecided_form(ValidationReport const& validation);
 
-/// That an equation with terms which the dictionary lacks is as probable; nothing where none is, or where no structure could be
-/// checked.
+/// That an equation with terms which the dictionary lacks is as probable; a note where it describes the record less well. Nothing
+/// where none is, or where no structure could be checked.
 Findings other_terms(ValidationReport const& validation);
 
 /// Findings of one code and severity as one, in the place of the first.

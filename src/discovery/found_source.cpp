@@ -88,4 +88,19 @@ std::string FoundSource::text(std::vector<FoundStructure> const& structures) con
   return *laid_out;
 }
 
+std::string with_verdict(std::string const& source, std::string const& verdict, Findings const& findings) {
+  std::vector<std::string> lines = {"verdict of the discovery: " + verdict};
+  for (Finding const& each : findings)
+    if (each.severity != Severity::note)
+      lines.push_back(
+          fmt::format("{}[{}]: {}", each.severity == Severity::error ? "error" : "warning", word(each.code), each.message));
+  std::string comments = "#\n";
+  for (std::string& each : lines) {
+    std::replace(each.begin(), each.end(), '\n', ' ');
+    comments += "# " + each + "\n";
+  }
+  std::size_t const head = source.find("\n\n");
+  return head == std::string::npos ? comments + source : source.substr(0, head + 1) + comments + source.substr(head + 1);
+}
+
 }  // namespace sysid

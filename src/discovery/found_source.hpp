@@ -6,6 +6,7 @@
 
 #include "discovery/found_structure.hpp"
 #include "experiment/experiments.hpp"
+#include "result/finding.hpp"
 #include "simulate/simulator.hpp"
 
 namespace sysid {
@@ -29,5 +30,8 @@ struct FoundSource {
   /// fitted, several become a set of candidates with a selection.
   std::string text(std::vector<FoundStructure> const& structures) const;
 };
+
+/// The source with what the discovery came to as comments above its first model: the verdict, then each finding that is no note.
+std::string with_verdict(std::string const& source, std::string const& verdict, Findings const& findings);
 
 }  // namespace sysid

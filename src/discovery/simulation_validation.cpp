@@ -25,7 +25,6 @@ namespace sysid {
 namespace {
 
 constexpr double near_floor = 3;
-constexpr double by_differences = 0.9;  // of what differences have
 constexpr int draws = 50, draws_one_by_one = 10;
 constexpr int origins = 200, origins_one_by_one = 20;  // of forecasts, in each experiment
 
@@ -82,6 +81,7 @@ class Validator {
       check_stability();
     }
     if (interrupted_()) return interrupted();
+    if (!is_validated(order_.front())) lead_with_regression();
     Validation out;
     report(out);
     if (any) out.findings = validation_findings(out.report);
@@ -132,6 +132,15 @@ class Validator {
     for (std::size_t const m : order_)
       if (is_validated(m)) sum += scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()));
     for (std::size_t const m : order_) scored_[m].probability /= sum > 0 ? sum : 1;
+  }
+
+  // What the regression lists is in its order, with its choice first; the others behind it.
+  void lead_with_regression() {
+    auto const place = [&](std::size_t m) {
+      int const of_regression = structures_[m].of_regression;
+      return of_regression > 0 ? of_regression : std::numeric_limits<int>::max();
+    };
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
   }
 
   std::vector<Experiment> views(std::size_t m, std::vector<Experiment> const& experiments) const {
@@ -218,22 +227,19 @@ class Validator {
 
   bool is_stated(std::size_t channel) const { return !source_.what.noise.empty() && source_.what.noise[channel].has_value(); }
 
-  /// sd of a channel's noise as the regression took it; of noise that grows, as samples have it that are divided by its shape. A
-  /// residual near what digits, inputs and integrator show is theirs.
+  /// sd of a channel's noise as the regression took it; of noise that grows, as the same estimate has it with that law. A residual
+  /// near what digits, inputs and integrator show is theirs.
   double noise_of(std::size_t channel, double residual) const {
     double noise = source_.discovery.noise_sd[channel];
     if (!searched_.growth.empty() && searched_.growth[channel] > 0 && !is_stated(channel)) {
-      double plain = 0, shaped = 0, rows = 0;
+      std::vector<regression::ChannelSamples> alike, growing;
       for (std::size_t e = 0; e < rows_.records.size(); ++e) {
-        std::vector<double> samples = rows_.records[e].measured[channel];
-        auto const count = static_cast<double>(samples.size());
-        rows += count;
-        plain += count * std::pow(regression::estimated_noise(samples), 2);
-        for (std::size_t i = 0; i < samples.size(); ++i) samples[i] /= searched_.noise.relative[e][channel][i];
-        shaped += count * std::pow(regression::estimated_noise(samples), 2);
+        alike.push_back({.samples = rows_.records[e].measured[channel], .equal_steps = !unequal_step(rows_.records[e].time)});
+        growing.push_back(alike.back());
+        growing.back().relative = searched_.noise.relative[e][channel];
       }
-      // Where motion is fast, both are motion, and the regression has the noise from the spectrum.
-      if (plain > 0 && noise > by_differences * std::sqrt(plain / rows)) noise *= std::sqrt(shaped / plain);
+      double const plain = regression::estimated_noise(alike);
+      if (plain > 0) noise *= regression::estimated_noise(growing) / plain;
     }
     bool const near = !searched_.noise.floor.empty() && residual < near_floor * searched_.noise.floor[channel];
     return near ? std::max(noise, searched_.noise.floor[channel]) : noise;
@@ -329,7 +335,6 @@ class Validator {
     }
     validation.whole = fits_->whole();
     validation.outside = searched_.outside;
-    validation.outside_log_odds = searched_.outside_log_odds;
     validation.step = rows_.step;
     validation.horizon_rows = rows_.horizon;
     validation.horizon = rows_.horizon * rows_.step;

@@ -19,9 +19,8 @@ struct SearchedRecord {
   NoiseShape noise = {};            // with the dictionary's channels
   std::vector<double> growth = {};  // per channel, SI: ValidatedChannel::growth; empty: 0
   int substeps = 1;
-  double others = 0;            // weight of all structures that are not validated, that of the best taken as 1
-  std::string outside = {};     // "v': v, exp(-r)": the most probable equation with terms that the dictionary lacks; empty: none
-  double outside_log_odds = 0;  // of it, against the leading structure
+  double others = 0;  // weight of all structures that are not validated, that of the best taken as 1
+  std::optional<OutsideEquation> outside = {};
 };
 
 struct Validation {

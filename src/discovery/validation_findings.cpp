@@ -144,7 +144,7 @@ Findings validation_findings(ValidationReport const& validation) {
   auto const regression = std::find_if(validation.structures.begin(), validation.structures.end(),
                                        [](ValidatedStructure const& each) { return each.of_regression == 1; });
   // With parameters inside terms the regression's choice may have been replaced by the same terms from another start.
-  if (regression != validation.structures.begin() && regression != validation.structures.end())
+  if (best.failure.empty() && regression != validation.structures.begin() && regression != validation.structures.end())
     add(FindingCode::simulation_prefers, is_settled(validation) ? Severity::note : Severity::warning,
         {best.terms, regression->terms},
         fmt::format("simulation and regression rank different terms first: simulation `{}`; regression `{}`, {}", best.terms,

@@ -1,7 +1,9 @@
-// Errors over channels.
+// Errors over channels; Schwarz's criterion.
 #include "result/simulation_validation.hpp"
 
 #include <algorithm>
+
+#include "core/numeric/elementary.hpp"
 
 namespace sysid {
 
@@ -11,5 +13,7 @@ std::optional<double> ValidatedStructure::percent(std::optional<double> Validate
     if (each.*error && each.sd > 0) worst = std::max(worst.value_or(0), 100 * *(each.*error) / each.sd);
   return worst;
 }
+
+double OutsideEquation::criterion() const { return log_likelihood - coefficients / 2.0 * elementary::log(samples); }
 
 }  // namespace sysid

@@ -44,6 +44,18 @@ struct ValidatedStructure {
   std::optional<double> percent(std::optional<double> ValidatedChannel::*error) const;
 };
 
+/// The most probable equation with terms that the dictionary lacks, against the most probable one without.
+struct OutsideEquation {
+  std::string text;           // "v': v, exp(-r)"
+  double log_odds = 0;        // with the prior of terms and coefficients
+  double log_likelihood = 0;  // of it, less that of the one without
+  int coefficients = 0;       // more than the one without has; negative: fewer
+  double samples = 0;         // of the record
+
+  /// Of the log likelihood what is left with its coefficients counted: log likelihood - coefficients/2 log(samples), Schwarz 1978.
+  double criterion() const;
+};
+
 struct ValidationReport {
   std::vector<ValidatedStructure> structures;  // best first
   int segments = 0;                            // of which the refit starts each afresh
@@ -55,8 +67,7 @@ struct ValidationReport {
   std::string held_out;        // "bench.test", "the last fifth of bench"; empty: nothing was scored
   bool held_out_seen = false;  // the choice of structures saw these rows
   std::string solver;
-  std::string outside;          // "v': v, exp(-r)": the most probable equation with terms that the dictionary lacks; empty: none
-  double outside_log_odds = 0;  // of it, against the most probable one without
+  std::optional<OutsideEquation> outside;
 };
 
 }  // namespace sysid

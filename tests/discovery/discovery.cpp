@@ -51,6 +51,7 @@ TEST_CASE("Duffing's equation is found from a noisy displacement, and its source
   CHECK(found.result.out.find("verdict: x = ") != std::string::npos);
 
   std::string const text = read_file(found.source());
+  CHECK(text.find("# verdict of the discovery: x = ") < text.find("model found"));
   std::filesystem::path const recorded = std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/found/duffing.sysid";
   if (std::getenv("SYSID_BLESS") != nullptr) write_file(recorded, without_place(text));
   CHECK(without_place(text) == read_file(recorded));

@@ -99,6 +99,32 @@ TEST_CASE("a form that is not decided is one warning with the structures that sh
   CHECK(undecided.front().help.find("from first, second") != std::string::npos);
 }
 
+TEST_CASE("other terms are a warning where the record is described as well by them, with their coefficients counted") {
+  ValidationReport validation = report(0.98);
+  CHECK(other_terms(validation).empty());
+  // log odds, log likelihood, coefficients more; 300 samples: a coefficient costs 2.85
+  validation.outside = OutsideEquation{"x': x, exp(-x)", 1.5, 0.7, 0, 300};
+  Findings const rival = other_terms(validation);
+  REQUIRE(rival.size() == 1);
+  CHECK(rival.front().severity == Severity::warning);
+  CHECK(rival.front().names == std::vector<std::string>{"x': x, exp(-x)"});
+  CHECK(rival.front().message.find("(its log likelihood is 0.70 higher, with as many coefficients)") != std::string::npos);
+  CHECK(verdict_clauses(validation).find("but not against other terms") != std::string::npos);
+  validation.outside->log_likelihood = -2.5;  // the prior favours it, the record does not
+  Findings const usual = other_terms(validation);
+  REQUIRE(usual.size() == 1);
+  CHECK(usual.front().severity == Severity::note);
+  CHECK(verdict_clauses(validation).starts_with("the form is decided (probability 0.980)"));
+  validation.outside->coefficients = -1;
+  CHECK(other_terms(validation).front().severity == Severity::warning);
+  CHECK(other_terms(validation).front().message.find("2.5 lower, with 1 coefficient fewer") != std::string::npos);
+  validation.outside->coefficients = 2;
+  validation.outside->log_likelihood = 5;
+  CHECK(other_terms(validation).front().severity == Severity::note);
+  validation.outside->log_odds = -0.1;
+  CHECK(other_terms(validation).empty());
+}
+
 TEST_CASE("what the regression cannot tell apart is a note where simulation compares the structures") {
   Finding const alike = finding(FindingCode::terms_interchangeable, {"x^2", "x^3"});
   CHECK(tempered(report(0.99), alike) == Severity::note);
@@ -146,6 +172,10 @@ TEST_CASE("another first structure of the regression is a note where simulation 
     REQUIRE(prefers != findings.end());
     CHECK(prefers->severity == severity);
   }
+  for (ValidatedStructure& each : validation.structures) each.failure = "its fit does not converge";
+  Findings const failed = validation_findings(validation);  // nothing was simulated, so simulation prefers nothing
+  REQUIRE(failed.size() == 1);
+  CHECK(failed.front().code == FindingCode::not_refitted);
 }
 
 TEST_CASE("a coefficient less than two sds from zero is called idle, but one of the target is not") {

@@ -62,6 +62,27 @@ TEST_CASE("the penalty for a noise leaves a residual of that noise") {
   CHECK(std::sqrt(squares) == doctest::Approx(0.02).epsilon(1e-6));
 }
 
+TEST_CASE("noise that grows with a motion that dies away is estimated by its law, which the taper of the spectrum would miss") {
+  constexpr int rows = 600;
+  std::vector<double> samples, dying, relative;
+  Stream noise({7, Purpose::test, 0, 0});
+  for (int i = 0; i < rows; ++i) {
+    dying.push_back(std::exp(-0.01 * i) * std::sin(2 * M_PI * i / 90));
+    relative.push_back(std::hypot(dying.back(), 0.05));
+  }
+  double mean = 0;
+  for (double const each : relative) mean += each * each / rows;
+  for (double& each : relative) each /= std::sqrt(mean);
+  for (std::size_t i = 0; i < rows; ++i) samples.push_back(dying[i] + 0.01 * relative[i] * noise.normal());
+  std::vector<ChannelSamples> const alike = {{samples}}, growing = {{samples, relative}};
+  CHECK(estimated_noise(growing) == doctest::Approx(0.01).epsilon(0.15));
+  CHECK(estimated_noise(alike) < 0.006);
+  // Of noise that is alike in all samples both are the same.
+  std::vector<double> const ones(rows, 1.0);
+  std::vector<ChannelSamples> const stated = {{samples, ones}};
+  CHECK(estimated_noise(stated) == doctest::Approx(estimated_noise(alike)).epsilon(1e-12));
+}
+
 TEST_CASE("noise is estimated from differences, the fastest period from the spectrum") {
   Stream noise({6, Purpose::test, 0, 0});
   std::vector<double> samples;

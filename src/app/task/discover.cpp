@@ -250,6 +250,7 @@ class Discover {
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
     report.timing.emplace_back("wall_seconds", wall.count());
     report.verdict = headline(discovery, report.equations, report.findings);
+    if (!discovery.source.empty()) discovery.source = with_verdict(discovery.source, report.verdict, report.findings);
     report.discovery = std::move(discovery);
     keep_result(session_, task_, report);
     if (!report.discovery->source.empty())

@@ -135,7 +135,7 @@ Eigen::MatrixXd LinearisedMotion::start_moves(WeighedTerms const& terms) const {
 }
 
 WeighedTerms LinearisedMotion::weigh(Terms terms) const {
-  WeighedTerms out{std::move(terms), never, {}};
+  WeighedTerms out{std::move(terms), never, never, {}};
   auto const p = static_cast<Eigen::Index>(out.terms.size());
   Eigen::MatrixXd chosen(columns_.rows(), p + 1);
   if (chosen.rows() <= p) return out;
@@ -149,7 +149,8 @@ WeighedTerms LinearisedMotion::weigh(Terms terms) const {
   Eigen::VectorXd const scaled = solve_upper(triangle.topLeftCorner(p, p), triangle.topRightCorner(p, 1));
   out.coefficients.resize(p);
   for (Eigen::Index i = 0; i < p; ++i) out.coefficients(i) = scaled(i) / length_(out.terms[static_cast<std::size_t>(i)]);
-  out.score = -n / 2 * elementary::log(variance) - squares / (2 * variance) +
+  out.log_likelihood = -n / 2 * elementary::log(variance) - squares / (2 * variance);
+  out.score = out.log_likelihood +
               log_coefficient_weight(scaled, triangle.topLeftCorner(p, p) / std::sqrt(variance), settings_.signal) +
               log_prior(out.terms);
   return out;

@@ -15,6 +15,7 @@ using Terms = std::vector<int>;  // rising
 struct WeighedTerms {
   Terms terms;
   double score = 0;              // log evidence and prior, up to a constant of the linearisation
+  double log_likelihood = 0;     // up to the same constant for all sets of terms
   Eigen::VectorXd coefficients;  // of the terms
 };
 

@@ -160,16 +160,17 @@ std::vector<double> shared_odds(WholeDictionary const& dictionary, std::size_t e
 
 }  // namespace
 
-std::optional<OutsideForm> outside_form(WholeDictionary const& dictionary, FittedTerms const& lead, FitConditions const& conditions,
-                                        LinearisedParts const& parts, std::vector<double> const& noise_sd,
-                                        std::vector<Terms> const& near, std::function<bool()> const& interrupted) {
+std::optional<OutsideEquation> outside_form(WholeDictionary const& dictionary, FittedTerms const& lead,
+                                            FitConditions const& conditions, LinearisedParts const& parts,
+                                            std::vector<double> const& noise_sd, std::vector<Terms> const& near,
+                                            std::function<bool()> const& interrupted) {
   auto const steps = sample_steps(dictionary, lead, conditions, false);
   if (!steps) return std::nullopt;
   StateValues const states = values_of(dictionary, *steps);
   Drive const drive(dictionary, conditions, *steps, noise_sd);
   std::vector<DictionaryEquation> const& equations = dictionary.source().dictionary.equations;
   std::vector<WholeDictionary::Column> const& own = dictionary.columns();
-  std::optional<OutsideForm> best;
+  std::optional<OutsideEquation> best;
   for (std::size_t e = 0; e < equations.size() && !interrupted(); ++e) {
     int const driven = driven_state(dictionary, e);
     if (driven < 0) continue;
@@ -197,12 +198,16 @@ std::optional<OutsideForm> outside_form(WholeDictionary const& dictionary, Fitte
     if (outside == nullptr || inside == nullptr) continue;
     double const log_odds = outside->score - inside->score;
     if (best && best->log_odds >= log_odds) continue;
-    OutsideForm form{equations[e].text, "", log_odds};
+    OutsideEquation form{.text = "",
+                         .log_odds = log_odds,
+                         .log_likelihood = outside->log_likelihood - inside->log_likelihood,
+                         .coefficients = static_cast<int>(std::ssize(outside->terms) - std::ssize(inside->terms)),
+                         .samples = parts.settings.samples};
     for (int const j : outside->terms) {
       auto const column = static_cast<std::size_t>(j);
       if (!is_outside(j) && own[column].equation != e) continue;
-      form.terms += (form.terms.empty() ? "" : ", ") +
-                    (is_outside(j) ? functions[column - own.size()].text : equations[e].terms[own[column].term].text);
+      form.text += (form.text.empty() ? equations[e].text + ": " : ", ") +
+                   (is_outside(j) ? functions[column - own.size()].text : equations[e].terms[own[column].term].text);
     }
     best = std::move(form);
   }

@@ -57,7 +57,7 @@ class Searcher {
     return all;
   }
   /// Whether terms that the dictionary lacks describe the record as well as the leading structure.
-  std::optional<OutsideForm> outside() const {
+  std::optional<OutsideEquation> outside() const {
     if (interrupted_()) return std::nullopt;
     std::vector<double> noise;
     LinearisedParts const parts = linearised(noise);
@@ -237,10 +237,7 @@ StructureSearch search_structures(FoundSource const& source, std::vector<FoundSt
   if (!searcher.begin(listed)) return {};
   searcher.run();
   StructureSearch out = searched_structures(source, dictionary, searcher.all(), listed, most);
-  if (auto outside = searcher.outside()) {
-    out.record.outside = outside->equation + ": " + outside->terms;
-    out.record.outside_log_odds = outside->log_odds;
-  }
+  out.record.outside = searcher.outside();
   describe_record(dictionary, searcher.conditions(), searcher.limits(), source.dictionary.measured.channels.size(), out.record);
   return out;
 }

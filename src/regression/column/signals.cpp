@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numeric/periodogram.hpp"
 #include "regression/column/spectrum.hpp"
 
 namespace sysid::regression {
@@ -52,13 +53,14 @@ struct DifferenceSum {
   double squares = 0;
   std::size_t count = 0;
 
-  void add(std::span<double const> samples) {
+  void add(std::span<double const> samples, std::span<double const> relative = {}) {
     constexpr double weights[] = {1, -6, 15, -20, 15, -6, 1};
     for (std::size_t i = 0; i + 7 <= samples.size(); ++i) {
-      double difference = 0;
+      double difference = 0, variance = relative.empty() ? 924 : 0;
       for (std::size_t k = 0; k < 7; ++k) difference += weights[k] * samples[i + k];
+      for (std::size_t k = 0; k < 7 && !relative.empty(); ++k) variance += std::pow(weights[k] * relative[i + k], 2);
       if (!std::isfinite(difference)) continue;
-      squares += difference * difference;
+      squares += difference * difference * (924 / variance);
       ++count;
     }
   }
@@ -85,8 +87,9 @@ double fastest_period(std::span<double const> samples, double step) {
 
 namespace {
 
-/// sd of white noise as the quietest band of the spectrum has it; infinite where there are too few samples for bands.
-double noise_of_quietest_band(std::span<double const> samples) {
+/// sd of white noise, where it is 1 relative to others, as the quietest band of the spectrum has it; infinite where there are too
+/// few samples for bands.
+double noise_of_quietest_band(std::span<double const> samples, std::span<double const> relative) {
   constexpr std::size_t most_bands = 16, least_bands = 4, least_of_band = 64;  // a band's power is known to a sixth
   Spectrum const of = spectrum_of(samples, 1);
   std::size_t const bins = of.power.empty() ? 0 : of.power.size() - 1, bands = std::min(most_bands, bins / least_of_band);
@@ -98,30 +101,43 @@ double noise_of_quietest_band(std::span<double const> samples) {
     for (std::size_t k = 0; k < width; ++k) mean += of.power[1 + b * width + k] / static_cast<double>(width);
     least = std::min(least, mean);
   }
-  return std::sqrt(least * static_cast<double>(of.size) / 2);
+  double const sd = std::sqrt(least * static_cast<double>(of.size) / 2);
+  if (relative.empty()) return sd;
+  // The taper weights the middle of the record: of a motion that dies away it does not see the noise of the large samples.
+  std::vector<double> weighted(relative.begin(), relative.end());
+  taper(weighted);
+  double squares = 0;
+  for (double const each : weighted) squares += each * each;
+  return sd / std::sqrt(squares / (1.5 * static_cast<double>(weighted.size())));
 }
 
 }  // namespace
 
+double estimated_noise(std::span<ChannelSamples const> records) {
+  DifferenceSum differences;
+  double quietest = std::numeric_limits<double>::infinity();
+  for (ChannelSamples const& each : records) {
+    differences.add(each.samples, each.relative);
+    if (each.equal_steps) quietest = std::min(quietest, noise_of_quietest_band(each.samples, each.relative));
+  }
+  // Differences take fast motion for noise. The least of noisy estimates is low itself, so it must be far below to count.
+  return quietest < differences.sd() / 2 ? quietest : differences.sd();
+}
+
 std::vector<double> noise_of_channels(Dictionary const& dictionary, std::span<Experiment const> experiments) {
   std::vector<double> sds;
   for (std::size_t c = 0; c < dictionary.channels.size(); ++c) {
-    DifferenceSum differences;
+    std::vector<ChannelSamples> records;
     double squares = 0;
     std::size_t count = 0;
     for (Experiment const& experiment : experiments) {
       std::vector<double> const& samples = experiment.measured[c];
-      differences.add(samples);
+      records.push_back({samples});
       for (double const value : samples)
         if (std::isfinite(value)) squares += value * value, ++count;
     }
     double const rms = count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
-    double estimated = differences.sd();
-    double quietest = std::numeric_limits<double>::infinity();
-    for (Experiment const& experiment : experiments) quietest = std::min(quietest, noise_of_quietest_band(experiment.measured[c]));
-    // Differences take fast motion for noise. The least of noisy estimates is low itself, so it must be far below to count.
-    if (quietest < estimated / 2) estimated = quietest;
-    double const sd = dictionary.channels[c].noise_sd.value_or(estimated);
+    double const sd = dictionary.channels[c].noise_sd.value_or(estimated_noise(records));
     double const least = std::max(1e-9 * rms, std::numeric_limits<double>::min());
     sds.push_back(std::max(sd, least));
   }
@@ -140,7 +156,7 @@ std::optional<double> nothing_but_noise(std::span<Experiment const> experiments,
   for (Experiment const& experiment : experiments) {
     std::vector<double> const& samples = experiment.measured[channel];
     differences.add(samples);
-    quietest = std::min(quietest, noise_of_quietest_band(samples));
+    quietest = std::min(quietest, noise_of_quietest_band(samples, {}));
     double sum = 0, squared = 0;
     std::size_t finite = 0;
     for (double const value : samples)

@@ -29,6 +29,16 @@ std::optional<double> uniform_step(Experiment const& experiment);
 /// weights is 924); 0 when there is no such run. A signal that moves from sample to sample counts as noise.
 double estimated_noise(std::span<double const> samples);
 
+/// Samples of a channel in one record.
+struct ChannelSamples {
+  std::span<double const> samples;
+  std::span<double const> relative = {};  // sd of the noise of each sample, up to a factor; empty: 1
+  bool equal_steps = true;                // else only differences are looked at
+};
+/// sd of the white noise of a channel where its relative noise is 1: from sixth differences, or from the quietest band of the
+/// spectrum, where differences take fast motion for noise.
+double estimated_noise(std::span<ChannelSamples const> records);
+
 /// The period [s] below which 95 % of the power about the mean lies (Hann taper; missing samples bridged by straight lines);
 /// infinite for a constant.
 double fastest_period(std::span<double const> samples, double step);

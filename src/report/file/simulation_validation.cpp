@@ -192,6 +192,12 @@ nlohmann::ordered_json validation_json(ValidationReport const& validation) {
                       {"channels", std::move(channels)}});
     out["structures"].push_back(std::move(structure));
   }
+  if (auto const& outside = validation.outside)
+    out["other_terms"] = {{"equation", outside->text},
+                          {"log_odds", outside->log_odds},
+                          {"log_likelihood", outside->log_likelihood},
+                          {"coefficients", outside->coefficients},
+                          {"criterion", outside->criterion()}};
   return out;
 }
 
