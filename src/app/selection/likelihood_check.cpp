@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/numeric/elementary.hpp"
+#include "core/text/number.hpp"
 
 namespace sysid {
 namespace {
@@ -35,6 +36,25 @@ std::vector<Mode> only_point(ModelTarget const& target, Ledger& ledger) {
   mode.log_density = mode.log_mass = value;
   mode.share = mode.hits = 1;
   return {mode};
+}
+
+/// A threshold near the noise floor weighs models by how much of their prior lies within it: no end of the run makes these the
+/// probabilities by the likelihood, and below the floor models have died that particles and populations do not bring back.
+std::string cure(SelectionResult const& result, std::optional<double> floor) {
+  std::string const by_likelihood = "use the probabilities by the likelihood if its noise model is right";
+  if (!floor || !std::isfinite(result.threshold) || result.threshold > far_from_floor * *floor)
+    return fmt::format("let the run stop later (a smaller `relative_change`, or a longer `schedule`), use more `particles`, or {}",
+                       by_likelihood);
+  std::string const sampled = fmt::format("{}; `reversible_jump` samples them", by_likelihood);
+  if (result.threshold * far_from_floor >= *floor)
+    return fmt::format(
+        "{}: the run has come to the noise floor {}, and neither a later end nor more `particles` makes the two agree", sampled,
+        significant(*floor, 4));
+  return fmt::format(
+      "{}: the threshold {} is below the noise floor {}, so that the particles follow this noise, and simpler models that died "
+      "cannot come back with a later end or more `particles` (`target = {}` ends the run at the floor and keeps more of them, but "
+      "a threshold still weighs them otherwise than the likelihood)",
+      sampled, significant(result.threshold, 4), significant(*floor, 4), significant(*floor, 4));
 }
 
 }  // namespace
@@ -69,7 +89,8 @@ double log_evidence(std::vector<Mode> const& modes) {
   return highest + elementary::log(sum);
 }
 
-Findings compare_probabilities(SelectionResult const& result, std::vector<std::optional<double>> const& by_likelihood) {
+Findings compare_probabilities(SelectionResult const& result, std::vector<std::optional<double>> const& by_likelihood,
+                               std::optional<double> floor) {
   struct Difference {
     std::size_t model;
     double size;  // of the tolerable one
@@ -92,9 +113,7 @@ Findings compare_probabilities(SelectionResult const& result, std::vector<std::o
                         model.name, model.probability, *by_likelihood[difference.model]);
     if (model.died_in > 0) each += fmt::format(" and died in population {}", model.died_in);
   }
-  return {{FindingCode::probabilities_disagree, Severity::warning, std::move(names), each,
-           "let the run stop later (a smaller `relative_change`, or a longer `schedule`), use more `particles`, or use the "
-           "probabilities by the likelihood if its noise model is right"}};
+  return {{FindingCode::probabilities_disagree, Severity::warning, std::move(names), each, cure(result, floor)}};
 }
 
 }  // namespace sysid

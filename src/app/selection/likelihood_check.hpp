@@ -24,8 +24,12 @@ double log_evidence(std::vector<Mode> const& modes);
 /// Where a model's probability by weights and by likelihood differ by more than this, it is said; of a model that died, when the
 /// likelihood leaves it more than that.
 constexpr double tolerable_difference = 0.2, tolerable_loss = 0.02;
+/// A threshold further above the noise floor than this leaves more than the noise does; one that is as far below it leaves only
+/// what follows this noise.
+constexpr double far_from_floor = 1.15;
 /// One finding that names each such model, the largest difference first. by_likelihood: per model; nothing where no climb ended at
-/// a finite likelihood.
-Findings compare_probabilities(SelectionResult const& result, std::vector<std::optional<double>> const& by_likelihood);
+/// a finite likelihood. floor: of the distance, where it is known: what to do depends on which side of it the run has ended.
+Findings compare_probabilities(SelectionResult const& result, std::vector<std::optional<double>> const& by_likelihood,
+                               std::optional<double> floor = std::nullopt);
 
 }  // namespace sysid

@@ -191,8 +191,9 @@ class Select {
     }
     bool const checked = !interrupted && what_.settings.flag("cross_check"),
                refined = !interrupted && what_.settings.flag("polish");
+    if (!interrupted) add_noise_floor(session_, candidates_, target, posteriors, selection);
     if (checked) check_by_likelihood(leading, posteriors, selection, report);
-    if (!interrupted) check_simulations(target, leading, posteriors, selection, report);
+    if (!interrupted) check_simulations(leading, posteriors, selection, report);
     if (refined) {
       interrupted = !refine(posteriors, selection, report);
     }
@@ -234,10 +235,10 @@ class Select {
     add(check.findings, report);
   }
 
-  void check_simulations(ModelSelectionTarget const& target, Candidate const& leading,
-                         std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection, Report& report) {
+  void check_simulations(Candidate const& leading, std::vector<CandidatePosterior> const& posteriors,
+                         SelectionReport const& selection, Report& report) {
     add(solver_findings(candidates_, posteriors), report);
-    add(add_noise_floor(session_, candidates_, target, posteriors, selection), report);
+    add(check_threshold(selection), report);
     if (leading.compiled->model.integrated() && !leading.fit->solver.row().exact && std::isfinite(selection.result.threshold))
       add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver), report);
   }

@@ -18,9 +18,6 @@
 namespace sysid {
 namespace {
 
-/// A threshold further above the noise floor than this leaves more than the noise does.
-constexpr double far_above_floor = 1.15;
-
 /// A finer solver may move the median distance by this part of the threshold.
 constexpr double tolerable_shift = 0.05;
 
@@ -79,14 +76,15 @@ void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<Candi
   confirm_deaths(selection, findings);
   std::vector<std::optional<double>> probabilities;
   for (auto const& check : selection.likelihoods) probabilities.push_back(check ? std::optional(check->probability) : std::nullopt);
-  for (Finding& finding : compare_probabilities(selection.result, probabilities)) findings.push_back(std::move(finding));
+  for (Finding& finding : compare_probabilities(selection.result, probabilities, selection.floor))
+    findings.push_back(std::move(finding));
 }
 
-Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
-                         std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection) {
+void add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
+                     std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection) {
   // A disturbance takes simulations away from the record as noise does: noise alone is no floor.
   if (std::any_of(candidates.begin(), candidates.end(), [](Candidate const& each) { return each.compiled->model.filtered(); }))
-    return {};
+    return;
   auto const lead = static_cast<std::size_t>(selection.leader());
   bool const stated = candidates[lead].space->dimension() == candidates[lead].simulated->dimension();
   std::optional<Floor> lowest;
@@ -104,17 +102,22 @@ Findings add_noise_floor(Session const& session, std::vector<Candidate> const& c
     auto const floor = floor_at(session, candidates[k], target.distance(static_cast<int>(k)), declared);
     if (floor && (!lowest || floor->distance < lowest->distance)) lowest = floor;
   }
-  if (!lowest) return {};
+  if (!lowest) return;
   selection.floor = lowest->distance;
   selection.floor_words = fmt::format("{} noise, {}", stated ? "the stated" : "the fitted", lowest->noise);
+}
+
+Findings check_threshold(SelectionReport const& selection) {
+  if (!selection.floor) return {};
+  double const floor = *selection.floor;
   double const threshold = selection.result.threshold;
-  if (!std::isfinite(threshold) || threshold <= far_above_floor * lowest->distance) return {};
+  if (!std::isfinite(threshold) || threshold <= far_from_floor * floor) return {};
   return {
       {FindingCode::threshold_above_noise,
        Severity::warning,
        {},
        fmt::format("the final threshold {} is {} times the noise floor {}, the distance due to {}", significant(threshold, 4),
-                   significant(threshold / lowest->distance, 2), significant(lowest->distance, 4), selection.floor_words),
+                   significant(threshold / floor, 2), significant(floor, 4), selection.floor_words),
        "models that differ by less cannot be distinguished: let the run stop later (a smaller "
        "`relative_change`, or a longer `schedule`); if the threshold stays above the noise floor, none of the models is right"}};
 }

@@ -12,13 +12,17 @@ namespace sysid {
 
 /// Laplace's model probabilities from the modes of each candidate's likelihood, densities in the units of the first candidate;
 /// names each large difference from the particles', and takes back the warning of a death by chance that the likelihood confirms.
+/// After `add_noise_floor`, on which the help depends.
 void add_likelihoods(std::vector<Candidate> const& candidates, std::vector<CandidatePosterior> const& posteriors,
                      SelectionReport& selection, Findings& findings);
 
 /// What noise leaves of the distance: the noise that the leading model states, or where a prior leaves that open the smallest one
 /// that any candidate's mode has found; a place where a climb was given up is none. Normal noise only.
-Findings add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
-                         std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection);
+void add_noise_floor(Session const& session, std::vector<Candidate> const& candidates, ModelSelectionTarget const& target,
+                     std::vector<CandidatePosterior> const& posteriors, SelectionReport& selection);
+
+/// A final threshold far above the noise floor.
+Findings check_threshold(SelectionReport const& selection);
 
 /// What a candidate leaves of the record at the heaviest mode near its particles, scored and tested as a fit is; findings name
 /// the model. Nothing where the likelihood has no mode there.

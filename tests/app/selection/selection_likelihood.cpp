@@ -157,6 +157,17 @@ TEST_CASE("each model whose probabilities disagree is named, the largest differe
         "`a` has probability 0.70 by the particles and 0.10 by the likelihood; "
         "`b` has probability 0.05 by the particles and 0.50 by the likelihood");
   CHECK(compare_probabilities(result, {0.6, 0.15, 0.24, 0.01, 0.0, 0.0}).empty());
+  // What helps depends on where the run has ended.
+  auto const advises_a_later_end = [&](double threshold, std::optional<double> floor) {
+    result.threshold = threshold;
+    return compare_probabilities(result, {0.1, 0.5, 0.24, 0.15, 0.01, std::nullopt}, floor)
+        .front()
+        .help.starts_with("let the run stop later");
+  };
+  CHECK(advises_a_later_end(20, std::nullopt));
+  CHECK(advises_a_later_end(40, 30));
+  CHECK_FALSE(advises_a_later_end(31, 30));
+  CHECK_FALSE(advises_a_later_end(20, 30));
 }
 
 TEST_CASE("a candidate without parameters has nothing to polish; one whose noise alone is free shows its polished noise") {
