@@ -52,6 +52,14 @@ BoundCheck check_bounds(std::span<double const> draws, double lower, double uppe
   return {2 * low >= peak, 2 * high >= peak};
 }
 
+std::string wrong_sign_at_bound(std::string const& parameter, double lower) {
+  if (lower > 0)
+    return fmt::format("if `{}` moves to a smaller bound again, a sign in the equation or in the data may be wrong", parameter);
+  return fmt::format(
+      "if a sign in the equation or in the data is wrong, correct it; to allow negative values, use `{} ~ normal(0, sd = ...)`",
+      parameter);
+}
+
 Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws, std::span<PriorInfo const> priors) {
   Findings findings;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -61,13 +69,15 @@ Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& dr
     ParameterInfo const& info = parameters[p];
     BoundCheck const check = check_bounds(values, info.lower, info.upper, spread_of(info, priors));
     if (!check.at_lower && !check.at_upper) continue;
+    std::string help = "widen the prior, unless the bound is a physical limit";
+    if (check.at_lower && info.lower >= 0 && !info.size_alone) help += "; " + wrong_sign_at_bound(info.name, info.lower);
     findings.push_back(
         {FindingCode::piles_up_at_bound,
          Severity::warning,
          {info.name},
          fmt::format("the posterior of {} is concentrated at the {} bound of its prior, {:.4g}{}", info.name,
                      check.at_lower ? "lower" : "upper", check.at_lower ? info.lower : info.upper, unit_after_number(info.unit)),
-         "widen the prior, unless the bound is a physical limit"});
+         help});
   }
   return findings;
 }

@@ -1,6 +1,7 @@
 // Whether a posterior is concentrated at a bound of its prior, so that the bound determines the result.
 #pragma once
 #include <span>
+#include <string>
 
 #include "likelihood/target.hpp"
 #include "result/draws.hpp"
@@ -19,6 +20,10 @@ struct BoundCheck {
 /// % of a prior with one bound only; infinite where it is improper, 0 where it is not known. Silent about a bound of 0 alone: zero
 /// below a scale parameter is natural, not a choice.
 BoundCheck check_bounds(std::span<double const> draws, double lower, double upper, double prior_spread = 0);
+
+/// What to say of a parameter at a lower bound that is not negative, against which a wrong sign drives it: a prior cannot be
+/// widened below a bound of 0 without another distribution, and behind a smaller positive bound lies the next one.
+std::string wrong_sign_at_bound(std::string const& parameter, double lower);
 
 /// One warning per parameter that piles up, over all chains. priors: of the parameters, by name.
 Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws, std::span<PriorInfo const> priors = {});

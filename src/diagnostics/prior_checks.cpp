@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
@@ -42,29 +43,61 @@ std::string other_reading(PriorInfo const& prior, double place) {
   return {};
 }
 
+enum class Beyond { neither, below, above };
+
+Beyond side(PriorInfo const& prior, double place) {
+  if (!prior.lowest || !prior.highest) return Beyond::neither;
+  bool const below = place < *prior.lowest;
+  if (!below && !(place > *prior.highest)) return Beyond::neither;
+  // A prior that ends there has no tail to be in: that is another finding.
+  constexpr double tail = 0.1;  // of the density where 5 % lie beyond
+  if (prior.density(below ? *prior.lowest : *prior.highest) > tail * prior.density(below ? *prior.q5 : *prior.q95))
+    return Beyond::neither;
+  return below ? Beyond::below : Beyond::above;
+}
+
+bool agrees(Report const& report, Maxima const& maxima, Mode const& mode) {
+  for (PriorInfo const& prior : report.priors)
+    for (std::size_t p = 0; p < maxima.parameters.size() && p < mode.declared.size(); ++p)
+      if (maxima.parameters[p].name == prior.name && side(prior, mode.declared[p]) != Beyond::neither) return false;
+  return true;
+}
+
+bool another_agrees(Report const& report, Maxima const& maxima) {
+  constexpr double nearly_as_high = 4.6;  // in log likelihood, as `second_mode` has it
+  return !maxima.modes.empty() && std::ranges::any_of(maxima.modes.subspan(1), [&](Mode const& mode) {
+    return mode.log_density > maxima.modes.front().log_density - nearly_as_high && agrees(report, maxima, mode);
+  });
+}
+
+Finding contradicted(PriorInfo const& prior, double place, Beyond beyond, bool of_likelihood) {
+  bool const below = beyond == Beyond::below;
+  std::string const unit = unit_after_number(prior.unit);
+  std::string const cause =
+      of_likelihood ? "`ml` does not use the density of the prior, so this value comes from the data alone: widen the "
+                      "prior before other fits, or find the cause in the data or the model"
+                    : "data and prior disagree, and the posterior is a compromise: widen the prior, or find the cause in "
+                      "the data or the model";
+  return {FindingCode::prior_contradicted,
+          Severity::warning,
+          {prior.name},
+          fmt::format("{} is estimated as {}{}, but its prior gives a probability of 0.0005 to values {} {}{}", prior.name,
+                      significant(place, 4), unit, below ? "below" : "above",
+                      significant(below ? *prior.lowest : *prior.highest, 4), unit),
+          cause + other_reading(prior, place)};
+}
+
 }  // namespace
 
-Findings check_priors(Report const& report) {
+Findings check_priors(Report const& report, std::optional<Maxima> const& of_likelihood) {
   Findings findings;
+  if (of_likelihood && another_agrees(report, *of_likelihood)) return findings;
   for (PriorInfo const& prior : report.priors)
     for (Summary const& summary : report.summary) {
-      if (summary.name != prior.name || summary.coefficient || !prior.lowest || !prior.highest) continue;
+      if (summary.name != prior.name || summary.coefficient) continue;
       double const place = std::isfinite(summary.median) ? summary.median : summary.mean;
-      bool const below = place < *prior.lowest;
-      if (!below && !(place > *prior.highest)) continue;
-      // A prior that ends there has no tail to be in: that is another finding.
-      constexpr double tail = 0.1;  // of the density where 5 % lie beyond
-      if (prior.density(below ? *prior.lowest : *prior.highest) > tail * prior.density(below ? *prior.q5 : *prior.q95)) continue;
-      std::string const unit = unit_after_number(prior.unit);
-      findings.push_back({FindingCode::prior_contradicted,
-                          Severity::warning,
-                          {prior.name},
-                          fmt::format("{} is estimated as {}{}, but its prior gives a probability of 0.0005 to values {} {}{}",
-                                      prior.name, significant(place, 4), unit, below ? "below" : "above",
-                                      significant(below ? *prior.lowest : *prior.highest, 4), unit),
-                          "data and prior disagree, and the posterior is a compromise: widen the prior, or find the cause in the "
-                          "data or the model" +
-                              other_reading(prior, place)});
+      if (Beyond const beyond = side(prior, place); beyond != Beyond::neither)
+        findings.push_back(contradicted(prior, place, beyond, of_likelihood.has_value()));
     }
   return findings;
 }

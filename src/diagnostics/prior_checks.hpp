@@ -2,11 +2,14 @@
 // size than the measured ones.
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "likelihood/target.hpp"
 #include "result/finding.hpp"
+#include "result/mode.hpp"
 #include "result/report.hpp"
 
 namespace sysid {
@@ -20,8 +23,15 @@ std::optional<double> contraction(PriorInfo const& prior, Summary const& summary
 /// The posterior's 90 % interval; of an optimum that of its normal approximation.
 std::pair<double, double> interval_90(Summary const& summary);
 
-/// Parameters whose posterior lies where their prior has next to nothing.
-Findings check_priors(Report const& report);
+/// Maxima of the likelihood, the highest first, and the parameters that they state. `ml` does not use the density of the priors.
+struct Maxima {
+  std::span<Mode const> modes;
+  std::span<ParameterInfo const> parameters;
+};
+
+/// Parameters whose posterior, or maximum of the likelihood, lies where their prior has next to nothing. A likelihood of several
+/// maxima that are nearly as high contradicts no prior with which one of them agrees.
+Findings check_priors(Report const& report, std::optional<Maxima> const& of_likelihood = std::nullopt);
 
 /// Further apart than this many times: a wrong unit or a wild prior. Medians of the shipped models lie within a factor of 5.2 of
 /// what was measured, so that a unit a thousand times too large or small shows in each of them, by 190 and more.

@@ -12,9 +12,9 @@
 #include "core/numeric/statistics.hpp"
 #include "core/text/words.hpp"
 #include "diagnostics/law/noise_law.hpp"
+#include "diagnostics/law/noise_words.hpp"
 #include "diagnostics/law/residual_law.hpp"
 #include "diagnostics/outliers.hpp"
-#include "diagnostics/prior_checks.hpp"
 #include "diagnostics/residual_offset.hpp"
 #include "diagnostics/residual_tests.hpp"
 #include "diagnostics/sized_residuals.hpp"
@@ -26,6 +26,8 @@ namespace {
 
 /// nmse [%] from which a fit that leaves more than noise explains little, and less than half.
 constexpr double little = 20, less_than_half = 50;
+/// nmse [%] that an offset leaves, from which it is not what the fit lacks.
+constexpr double useless_without_offset = 80;
 
 // A channel over the scored rows of an experiment.
 struct ScoredChannel {
@@ -113,10 +115,14 @@ double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& excl
 // What tests of a channel find; not yet what that means, which depends on how many are tested.
 struct Tested {
   std::vector<std::size_t> far;  // samples far off, left out of the tests
+  double unexplained = 0;        // nmse [%] without spikes
   OffsetTest offset;
   double offset_size = 0, largest_offset = 0;  // of this channel, and of it on any experiment, in its declared unit
   std::optional<CorrelationTest> white;        // rows of any order have no past
   std::vector<CorrelationTest> with_input;     // of each input
+
+  /// Whether the fit explains something of the channel once the offset is estimated.
+  bool offset_cures() const { return offset.fires && unexplained * (1 - offset.share) < useless_without_offset; }
 };
 
 double mean_error(ScoredChannel const& of, std::vector<std::size_t> const& far) {
@@ -129,6 +135,7 @@ double mean_error(ScoredChannel const& of, std::vector<std::size_t> const& far) 
 Tested test_channel(ScoredChannel const& of) {
   Tested tested;
   tested.far = far_off(of);
+  tested.unexplained = unexplained(of, spikes(of));
   std::vector<double> const residuals = without(of.residuals, tested.far);
   bool const ordered = of.model().dynamics != Dynamics::none;
   if (offset_can_be_added(of.model(), of.described())) tested.offset = offset_test(residuals, ordered);
@@ -162,9 +169,15 @@ constexpr char const* offset_first = "the misfit is mostly a constant: add the o
 
 // coloured: what the fit leaves is more than noise.
 void check_share(ScoredChannel const& of, Tested const& tested, bool coloured, Findings& findings) {
-  char const* const look =
-      tested.offset.fires ? offset_first : "check units, signs and columns, then the initial values and the priors, then the model";
-  double const left = unexplained(of, spikes(of));
+  char const* look = "check units, signs and columns, then the initial values and the priors, then the model";
+  if (tested.offset_cures())
+    look = offset_first;
+  else if (tested.offset.fires)
+    look =
+        "an offset alone does not explain the misfit: check signs in the equation and of columns, and units, then the initial "
+        "values "
+        "and the priors, then the model";
+  double const left = tested.unexplained;
   if (left > as_bad_as_the_mean(of.observed.size()))
     findings.push_back(worse_than_the_mean(left > useless_nmse || coloured ? Severity::error : Severity::warning, of.names(),
                                            of.name(), left, fmt::format("the fit explains nothing of this channel: {}", look)));
@@ -176,8 +189,13 @@ void check_share(ScoredChannel const& of, Tested const& tested, bool coloured, F
 }
 
 // Rows as the file counts them, with how far they lie off.
-void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& places, Findings& findings) {
+void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& places, UserText const& text, Findings& findings) {
   if (places.empty()) return;
+  std::string help = "check these rows: empty the cells that are not measurements";
+  if (of.model().filtered())
+    help += "; if all are measurements, the disturbance does not describe the motion there";
+  else if (of.described().noise.row->gaussian)
+    help += ", or " + use_heavy_tails(text.heavy_tailed ? text.heavy_tailed(of.described()) : std::nullopt);
   constexpr std::size_t most_named = 5;
   std::vector<std::string> named;
   for (std::size_t const place : places)
@@ -188,11 +206,7 @@ void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
   findings.push_back({FindingCode::samples_far_off, Severity::warning, of.names(),
                       fmt::format("{} of {} {} much farther from the fit than all others ({})", counted(places.size(), "sample"),
                                   of.name(), places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
-                      of.model().filtered()
-                          ? "check these rows: empty the cells that are not measurements; if all are measurements, the disturbance "
-                            "does not describe the motion there"
-                          : "check these rows: empty the cells that are not measurements, or use noise with heavy "
-                            "tails: `student_t(y, 4, scale = sigma)`"});
+                      help});
 }
 
 void check_offset(ScoredChannel const& of, Tested const& tested, UserText const& text, Findings& findings) {
@@ -201,26 +215,40 @@ void check_offset(ScoredChannel const& of, Tested const& tested, UserText const&
                                      tested.offset_size, tested.largest_offset, text));
 }
 
-void check_size(ScoredChannel const& of, Tested const& tested, int together, FitLine& line, Findings& findings) {
-  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, together);
+std::string size_help(ScoredChannel const& of, Tested const& tested, bool larger, bool coloured, UserText const& text) {
+  if (!tested.far.empty()) return "a few outlying samples make the noise appear larger: check these first";
+  if (tested.offset_cures()) return offset_first;
+  if (of.noise_is_estimated())
+    return "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: check the residuals";
+  Channel const& channel = of.described();
+  if (channel.noise.row->name == "poisson") {
+    if (!larger)
+      return "the counts scatter less than counts of independent events: check that the column is neither smoothed nor a sum or a "
+             "mean that was divided into several rows";
+    if (coloured)
+      return "the model is incomplete: the residuals are correlated in time, which noise of counts that scatter more does not "
+             "explain";
+    std::string const shape = free_name(channel.name + "_shape", text.mentions);
+    return use_overdispersed(shape, text.overdispersed ? text.overdispersed(channel, shape) : std::nullopt);
+  }
+  return larger ? "the noise is larger than stated, or the model is incomplete: estimate the noise, then check the residuals"
+                : "the stated noise is too large: estimate it";
+}
+
+void check_size(ScoredChannel const& of, Tested const& tested, Limits const& limits, UserText const& text, FitLine& line,
+                Findings& findings) {
+  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, limits.channels);
   line.scores.push_back({"chi_squared_per_sample", size.per_sample});
   if (!size.fires()) return;
-  char const* help = "the noise is larger than stated, or the model is incomplete: estimate the noise, then check the residuals";
-  if (of.noise_is_estimated())
-    help = "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: check the residuals";
-  else if (size.per_sample < 1)
-    help = "the stated noise is too large: estimate it";
-  if (tested.offset.fires) help = offset_first;
-  if (!tested.far.empty()) help = "a few outlying samples make the noise appear larger: check these first";
   findings.push_back(
       {FindingCode::noise_size, Severity::error, of.names(),
        fmt::format("the residuals of {} do not have the stated size: chi-squared per sample is {:.3g}, expected {:.2f} to {:.2f}",
                    of.name(), size.per_sample, size.low, size.high),
-       help});
+       size_help(of, tested, size.per_sample >= 1, tested.white && tested.white->fires(limits.white), text)});
 }
 
 std::string memory_help(ScoredChannel const& of, Tested const& tested) {
-  if (tested.offset.fires) return fmt::format("{}; then look at what is left", offset_first);
+  if (tested.offset_cures()) return fmt::format("{}; then look at what is left", offset_first);
   std::string help =
       "look for a force or dynamics that the model lacks, or for coloured noise: the errors of the estimates can be "
       "several times their sds";
@@ -265,7 +293,10 @@ void check_law(ScoredChannel const& of, Tested const& tested, int together, User
   std::vector<double> const residuals = without(of.residuals, tested.far);
   std::vector<double> left;
   for (std::size_t const place : of.places) left.push_back(residuals[place]);
-  LawWords const words{of.names(), of.name(), text.mentions,
+  LawWords const words{of.names(),
+                       of.name(),
+                       of.model().filtered(),
+                       text.mentions,
                        [&] { return text.heavy_tailed ? text.heavy_tailed(channel) : std::nullopt; },
                        [&](std::string const& relative) {
                          bool const interval = channel.unit && channel.unit->offset != 0;  // 0 degC is no zero
@@ -280,8 +311,8 @@ FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits cons
   line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
   Findings shape;
   check_offset(of, tested, text, shape);
-  check_size(of, tested, limits.channels, line, shape);
-  check_outliers(of, tested.far, shape);
+  check_size(of, tested, limits, text, line, shape);
+  check_outliers(of, tested.far, text, shape);
   if (tested.white) check_memory(of, tested, limits, line, shape);
   // Deviances of small counts are neither centred nor alike.
   bool const coloured = tested.white && tested.white->fires(limits.white) && !of.described().noise.row->discrete;
@@ -338,39 +369,6 @@ FitCheck check_scored(std::vector<ScoredChannel> const& scored, UserText const& 
 }
 
 }  // namespace
-
-void name_held(Report const& report, Findings& findings) {
-  std::vector<std::string> held;
-  for (PriorInfo const& prior : report.priors)
-    for (Summary const& summary : report.summary)
-      if (summary.name == prior.name && !summary.coefficient)
-        if (auto const ratio = contraction(prior, summary); ratio && *ratio < hardly_narrower) held.push_back(summary.name);
-  constexpr std::size_t most_named = 6;
-  if (held.empty() || held.size() > most_named) return;
-  for (Finding& each : findings)
-    if (each.code == FindingCode::explains_little || each.code == FindingCode::worse_than_the_mean)
-      each.help +=
-          held.size() == 1
-              ? fmt::format("; the posterior of {} is nearly as wide as its prior: check this prior", held.front())
-              : fmt::format("; the posteriors of {} are nearly as wide as their priors: check these priors", fmt::join(held, ", "));
-}
-
-Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, std::string const& channel, double nmse,
-                            std::string help) {
-  return {FindingCode::worse_than_the_mean, severity, std::move(names),
-          fmt::format("{} is predicted worse than by its mean: nmse is {:.3g} %, and 100 % for the mean", channel, nmse),
-          std::move(help)};
-}
-
-double as_bad_as_the_mean(std::size_t samples) {
-  constexpr double excess = 13.8;
-  return 100 * (1 + excess / static_cast<double>(samples));
-}
-
-std::string on_experiment(ModelTarget const& target, int experiment) {
-  if (target.experiments().size() == 1) return {};
-  return " on " + target.experiments()[static_cast<std::size_t>(experiment)].name;
-}
 
 FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared, UserText const& text) {
   int const dimension = target.dimension();

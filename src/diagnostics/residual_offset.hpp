@@ -1,11 +1,10 @@
 // Residuals that are the same everywhere: an offset, of a sensor or of what moves the system.
 #pragma once
-#include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "diagnostics/user_text.hpp"
 #include "model/model.hpp"
 #include "result/finding.hpp"
 
@@ -31,17 +30,6 @@ struct OffsetTest {
 /// so that a drift, whose samples are worth a few independent ones, is none. Of long series c_k is taken from means of
 /// neighbouring samples.
 OffsetTest offset_test(std::span<double const> residuals, bool ordered);
-
-/// What the user's text says, of which a model has only the meaning.
-struct UserText {
-  /// Whether the name stands anywhere in it.
-  std::function<bool(std::string const& name)> mentions;
-  /// The noise statement of a channel with `parameter` added to what the noise lies about; nothing where it is not in the text.
-  std::function<std::optional<std::string>(Channel const& channel, std::string const& parameter)> noise_statement_with;
-  /// The same with heavy tails, and with a part of the noise that is proportional to what it lies about, as `relative` times that.
-  std::function<std::optional<std::string>(Channel const& channel)> heavy_tailed = {};
-  std::function<std::optional<std::string>(Channel const& channel, std::string const& relative)> proportional = {};
-};
 
 /// size: the mean of measured minus predicted samples where the channel is scored, in its declared unit; largest: of those of all
 /// experiments, whose offsets one declaration has to cover; several: there are several. Only for a noise that is added, see

@@ -75,24 +75,33 @@ struct Spread {
   }
 };
 
-/// The statement with another distribution in place of `normal(LOCATION, sd = SD)`: what `write` makes of location and spread, if
-/// anything.
+/// The statement with another distribution in place of the one of that name: what `write` makes of its arguments, if anything.
 template <typename Write>
-std::optional<std::string> rewritten(Source const& source, Channel const& channel, Write const& write) {
+std::optional<std::string> replaced(Source const& source, Channel const& channel, std::string_view distribution,
+                                    Write const& write) {
   Diagnostics ignored;
   auto tree = parse(source, ignored);
   ast::Observation* const observation = tree ? observation_of(*tree, channel) : nullptr;
-  if (observation == nullptr || observation->noise.function.text != "normal" || observation->noise.arguments.size() != 2) return {};
-  ast::Argument const* const location = location_of(observation->noise, *channel.noise.row);
-  auto const spread = std::ranges::find_if(observation->noise.arguments, [](ast::Argument const& each) {
-    return each.name && (each.name->text == "sd" || each.name->text == "variance" || each.name->text == "precision");
-  });
-  if (location == nullptr || spread == observation->noise.arguments.end() || location == &*spread) return {};
-  std::optional<std::string> const after = write(location->value, Spread{spread->name->text, spread->value});
+  if (observation == nullptr || observation->noise.function.text != distribution) return {};
+  std::optional<std::string> const after = write(observation->noise);
   std::string const before = unparse(ast::Expression{{}, ast::Box<ast::Call>(observation->noise)});
   std::string text = unparse(ast::ModelStatement{*observation});
   std::size_t const at = text.find(before);
   return !after || at == text.npos ? std::nullopt : std::optional(text.replace(at, before.size(), *after));
+}
+
+/// The same of `normal(LOCATION, sd = SD)`: what `write` makes of location and spread.
+template <typename Write>
+std::optional<std::string> rewritten(Source const& source, Channel const& channel, Write const& write) {
+  return replaced(source, channel, "normal", [&](ast::Call& noise) -> std::optional<std::string> {
+    if (noise.arguments.size() != 2) return std::nullopt;
+    ast::Argument const* const location = location_of(noise, *channel.noise.row);
+    auto const spread = std::ranges::find_if(noise.arguments, [](ast::Argument const& each) {
+      return each.name && (each.name->text == "sd" || each.name->text == "variance" || each.name->text == "precision");
+    });
+    if (location == nullptr || spread == noise.arguments.end() || location == &*spread) return std::nullopt;
+    return write(location->value, Spread{spread->name->text, spread->value});
+  });
 }
 
 }  // namespace
@@ -133,6 +142,14 @@ std::optional<std::string> proportional_statement(Source const& source, Channel 
     // Beside the squared location its unit would be that of the location, in place of the channel's.
     if (takes_unit_from_outside(spread.value)) return std::nullopt;
     return fmt::format("normal({}, sd = sqrt({} + ({}*{})^2))", unparse(location), spread.variance(), relative, grouped(location));
+  });
+}
+
+std::optional<std::string> overdispersed_statement(Source const& source, Channel const& channel, std::string const& shape) {
+  return replaced(source, channel, "poisson", [&](ast::Call& noise) -> std::optional<std::string> {
+    ast::Argument const* const mean = location_of(noise, *channel.noise.row);
+    if (mean == nullptr || noise.arguments.size() != 1) return std::nullopt;
+    return fmt::format("negative_binomial({}, shape = {})", unparse(mean->value), shape);
   });
 }
 

@@ -25,4 +25,7 @@ std::optional<std::string> heavy_tailed_statement(Source const& source, Channel 
 /// to what it lies about.
 std::optional<std::string> proportional_statement(Source const& source, Channel const& channel, std::string const& relative);
 
+/// `observe cases ~ negative_binomial(rate, shape = cases_shape)`: the same of a channel with `poisson(rate)`.
+std::optional<std::string> overdispersed_statement(Source const& source, Channel const& channel, std::string const& shape);
+
 }  // namespace sysid

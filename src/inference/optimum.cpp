@@ -11,6 +11,7 @@
 
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "diagnostics/bound_check.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/evidence/weighted_draws.hpp"
 #include "search/journal.hpp"
@@ -25,23 +26,15 @@ namespace {
 
 constexpr std::uint64_t bound_step = 8'000'000;  // of Purpose::start
 
-/// A prior cannot be widened below a bound of 0 without another distribution, and behind a smaller positive bound lies the next
-/// one: a wrong sign drives a parameter against either.
 std::string cure_at_bounds(Target const& target, std::vector<ModeAtBound> const& bounds) {
-  std::string help = "widen the prior if the bound is not physical, or use mh, which describes the whole posterior";
+  std::string const widen = "widen the prior if the bound is not physical, or use mh, which describes the whole posterior";
   for (ModeAtBound const& each : bounds) {
     ParameterInfo const& parameter = target.parameters()[static_cast<std::size_t>(each.parameter)];
-    if (each.upper || !(parameter.lower >= 0)) continue;
-    if (parameter.lower > 0)
-      return help + fmt::format("; if `{}` moves to a smaller bound again, a sign in the equation or in the data may be wrong",
-                                parameter.name);
-    help = fmt::format(
-        "if a sign in the equation or in the data is wrong, correct it; to allow negative values, use `{} ~ normal(0, sd = ...)`; "
-        "otherwise use mh, which describes the whole posterior",
-        parameter.name);
-    return help;
+    if (each.upper || !(parameter.lower >= 0) || parameter.size_alone) continue;
+    std::string const sign = wrong_sign_at_bound(parameter.name, parameter.lower);
+    return parameter.lower > 0 ? widen + "; " + sign : sign + "; otherwise use mh, which describes the whole posterior";
   }
-  return help;
+  return widen;
 }
 
 /// Whether and where the optimum lies at bounds.

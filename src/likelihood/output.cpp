@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "distribution/location_scale.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {
@@ -226,6 +227,22 @@ std::vector<ParameterRole> parameter_roles(Model const& model) {
                                        : ParameterRole::none);
   }
   return roles;
+}
+
+std::vector<bool> sizes_alone(Model const& model) {
+  std::vector<ParameterRole> const roles = parameter_roles(model);
+  std::vector<bool> sizes;
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    auto const scatters = [&](Parameter const& other) {
+      auto const scale = other.prior ? scale_argument(*other.prior) : std::nullopt;
+      return scale && model.graph.depends(*scale, [&](Node const& node) {
+        return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter && node.index == static_cast<int>(p);
+      });
+    };
+    sizes.push_back(roles[p] == ParameterRole::noise ||
+                    (roles[p] == ParameterRole::prior && std::ranges::any_of(model.parameters, scatters)));
+  }
+  return sizes;
 }
 
 }  // namespace sysid

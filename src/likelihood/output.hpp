@@ -72,5 +72,7 @@ enum class ParameterRole {
   none,
 };
 std::vector<ParameterRole> parameter_roles(Model const& model);
+/// Whether each parameter is the size of a noise, of a disturbance or of the scatter of others, and nothing else.
+std::vector<bool> sizes_alone(Model const& model);
 
 }  // namespace sysid

@@ -12,6 +12,7 @@
 #include "core/text/diagnostic.hpp"
 #include "expression/pull_back.hpp"
 #include "function/primitive.hpp"
+#include "likelihood/output.hpp"
 
 namespace sysid {
 namespace {
@@ -121,6 +122,7 @@ void ParameterSpace::compile() {
   std::vector<Constrained> constrained;
   std::vector<NodeId> scales;
   infos_.resize(sampled_.size());
+  std::vector<bool> const sizes = sizes_alone(model_);
   auto const add = [&](int r) {
     FittedParameter const& row = rows_[static_cast<std::size_t>(r)];
     if (row.value) return;
@@ -169,7 +171,8 @@ void ParameterSpace::compile() {
                  model_.parameters[static_cast<std::size_t>(row.parameter)].coefficient,
                  use.row->proper                ? Improper::no
                  : bounds.lower || bounds.upper ? Improper::half_line
-                                                : Improper::line};
+                                                : Improper::line,
+                 sizes[static_cast<std::size_t>(row.parameter)]};
   };
   for (int const p : model_.sampling_order) {
     if (!model_.parameters[static_cast<std::size_t>(p)].per_experiment)

@@ -57,6 +57,7 @@ enum class FindingCode {
   residuals_not_white,
   input_in_residuals,
   noise_law,
+  disturbance_follows_states,
   input_timing,
   input_rule,
   optimum_of_hierarchy,

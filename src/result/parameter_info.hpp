@@ -17,6 +17,7 @@ struct ParameterInfo {
       upper;  // bounds of the prior's support, declared unit; infinite where there is none or it depends on other parameters
   bool coefficient = false;  // of an unknown function: a search begins with it at zero, whatever the prior draws
   Improper improper = Improper::no;
+  bool size_alone = false;  // of a noise, a disturbance or a population: no data are centred on what it changes, and it has no sign
 };
 
 /// The coordinates whose prior is improper, ascending.

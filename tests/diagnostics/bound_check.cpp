@@ -77,3 +77,23 @@ TEST_CASE("the finding names the parameter, the bound and its unit") {
   CHECK(findings[0].code == FindingCode::piles_up_at_bound);
   CHECK(findings[0].message == "the posterior of k is concentrated at the upper bound of its prior, 1e+05 N/m");
 }
+
+TEST_CASE("a lower bound that is not negative may be reached by a wrong sign") {
+  auto const help = [](double lower, double upper, bool at_lower, bool size_alone = false) {
+    auto const x = draws_of([&](Stream& s) {
+      double const off = 1e-3 * (upper - lower) * std::fabs(s.normal());
+      return at_lower ? lower + off : upper - off;
+    });
+    Draws draws{{"c"}, {""}, {{}}, 1};
+    for (double const v : x) draws.chains[0].values.push_back({v});
+    Findings const findings =
+        check_bounds(std::vector<ParameterInfo>{{"c", "", lower, upper, false, Improper::no, size_alone}}, draws);
+    REQUIRE(findings.size() == 1);
+    return findings[0].help;
+  };
+  CHECK(help(1, 5, true).ends_with("if `c` moves to a smaller bound again, a sign in the equation or in the data may be wrong"));
+  CHECK(help(0, 5, true).ends_with("to allow negative values, use `c ~ normal(0, sd = ...)`"));
+  CHECK(help(0, 5, false).find("sign") == std::string::npos);
+  CHECK(help(-5, 5, true).find("sign") == std::string::npos);
+  CHECK(help(0, 5, true, true).find("sign") == std::string::npos);  // a sd is never negative
+}

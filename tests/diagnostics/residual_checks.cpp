@@ -15,9 +15,10 @@ using nlohmann::json;
 
 namespace {
 
-// The findings of a fit by `map` to rows 101 to 400 of `value(row, stream)`, 0.1 s apart; rows count from 1.
+// The findings of a fit, by `map` unless stated, to rows 101 to 400 of `value(row, stream)`, 0.1 s apart; rows count from 1.
 template <class Value>
-json findings_of_late_rows(std::string const& statements, Value const& value) {
+json findings_of_late_rows(std::string const& statements, Value const& value, std::string const& method = "map",
+                           std::string const& unit = " [m]") {
   TemporaryFolder folder;
   Stream stream({1, Purpose::test, 0, 0});
   std::string table = "t,y\n";
@@ -26,9 +27,10 @@ json findings_of_late_rows(std::string const& statements, Value const& value) {
   RunOptions options;
   options.output = folder.path() / "results";
   run_text(folder.path() / "m.sysid",
-           "model m {\n " + statements +
-               "\n}\ndata record { file \"record.csv\"; time t [s]; measure z = y [m]; split late = rows 101..400 }\n"
-               "posterior = fit m to record.late with map, seed = 1\n",
+           "model m {\n " + statements + "\n}\ndata record { file \"record.csv\"; time t [s]; measure z = y" + unit +
+               "; split late = rows 101..400 }\n"
+               "posterior = fit m to record.late with " +
+               method + ", seed = 1\n",
            options);
   return json::parse(read_file(options.output / "posterior/summary.json")).at("findings");
 }
@@ -130,6 +132,7 @@ TEST_CASE("samples far off are named by their rows in the file") {
     json const* const found = find(findings, "samples_far_off");
     REQUIRE(found != nullptr);
     CHECK(found->at("message").get<std::string>().find("(row 250, ") != std::string::npos);
+    CHECK(found->at("help").get<std::string>().ends_with("use noise with heavy tails, `observe z ~ student_t(y, 4, scale = s)`"));
   }
   SUBCASE("where noise of another size is the error, which then asks for them first") {
     std::string stated = decay;
@@ -171,4 +174,62 @@ TEST_CASE("a response that is missed where it is largest has no outliers") {
       decay, [](int row, Stream& stream) { return (row >= 250 && row <= 252 ? 5.0 : 0.0) + 0.05 * stream.normal(); });
   CHECK(find(findings, "samples_far_off") == nullptr);
   CHECK(find(findings, "residuals_not_white") != nullptr);
+}
+
+TEST_CASE("an offset is advised only where it leaves a response that is explained") {
+  // The decay has the wrong sign: a response that rises from 3 to 4, of which a fit can only be too low.
+  std::string rising = decay;
+  rising.replace(rising.find("normal(0, sd = 3)"), 17, "normal(0.01, sd = 0.001)");
+  auto const help_of = [&](double size, double level) {
+    json const findings = findings_of_late_rows(
+        rising, [=](int row, Stream& stream) { return level + size * std::sin(0.2 * row) + 0.05 * stream.normal(); });
+    json const* const found = find(findings, "worse_than_the_mean");
+    REQUIRE(found != nullptr);
+    return found->at("help").get<std::string>();
+  };
+  CHECK(help_of(1, 5).find("an offset alone does not explain the misfit: check signs") != std::string::npos);
+  CHECK(help_of(1, 5).find("add the offset first") == std::string::npos);
+}
+
+TEST_CASE("counts that scatter more than Poisson's are given a negative binomial, by its line") {
+  std::string const counts =
+      "state y [-]\n initial y = 20\n parameter k [1/s] ~ log_uniform(1e-3, 1)\n y' = -k*y\n observe z ~ poisson(y)";
+  auto const record = [](double scatter) {
+    return [scatter](int row, Stream& stream) {
+      double const mean = 20 * std::exp(-0.005 * row);
+      return std::fmax(0, std::round(mean + scatter * std::sqrt(mean) * stream.normal()));
+    };
+  };
+  json const wide = findings_of_late_rows(counts, record(2.5), "map", "");
+  json const* const found = find(wide, "noise_size");
+  REQUIRE(found != nullptr);
+  CHECK(found->at("help").get<std::string>().find("add `parameter z_shape [-] ~ log_uniform(0.1, 1000)` and write `observe z ~ "
+                                                  "negative_binomial(y, shape = z_shape)`") != std::string::npos);
+  json const even = findings_of_late_rows(counts, record(0.1), "map", "");
+  REQUIRE(find(even, "noise_size") != nullptr);
+  CHECK(find(even, "noise_size")->at("help").get<std::string>().starts_with("the counts scatter less than"));
+  CHECK(find(findings_of_late_rows(counts, record(1), "map", ""), "noise_size") == nullptr);
+}
+
+TEST_CASE("a maximum of the likelihood contradicts a prior by its own words, and none that another maximum fits") {
+  auto const record = [](int row, Stream& stream) { return 2 * std::exp(-0.005 * (row - 101)) + 0.01 * stream.normal(); };
+  std::string contradicted = decay;
+  contradicted.replace(contradicted.find("k [1/s] ~ log_uniform(0.01, 10)"), 31, "k [1/s] ~ normal(0.06, sd = 0.002)");
+  json const findings = findings_of_late_rows(contradicted, record, "ml");
+  json const* const found = find(findings, "prior_contradicted");
+  REQUIRE(found != nullptr);
+  CHECK(found->at("help").get<std::string>().starts_with("`ml` does not use the density of the prior"));
+  CHECK(found->at("help").get<std::string>().find("posterior") == std::string::npos);
+  // The rates of two steps can be exchanged; one of both ways agrees with the prior of k.
+  std::string const two_steps =
+      "state a [m], y [m]\n initial a = 2, y = 0\n parameter r [1/s] ~ log_uniform(0.01, 10)\n parameter V [-] ~ log_uniform(0.01, "
+      "10)\n"
+      " parameter k [1/s] ~ log_normal(0.12, sd = 0.3)\n parameter s [m] ~ log_uniform(0.001, 10)\n a' = -r*a\n y' = r*a - k*y\n"
+      " observe z ~ normal(y/V, sd = s)";
+  auto const rises = [](int row, Stream& stream) {
+    return 2 / 0.9 * (std::exp(-0.01 * row) - std::exp(-0.1 * row)) + 0.01 * stream.normal();
+  };
+  json const exchanged = findings_of_late_rows(two_steps, rises, "ml");
+  CHECK(find(exchanged, "second_mode") != nullptr);
+  CHECK(find(exchanged, "prior_contradicted") == nullptr);
 }

@@ -67,3 +67,19 @@ TEST_CASE("noise that is not normal has no such line") {
   CHECK(advised("student_t(y, 5, scale = s)").heavy.empty());
   CHECK(advised("student_t(y, 5, scale = s)").proportional.empty());
 }
+
+TEST_CASE("Poisson counts get the shape of a negative binomial") {
+  std::string const text =
+      "model m {\n state y [-]\n initial y = 1\n parameter r [1/s] ~ uniform(0, 1)\n parameter k [-] ~ uniform(0, 9)\n y' = r*y\n"
+      " observe n ~ poisson(2*y)\n observe z ~ normal(y, sd = 1)\n}\n";
+  CheckedFile const file = test::checked(text);
+  Source const source("test.sysid", text);
+  auto const line = overdispersed_statement(source, file.models.front().channels[0], "k");
+  REQUIRE(line);
+  CHECK(*line == "observe n ~ negative_binomial(2*y, shape = k)");
+  std::string cured = text;
+  std::string const stated = "observe n ~ poisson(2*y)";
+  cured.replace(cured.find(stated), stated.size(), *line);
+  CHECK_MESSAGE(test::messages(cured).find("error[") == std::string::npos, test::messages(cured));
+  CHECK_FALSE(overdispersed_statement(source, file.models.front().channels[1], "k"));
+}

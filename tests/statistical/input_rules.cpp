@@ -132,7 +132,65 @@ Said said_of_lag(std::uint64_t seed, int late, std::string const& lag = "lag(u, 
   return {};
 }
 
+/// What a fit of a first-order system, whose drive changes at every `every`th row, says of its input: the rule to take instead, or
+/// the message about its time. late: rows by which the column of the input is late.
+Said said_of_drive(std::uint64_t seed, int every, int late, std::string const& stated) {
+  Stream stream({seed, Purpose::test, 2, 0});
+  constexpr int rows = 400, margin = 10;
+  std::vector<double> u;
+  for (int i = 0; i < rows + 2 * margin; ++i) u.push_back(i % every == 0 || u.empty() ? 5 * stream.uniform() : u.back());
+  std::string csv = "t,u,w\n";
+  double const decay = std::exp(-0.1);  // time constant of ten rows
+  double w = 0;
+  for (int i = 0; i < rows; ++i) {
+    csv += fmt::format("{:.10g},{:.10g},{:.10g}\n", 0.05 * i, u[static_cast<std::size_t>(i + margin - late)],
+                       w + 0.08 * stream.normal());
+    w = decay * w + (1 - decay) * u[static_cast<std::size_t>(i + margin)];
+  }
+  Fitted const fitted = run_file(
+      "model m {\n input u [V]\n state w [V]\n initial w = 0\n parameter T [s] ~ log_uniform(0.05, 5)\n"
+      " parameter g [-] ~ normal(1, sd = 1)\n parameter s [V] ~ log_uniform(1e-3, 10)\n T*w' + w = g*u\n"
+      " observe z ~ normal(w, sd = s)\n}\n"
+      "data d { file \"d.csv\"; time t [s]; input u = u [V] hold " +
+          stated + "; measure z = w [V] }\nbest = fit m to d with map, seed = 1\n",
+      {}, {{"d.csv", csv}});
+  for (auto const& finding : fitted.summary.at("best").at("findings")) {
+    if (finding.at("code") == "input_timing") return {finding.at("message"), finding.at("help")};
+    if (finding.at("code") == "input_rule") return {finding.at("names").at(2), finding.at("help")};
+  }
+  return {};
+}
+
 }  // namespace
+
+TEST_CASE("an input in continuous time that is whole samples late is named, with the number") {
+  for (int const late : {1, 3, 5}) {
+    Said const said = said_of_drive(7, 8, late, "zero_order");
+    CAPTURE(said.message);
+    CHECK(said.message.find(fmt::format("shifted earlier by {} sample{} ({:.4g} s)", late, late == 1 ? "" : "s", 0.05 * late)) !=
+          std::string::npos);
+    CHECK(said.help.find(fmt::format("move it up by {} row", late)) != std::string::npos);
+  }
+  CHECK(said_of_drive(7, 8, -2, "zero_order").message.find("shifted later by 2 samples") != std::string::npos);
+  CHECK(said_of_drive(8, 1, 4, "zero_order").message.find("shifted earlier by 4 samples") != std::string::npos);
+}
+
+TEST_CASE("a delay that is longer than those that are tried is not told as one in the wrong direction") {
+  for (int const every : {1, 3, 8})
+    for (int const late : {7, 8, 10}) {
+      CAPTURE(every);
+      CAPTURE(late);
+      CHECK(said_of_drive(7, every, late, "zero_order").message.find("later") == std::string::npos);
+      CHECK(said_of_drive(8, every, -late, "zero_order").message.find("earlier") == std::string::npos);
+    }
+}
+
+TEST_CASE("an input in continuous time that is in step, under the right rule, is not doubted, also where it changes rarely") {
+  for (std::uint64_t const seed : seeds(2, 10)) {
+    CHECK(said_of_drive(seed, 20, 0, "zero_order").message.empty());
+    CHECK(said_of_drive(seed, 1, 0, "zero_order").message.empty());
+  }
+}
 
 TEST_CASE("an input of a difference equation that is whole samples out of step is named, with the number") {
   for (std::uint64_t const seed : seeds(2, 10)) {

@@ -31,12 +31,23 @@ std::optional<Estimate> estimate(OrderedJson const& summary, std::string const& 
 /// "0.9982 ± 0.0031".
 std::string with_sd(Estimate const& of) { return fmt::format("{} ± {}", significant(of.mean, 4), significant(of.sd, 2)); }
 
+/// What the fit with the disturbance says of a term that its equations lack; empty: nothing.
+std::string missing_term(OrderedJson const& with) {
+  std::string const code(word(FindingCode::disturbance_follows_states));
+  for (auto const& each : with.value("findings", OrderedJson::array()))
+    if (each.value("code", "") == code) return each.value("message", "");
+  return "";
+}
+
 /// Which of both the record prefers. Nothing is said of an evidence that is not there.
-std::string preference(Comparison const& comparison) {
+std::string preference(Comparison const& comparison, std::string const& missing) {
   if (comparison.fits.size() != 2 || !comparison.fits[0].log_bayes_factor || !comparison.fits[1].log_bayes_factor)
     return "one of the evidences is not known, so the models cannot be compared by it; compare the residuals of both fits\n";
   double const factor = *comparison.fits[1].log_evidence - *comparison.fits[0].log_evidence;
   std::string const size = fmt::format("log Bayes factor {:+.1f}", factor);
+  if (factor >= 3 && !missing.empty())
+    return fmt::format("the disturbance stands in for a missing term ({}): add the term before you use either fit; {}: {}\n", size,
+                       "with the term, compare again with and without the disturbance", missing);
   if (factor >= 3) return fmt::format("the record prefers the model with the disturbance: {}\n", size);
   if (factor <= -3) return fmt::format("the record prefers the model without the disturbance: {}\n", size);
   return fmt::format("the record does not decide between the two models: {}\n", size);
@@ -87,7 +98,8 @@ std::string disturbance_words(std::filesystem::path const& without, std::filesys
                               std::vector<DisturbedEquation> const& equations) {
   auto const before = OrderedJson::parse(read_whole_summary(without)), after = OrderedJson::parse(read_whole_summary(with));
   Comparison const comparison = compare({without, with});
-  std::string text = comparison_text(comparison) + "\n" + preference(comparison) + sizes(after, equations) + "\n";
+  std::string text =
+      comparison_text(comparison) + "\n" + preference(comparison, missing_term(after)) + sizes(after, equations) + "\n";
   return text + changes(before, after);
 }
 

@@ -321,13 +321,14 @@ class Fit {
         likelihood_->set_target(preparation_.solver, interrupted ? session_.options.execution : session_.interruptible());
     add_derived_sds(*likelihood_, target, result, report.draws, seed_, report.summary);
     if (interrupted) report.findings.push_back(interrupted_finding("these are the draws so far"));
+    if (!interrupted)  // the checks read them
+      for (int e = 0; e < static_cast<int>(data_.size()); ++e)
+        if (auto states = likelihood_->states(report.draws, e)) report.states.push_back(std::move(*states));
     FinishedFit finished = finished_fit(result, target, report);
     run_fit_checks(finished);
     name_held(report, report.findings);
     if (!interrupted) {
       report.functions = likelihood_->functions(result, report.draws);
-      for (int e = 0; e < static_cast<int>(data_.size()); ++e)
-        if (auto states = likelihood_->states(report.draws, e)) report.states.push_back(std::move(*states));
       report.evidence = evidence_of(result, target, finished.extra);
       report.criteria = criteria_of(finished);
       if (report.evidence->log_evidence) report.prior_widths = prior_widths(priors_of_choice(report), report.draws);

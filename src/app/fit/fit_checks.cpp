@@ -10,9 +10,11 @@
 #include "app/fit/hierarchies.hpp"
 #include "app/session/fit_end.hpp"
 #include "diagnostics/bound_check.hpp"
-#include "diagnostics/input_checks.hpp"
+#include "diagnostics/inputs/input_checks.hpp"
+#include "diagnostics/law/disturbance_terms.hpp"
 #include "diagnostics/model_checks.hpp"
 #include "diagnostics/prior_checks.hpp"
+#include "experiment/noise_statement.hpp"
 #include "model/linear_states.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
@@ -90,6 +92,29 @@ SolverSettings solver_along(FinishedFit const& fit, std::vector<Experiment> cons
   return solves_at_mode(fit, experiments, adaptive) ? adaptive : SolverSettings{.method = std::string(stiff_solver().name)};
 }
 
+/// Of each experiment.
+std::vector<LeftByFit> left_by(FinishedFit const& fit) {
+  std::vector<LeftByFit> left;
+  std::vector<Channel> const& channels = fit.likelihood.model().channels;
+  for (Experiment const& experiment : experiments_of(fit.data)) {
+    LeftByFit each;
+    each.coloured = std::ranges::any_of(fit.report.findings, [&](Finding const& finding) {
+      return (finding.code == FindingCode::residuals_not_white || finding.code == FindingCode::input_in_residuals) &&
+             std::ranges::find(finding.names, experiment.name) != finding.names.end();
+    });
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      int scored = 0;
+      for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) scored += experiment.is_scored(c, i) ? 1 : 0;
+      for (FitLine const& line : fit.report.fit)
+        for (Score const& score : line.scores)
+          if (line.channel == channels[c].name && line.experiment == experiment.name && score.name == "chi_squared_per_sample")
+            each.squares += scored * score.value;
+    }
+    left.push_back(each);
+  }
+  return left;
+}
+
 Findings input_timing(FinishedFit& fit) {
   FitOfExperiments const remade{[&](std::vector<Experiment> experiments) {
                                   SolverSettings const solver = solver_along(fit, experiments);
@@ -99,7 +124,7 @@ Findings input_timing(FinishedFit& fit) {
                                   return fit.likelihood.log_densities(experiments, solver_along(fit, experiments), sampled);
                                 }};
   return check_inputs(remade, fit.likelihood.model(), experiments_of(fit.data), fit.objective_kind, fit.preparation.modes.front(),
-                      fit.seed, fit.extra);
+                      left_by(fit), fit.seed, fit.extra);
 }
 
 // --- the solver and unknown functions
@@ -141,6 +166,13 @@ Findings linearisation(FinishedFit& fit) {
                                 ? check_draws(fit.target, *other, fit.result.draws, fit.preparation.modes, fit.seed, fit.extra)
                                 : check_modes(*other, fit.objective_kind, fit.preparation.modes, fit.seed, fit.extra);
   return linearisation_findings(check);
+}
+
+std::string without_terms(FinishedFit const& fit) { return without_disturbance_terms(fit.likelihood.model(), fit.report.states); }
+
+Findings disturbance_terms(FinishedFit& fit) {
+  return check_disturbance_terms(fit.likelihood.model(), fit.report.states,
+                                 [&](std::string const& name) { return mentions(fit.session.source, name); });
 }
 
 Findings particles(FinishedFit& fit) { return fit.likelihood.check_particles(fit.result); }
@@ -195,7 +227,10 @@ Findings all_rows(FinishedFit const& fit, Findings FittedRows::*part) {
 Findings constraint_drift(FinishedFit& fit) { return all_rows(fit, &FittedRows::drift); }
 Findings bands(FinishedFit& fit) { return all_rows(fit, &FittedRows::bands); }
 
-Findings priors(FinishedFit& fit) { return check_priors(fit.report); }
+Findings priors(FinishedFit& fit) {
+  if (fit.objective_kind != ObjectiveKind::likelihood) return check_priors(fit.report);
+  return check_priors(fit.report, Maxima{fit.result.modes, fit.target.parameters()});
+}
 
 constexpr FitCheckRow rows[] = {
     {"prior_size", true, &without_proper_prior, nullptr},
@@ -205,6 +240,7 @@ constexpr FitCheckRow rows[] = {
     {"solver_accuracy", false, &without_solver, &solver_accuracy},
     {"linearisation", false, &without_linearisation, &linearisation, true},
     {"particles", false, &always, &particles, true, true},
+    {"disturbance_terms", false, &without_terms, &disturbance_terms, true},
     {"finite_sums", false, &without_finite_sums, &functions},
     {"hierarchy", false, &without_hierarchy, &hierarchy},
     {"failed_solves", true, &always, &failed_solves},

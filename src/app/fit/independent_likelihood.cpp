@@ -125,7 +125,8 @@ class IndependentLikelihood : public FitLikelihood {
         [&](std::string const& name) { return mentions(source, name); },
         [&](Channel const& channel, std::string const& parameter) { return noise_statement_with(source, channel, parameter); },
         [&](Channel const& channel) { return heavy_tailed_statement(source, channel); },
-        [&](Channel const& channel, std::string const& relative) { return proportional_statement(source, channel, relative); }};
+        [&](Channel const& channel, std::string const& relative) { return proportional_statement(source, channel, relative); },
+        [&](Channel const& channel, std::string const& shape) { return overdispersed_statement(source, channel, shape); }};
     return sysid::check_residuals(*target_, best_of(result), text);
   }
 

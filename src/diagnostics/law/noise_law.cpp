@@ -3,22 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
+#include "diagnostics/law/noise_words.hpp"
 
 namespace sysid {
 namespace {
 
-std::string free_name(LawWords const& words) {
-  std::string name = words.names.front() + "_relative";
-  std::ranges::replace_if(
-      name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  while (words.taken && words.taken(name)) name += "_2";
-  return name;
-}
-
 std::string cure_of_growth(LawWords const& words) {
-  std::string const relative = free_name(words);
+  std::string const relative = free_name(words.names.front() + "_relative", words.taken);
   auto const line = words.proportional(relative);
   std::string const cure = line ? fmt::format("add `parameter {} [-] ~ log_uniform(1e-4, 1)` and write `{}`", relative, *line)
                                 : std::string("let its sd grow with what is predicted");
@@ -39,14 +30,14 @@ std::optional<Finding> noise_law(ResidualLaw const& law, double limit, LawWords 
                     words.channel, words.names.front(), law.growth),
         cure_of_growth(words)};
   if (!law.heavy(limit)) return std::nullopt;
-  auto const line = words.heavy_tailed();
   return Finding{
       FindingCode::noise_law, Severity::warning, words.names,
       fmt::format("the residuals of {} have heavier tails than normal noise (excess kurtosis {:.2g}): a few samples have "
                   "more influence than they should",
                   words.channel, law.excess_kurtosis),
-      "check the largest residuals; if they are measurements, use noise with heavy tails, " +
-          (line ? "`" + *line + "`" : std::string("`student_t` in place of `normal`"))};
+      words.random_states
+          ? "check the largest residuals; if they are measurements, the disturbance does not describe the motion there"
+          : "check the largest residuals; if they are measurements, " + use_heavy_tails(words.heavy_tailed())};
 }
 
 }  // namespace sysid

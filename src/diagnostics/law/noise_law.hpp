@@ -14,6 +14,7 @@ namespace sysid {
 struct LawWords {
   std::vector<std::string> names;                      // of the channel and its experiment
   std::string channel;                                 // as messages name it
+  bool random_states;                                  // which noise with heavy tails does not go with
   std::function<bool(std::string const& name)> taken;  // whether a name stands in the text; may be empty
   /// The statement of the channel's noise with heavy tails, and with a part that is proportional to the signal; nothing where it is
   /// not in the text.

@@ -91,6 +91,39 @@ TEST_CASE("a record without an unmeasured force does not prefer the disturbance"
   CHECK_FALSE(contains(pair.out.str(), "prefers the model with the disturbance"));
 }
 
+TEST_CASE("a disturbance that stands in for a missing term is not recommended, and the term that is named passes with it") {
+  Pair pair(shaken_record(7, 0.02, 500, 1e7));
+  pair.run();
+  std::string const said = pair.out.str();
+  INFO(said);
+  CHECK_FALSE(contains(said, "prefers the model with the disturbance"));
+  CHECK(contains(said, "the disturbance stands in for a missing term"));
+  auto const finding_of = [&](std::string const& task) {
+    json const summary = pair.summary(task);
+    for (json const& each : summary.at("findings"))
+      if (each.at("code") == "disturbance_follows_states") return each;
+    return json();
+  };
+  json const finding = finding_of("post_with_disturbance");
+  REQUIRE_FALSE(finding.is_null());
+  CHECK(finding.at("names") == json{"unmeasured"});
+  CHECK(contains(finding.at("message"), "*y^3"));
+  // As the help says.
+  std::string const help = finding.at("help");
+  std::size_t const line = help.find("`parameter extra") + 1;
+  std::string const declared = help.substr(line, help.find('`', line) - line);
+  CHECK(contains(declared, "[kg/(m^2 s^2)]"));
+  std::string cured = plain;
+  cured.replace(cured.find("  m*y''"), 0, "  " + declared + "\n");
+  cured.replace(cured.find("= x\n"), 4, "= x + extra*y^3\n");
+  std::filesystem::remove_all(pair.folder.path() / "results");
+  pair.run(cured);
+  INFO(pair.out.str());
+  CHECK(finding_of("post_with_disturbance").is_null());
+  json const extra = parameter(pair.summary("post_with_disturbance"), "extra");
+  CHECK(std::abs(extra.at("mean").get<double>() + 1e7) < 4 * extra.at("sd").get<double>());
+}
+
 TEST_CASE("a fit whose model can have no disturbance is fitted without one where others can") {
   Pair pair(shaken_record(5, 0.05, 400));
   pair.run(plain + R"(

@@ -1,21 +1,17 @@
 // Rules and shifts as candidates of one comparison: the one that explains most is told. In discrete time, which reads nothing
 // between samples, the candidates are shifts by whole samples.
-#include "diagnostics/input_checks.hpp"
-
-#include <fmt/format.h>
+#include "diagnostics/inputs/input_checks.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 #include <optional>
-#include <set>
+#include <utility>
 
-#include "core/numeric/statistics.hpp"
-#include "core/text/diagnostic.hpp"
-#include "core/text/words.hpp"
 #include "data/input_rule.hpp"
 #include "data/input_spectrum.hpp"
+#include "diagnostics/inputs/input_words.hpp"
+#include "diagnostics/inputs/steady_gain.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
@@ -23,14 +19,13 @@
 namespace sysid {
 namespace {
 
-constexpr double gain_per_sample = 0.2;  // nats
+constexpr double gain_per_sample = 0.2;                                       // nats
+constexpr double whole_gain_per_sample = 0.35, whole_gain_of_squares = 0.25;  // half of the squared residuals is gone
 constexpr double gain_at_least = 20;
 constexpr double rule_gain_at_least = 10;
-constexpr std::size_t record_parts = 16;
-constexpr double steady_gain = 3.2;  // t with 15 degrees of freedom: 0.3 %, of a rule that is as good as the stated one
-constexpr double as_good = 3;        // nats: of two rules the simpler, of a rule and a shift the rule
-constexpr double noticeable = 1;     // sds, of a parameter's move
-constexpr int most_samples = 5;      // of a shift in whole samples
+constexpr double as_good = 3;                             // nats: of two rules the simpler, of a rule and a shift the rule
+constexpr double noticeable = 1;                          // sds, of a parameter's move
+constexpr int most_samples = 5;                           // of a shift in whole samples
 constexpr int refit_rounds = 12, refit_evaluations = 60;  // by residuals; by gradients
 constexpr std::uint64_t refit_stream = 2;
 
@@ -40,6 +35,18 @@ int scored_samples(Experiment const& experiment) {
   for (std::size_t c = 0; c < experiment.measured.size(); ++c)
     for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) count += experiment.is_scored(c, i) ? 1 : 0;
   return count;
+}
+
+/// Whether a sample says little of the next one.
+bool changes_at_once(InputSignal const& input) {
+  double mean = 0, square = 0, product = 0;
+  for (int i = 0; i < input.rows(); ++i) mean += input.sample(i) / input.rows();
+  for (int i = 0; i < input.rows(); ++i) {
+    double const from_mean = input.sample(i) - mean;
+    square += from_mean * from_mean;
+    if (i > 0) product += from_mean * (input.sample(i - 1) - mean);
+  }
+  return product < 0.5 * square;
 }
 
 bool changes(InputSignal const& input) {
@@ -55,18 +62,20 @@ struct Alternative {
   InputSignal signal;
   double gain = 0;  // in log density at the mode
   bool clear = false;
-  std::vector<double> declared = {};  // the sampled parameters there
+  std::vector<double> declared = {};                    // the sampled parameters there
+  std::optional<Eigen::VectorXd> theta = std::nullopt;  // the same, the sampler's; before: where the search begins
 };
 
 class InputCheck {
  public:
   InputCheck(FitOfExperiments const& fit, Model const& model, std::vector<Experiment> const& experiments,
-             ObjectiveKind objective_kind, Mode const& mode, std::uint64_t seed, Ledger& ledger)
+             ObjectiveKind objective_kind, Mode const& mode, std::vector<LeftByFit> left, std::uint64_t seed, Ledger& ledger)
       : fit_(fit),
         model_(model),
         experiments_(experiments),
         objective_kind_(objective_kind),
         mode_(mode),
+        left_(std::move(left)),
         seed_(seed),
         ledger_(ledger) {}
 
@@ -87,12 +96,36 @@ class InputCheck {
     for (double const shift : {-0.5, 0.5}) all.push_back({std::nullopt, shift, input.shifted(shift)});
     int const scored = scored_samples(experiments_[e]);
     for (Alternative& each : all) weigh(each, e, i, scored);
+    add_whole_samples(all, e, i, scored);
     if (std::none_of(all.begin(), all.end(), [](Alternative const& each) { return each.clear; })) return undecided(all, e, i);
     std::erase_if(all, [](Alternative const& each) { return !each.clear; });
     double const most = std::max_element(all.begin(), all.end(), less_gain)->gain;
     // The first of those that are as good as the best: rules stand before shifts.
     auto const told = std::find_if(all.begin(), all.end(), [&](Alternative const& each) { return each.gain > most - as_good; });
-    return told->rule ? other_rule(*told, e, i, scored) : other_timing(*told, e, i, scored);
+    return told->rule ? other_rule(input_of(e, i), *told->rule, told->gain, scored)
+                      : other_timing(input_of(e, i), told->shift, told->gain, scored);
+  }
+
+  // Each direction goes on while shifts gain. Where an input changes much from sample to sample, half of one says nothing of
+  // several, and all are tried.
+  void add_whole_samples(std::vector<Alternative>& all, std::size_t e, std::size_t i, int scored) {
+    InputSignal const& input = experiments_[e].inputs[i];
+    if (input.rows() < 4 * most_samples) return;
+    bool const coloured = left_[e].coloured, every = (coloured || model_.filtered()) && changes_at_once(input);
+    for (double const half : {-0.5, 0.5}) {
+      Alternative const begin = *std::ranges::find_if(all, [&](Alternative const& each) { return each.shift == half; });
+      if (!every && !begin.clear && !(coloured && begin.gain > as_good)) continue;
+      Alternative last = begin;
+      for (int samples = 1; samples <= most_samples; ++samples) {
+        double const shift = 2 * half * samples;
+        Alternative next{std::nullopt, shift, input.shifted(shift)};
+        next.theta = last.theta;
+        weigh(next, e, i, scored);
+        all.push_back(next);
+        if (!every && !(next.gain > last.gain)) break;
+        if (std::isfinite(next.gain)) last = std::move(next);
+      }
+    }
   }
 
   // A lag in the equation is the same for all experiments, the delay of a recorder need not be.
@@ -135,12 +168,13 @@ class InputCheck {
       follow(other, changed);
       other.gain -= stated.gain;
       other.clear = other.gain > gain_at_least &&
-                    (other.gain > gain_per_sample * scored ||
-                     everywhere(fit_.log_densities(cut, stated.declared), fit_.log_densities(changed, other.declared)));
+                    (other.gain > gain_per_sample * scored || everywhere(of, i, cut, stated.declared, changed, other.declared));
       if (other.clear && (!best.clear || best.gain < other.gain)) best = std::move(other);
     }
     if (!best.clear) return std::nullopt;
-    return other_sample(best, of, i, scored);
+    InputOf input = input_of(of.front(), i);
+    if (of.size() == experiments_.size()) input.on.clear();
+    return other_lag(input, static_cast<int>(best.shift), best.gain, scored);
   }
 
   // Lines through a smooth curve act like a smaller input, which the parameters take up: the response cannot show it, but the
@@ -157,16 +191,7 @@ class InputCheck {
       if (mode_.sd[p] > 0 && move > most) most = move, which = p;
     }
     if (most < noticeable) return std::nullopt;
-    std::string const& parameter = parameters_[which];
-    return Finding{
-        FindingCode::input_rule,
-        Severity::warning,
-        {model_.inputs[i].name, experiments_[e].name, std::string(rule_name(InputRule::cubic)), parameter},
-        fmt::format("input {}{} is smooth between its samples: with `hold cubic` in place of `hold linear`, {} changes by {:.1f} "
-                    "sds, and the fit is as good",
-                    model_.inputs[i].name, on(e), parameter, most),
-        fmt::format("write `hold cubic` ({}) unless you know that the input is linear between samples",
-                    row_of(InputRule::cubic).summary)};
+    return smooth_input(input_of(e, i), parameters_[which], most);
   }
 
   static bool less_gain(Alternative const& a, Alternative const& b) { return a.gain < b.gain; }
@@ -197,9 +222,12 @@ class InputCheck {
     std::vector<Experiment> changed = experiments_;
     changed[e].inputs[i] = other.signal;
     follow(other, changed);
-    other.clear = other.gain > gain_at_least && other.gain > gain_per_sample * scored;
+    bool const whole_samples = !other.rule && std::fabs(other.shift) >= 1;
+    double const per_sample = whole_samples ? whole_gain_per_sample : gain_per_sample;
+    other.clear = other.gain > gain_at_least && other.gain > per_sample * scored &&
+                  (!whole_samples || other.gain > whole_gain_of_squares * left_[e].squares);
     if (other.clear || !other.rule || !(other.gain > rule_gain_at_least)) return;
-    other.clear = everywhere(fit_.log_densities(experiments_, mode_.declared), fit_.log_densities(changed, other.declared));
+    other.clear = everywhere({e}, i, experiments_, mode_.declared, changed, other.declared);
   }
 
   // The mode with these experiments in place of the fit's own: how much higher it is than the fit's, and where.
@@ -210,11 +238,13 @@ class InputCheck {
       widths_.emplace(make_objective(*target, objective_kind_, seed_, refit_stream));
     }
     Objective const objective = widths_->over(*target, objective_kind_);
-    std::vector<Eigen::VectorXd> const points = {theta_of(mode_)};
+    std::vector<Eigen::VectorXd> const points = {other.theta.value_or(theta_of(mode_))};
     std::vector<Climber> climbers = {climber_at(points.front(), objective.log_density(to_lanes(points), ledger_).front())};
     climb(objective, climbers, target->is_expensive() ? refit_evaluations : refit_rounds, ledger_, {});
     other.gain = climbers.front().log_density - mode_.log_density;
     if (!std::isfinite(other.gain)) return;
+    other.theta = climbers.front().theta;
+    other.declared.clear();
     LaneArray declared(target->dimension(), 1);
     target->constrain(to_lanes({climbers.front().theta}), declared);
     for (int p = 0; p < declared.rows(); ++p) other.declared.push_back(declared(p, 0));
@@ -222,92 +252,54 @@ class InputCheck {
       for (ParameterInfo const& each : target->parameters()) parameters_.push_back(each.name);
   }
 
-  // Whether the gain comes from all parts of the record.
-  static bool everywhere(std::vector<std::vector<double>> const& before, std::vector<std::vector<double>> const& after) {
-    std::vector<double> gains(record_parts, 0.0);
-    if (before.empty()) return false;
-    for (std::size_t s = 0; s < before.size(); ++s)
-      for (std::size_t k = 0; k < before[s].size(); ++k) gains[k * record_parts / before[s].size()] += after[s][k] - before[s][k];
-    double mean = 0, square = 0;
-    for (double const gain : gains) mean += gain / record_parts;
-    for (double const gain : gains) square += (gain - mean) * (gain - mean);
-    return mean > steady_gain * std::sqrt(square / (record_parts * (record_parts - 1)));
+  // Whether the gain comes from all parts of these experiments.
+  bool everywhere(std::vector<std::size_t> const& of, std::size_t i, std::vector<Experiment> const& before,
+                  std::vector<double> const& declared_before, std::vector<Experiment> const& after,
+                  std::vector<double> const& declared_after) const {
+    std::vector<std::vector<double>> const old = fit_.log_densities(before, declared_before),
+                                           now = fit_.log_densities(after, declared_after);
+    if (old.empty()) return false;
+    std::vector<double> gains, differences;
+    std::size_t const channels = model_.channels.size();
+    for (std::size_t const e : of) {
+      std::vector<double> const apart = squared_differences(before[e].inputs[i], after[e].inputs[i]);
+      std::size_t const first = gains.size();
+      gains.resize(first + apart.size(), 0.0);
+      differences.insert(differences.end(), apart.begin(), apart.end());
+      for (std::size_t c = 0; c < channels; ++c)
+        for (std::size_t row = 0, k = 0; row < apart.size() && k < old[e * channels + c].size(); ++row)
+          if (before[e].is_scored(c, row)) {
+            gains[first + row] += now[e * channels + c][k] - old[e * channels + c][k];
+            ++k;
+          }
+    }
+    return steady_gain(gains, differences);
+  }
+
+  // [N] between each row and the one before; of discrete time, which reads nothing there, at the row.
+  std::vector<double> squared_differences(InputSignal const& one, InputSignal const& other) const {
+    std::vector<double> squared(static_cast<std::size_t>(one.rows()), 0.0);
+    constexpr double places[] = {0.1, 0.3, 0.5, 0.7, 0.9};
+    for (int row = 0; row < one.rows(); ++row) {
+      double& sum = squared[static_cast<std::size_t>(row)];
+      if (model_.dynamics == Dynamics::discrete) {
+        sum = std::pow(one.sample(row) - other.sample(row), 2);
+      } else if (row > 0) {
+        for (double const s : places) sum += std::pow(one.value(row - 1, s) - other.value(row - 1, s), 2);
+      }
+    }
+    return squared;
   }
 
   std::string on(std::size_t e) const { return experiments_.size() == 1 ? "" : " on " + experiments_[e].name; }
-
-  Finding other_rule(Alternative const& other, std::size_t e, std::size_t i, int scored) const {
-    std::string_view const stated = rule_name(experiments_[e].inputs[i].rule()), better = rule_name(*other.rule);
-    return {FindingCode::input_rule,
-            Severity::warning,
-            {model_.inputs[i].name, experiments_[e].name, std::string(better)},
-            fmt::format("the fit is clearly better with `hold {}` than with `hold {}` for input {}{} (log density higher by {:.0f} "
-                        "for {} samples)",
-                        better, stated, model_.inputs[i].name, on(e), other.gain, scored),
-            fmt::format("write `hold {}` if {}; otherwise check whether a channel was recorded with a delay", better,
-                        row_of(*other.rule).summary)};
-  }
-
-  Finding other_timing(Alternative const& other, std::size_t e, std::size_t i, int scored) const {
-    return {FindingCode::input_timing,
-            Severity::warning,
-            {model_.inputs[i].name, experiments_[e].name},
-            fmt::format(
-                "the fit is much better with input {}{} shifted {} by half a sample (log density higher by {:.0f} for {} samples)",
-                model_.inputs[i].name, on(e), other.shift > 0 ? "later" : "earlier", other.gain, scored),
-            "check the delay of the recording: no other rule between input samples explains the record as well"};
-  }
-
-  // Samples back that the equations read of an input, each once.
-  std::set<int> lags_of(std::size_t input) const {
-    std::vector<NodeId> roots = model_.residuals;
-    for (State const& state : model_.states) roots.push_back(state.derivative);
-    for (Channel const& channel : model_.channels)
-      roots.insert(roots.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
-    std::set<int> lags;
-    for (NodeId const each : model_.graph.reachable(roots)) {
-      Node const& node = model_.graph[each];
-      if (node.operation == Operation::leaf && node.leaf_kind == LeafKind::input && node.index == static_cast<int>(input))
-        lags.insert(node.lag);
-    }
-    return lags;
-  }
-
-  // What to write where the input acts so many samples later than the equations have it.
-  std::string lag_advice(std::size_t i, int later) const {
-    std::string const& input = model_.inputs[i].name;
-    std::string const samples = std::to_string(std::abs(later)) + " " + plural("sample", static_cast<std::size_t>(std::abs(later)));
-    std::set<int> const lags = lags_of(i);
-    if (lags.empty() || *lags.begin() + later < 0)
-      return fmt::format(
-          "the column of {0} is {1} late against the response: move it up by {2} {3} in the file, or correct the "
-          "delay of the recording",
-          input, samples, std::abs(later), plural("row", static_cast<std::size_t>(std::abs(later))));
-    auto const written = [&](int lag) { return lag == 0 ? "`" + input + "`" : fmt::format("`lag({}, {})`", input, lag); };
-    std::string const read = lags.size() == 1
-                                 ? fmt::format("write {} in place of {}", written(*lags.begin() + later), written(*lags.begin()))
-                                 : fmt::format("{} {} {} each lag of `{}`", later > 0 ? "add" : "subtract", std::abs(later),
-                                               later > 0 ? "to" : "from", input);
-    return fmt::format("{} if the system has this delay; otherwise correct the delay of the recording of {}", read, input);
-  }
-
-  Finding other_sample(Alternative const& other, std::vector<std::size_t> const& of, std::size_t i, int scored) const {
-    int const later = static_cast<int>(other.shift);
-    auto const size = static_cast<std::size_t>(std::abs(later));
-    return {FindingCode::input_timing,
-            Severity::warning,
-            {model_.inputs[i].name, experiments_[of.front()].name},
-            fmt::format("the fit is much better with input {}{} shifted {} by {} {} (log density higher by {:.0f} for {} samples)",
-                        model_.inputs[i].name, of.size() == experiments_.size() ? "" : on(of.front()),
-                        later > 0 ? "later" : "earlier", size, plural("sample", size), other.gain, scored),
-            lag_advice(i, later)};
-  }
+  InputOf input_of(std::size_t e, std::size_t i) const { return {model_, experiments_[e], i, on(e)}; }
 
   FitOfExperiments const& fit_;
   Model const& model_;
   std::vector<Experiment> const& experiments_;
   ObjectiveKind objective_kind_;
   Mode const& mode_;
+  std::vector<LeftByFit> left_;
   std::uint64_t seed_;
   Ledger& ledger_;
   std::vector<std::string> parameters_ = {};  // names of those sampled
@@ -319,8 +311,9 @@ class InputCheck {
 }  // namespace
 
 Findings check_inputs(FitOfExperiments const& fit, Model const& model, std::vector<Experiment> const& experiments,
-                      ObjectiveKind objective_kind, Mode const& mode, std::uint64_t seed, Ledger& ledger) {
-  return InputCheck(fit, model, experiments, objective_kind, mode, seed, ledger).run();
+                      ObjectiveKind objective_kind, Mode const& mode, std::vector<LeftByFit> left, std::uint64_t seed,
+                      Ledger& ledger) {
+  return InputCheck(fit, model, experiments, objective_kind, mode, std::move(left), seed, ledger).run();
 }
 
 }  // namespace sysid

@@ -1,0 +1,30 @@
+#include "diagnostics/law/noise_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace sysid {
+
+std::string free_name(std::string wanted, std::function<bool(std::string const& name)> const& taken) {
+  std::ranges::replace_if(
+      wanted, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  while (taken && taken(wanted)) wanted += "_2";
+  return wanted;
+}
+
+std::string use_heavy_tails(std::optional<std::string> const& line) {
+  return "use noise with heavy tails, " + (line ? "`" + *line + "`" : std::string("`student_t` in place of `normal`"));
+}
+
+std::string use_overdispersed(std::string const& shape, std::optional<std::string> const& line) {
+  std::string const noise =
+      line ? fmt::format("add `parameter {} [-] ~ log_uniform(0.1, 1000)` and write `{}`", shape, *line)
+           : fmt::format(
+                 "use `negative_binomial` with the same mean and `shape = {}`, a parameter with a prior, in place of `poisson`",
+                 shape);
+  return "the counts scatter more than `poisson` noise, or the model is incomplete: " + noise + ", then check the residuals";
+}
+
+}  // namespace sysid

@@ -1,0 +1,24 @@
+// The user's text, as findings quote it in their cures.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "model/model.hpp"
+
+namespace sysid {
+
+/// What the user's text says, of which a model has only the meaning.
+struct UserText {
+  /// Whether the name stands anywhere in it.
+  std::function<bool(std::string const& name)> mentions;
+  /// The noise statement of a channel with `parameter` added to what the noise lies about; nothing where it is not in the text.
+  std::function<std::optional<std::string>(Channel const& channel, std::string const& parameter)> noise_statement_with;
+  /// The same with heavy tails, and with a part of the noise that is proportional to what it lies about, as `relative` times that.
+  std::function<std::optional<std::string>(Channel const& channel)> heavy_tailed = {};
+  std::function<std::optional<std::string>(Channel const& channel, std::string const& relative)> proportional = {};
+  /// The same of counts that scatter more than Poisson's, by a negative binomial of this shape.
+  std::function<std::optional<std::string>(Channel const& channel, std::string const& shape)> overdispersed = {};
+};
+
+}  // namespace sysid
