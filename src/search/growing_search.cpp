@@ -51,7 +51,7 @@ Ledger scaled(Ledger const& part, double share) {
 
 class GrowingSearch {
  public:
-  GrowingSearch(Target const& whole, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context)
+  GrowingSearch(Target const& whole, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context, int finer)
       : whole_(whole),
         objective_kind_(objective_kind),
         records_(records),
@@ -61,7 +61,8 @@ class GrowingSearch {
         first_share_(first_share(whole, records)),
         draws_(draw_prior(whole, key_, breadth_.draws)),
         scales_(make_objective(whole, ObjectiveKind::posterior, draws_)),
-        budget_(context, "searching the prior on growing records", announced()) {
+        budget_(context, "searching the prior on growing records", announced()),
+        finer_(std::min(finer, records.finest)) {
     begin_without_functions(whole_, draws_);
   }
 
@@ -310,7 +311,7 @@ class GrowingSearch {
   SearchBudget budget_;
   std::function<bool()> const stop_ = budget_.stop();
   std::uint64_t stage_ = 0;
-  int finer_ = 0, finer_of_ = 0;  // refinements of the solver; those of the target below
+  int finer_, finer_of_ = 0;  // refinements of the solver; those of the target below
   std::unique_ptr<Target const> finer_whole_;
   bool begun_ = false, looking_again_ = false;
   double fitted_second_ = -infinity;                              // of the second stage
@@ -319,14 +320,19 @@ class GrowingSearch {
 
 }  // namespace
 
-bool worth_growing(Target const& target, ShorterRecords const& records) {
-  if (!records.make || target.climbs_by_gradient() || target.dimension() == 0) return false;
-  double const numbers = static_cast<double>(target.residual_count()) * target.dimension();
-  return numbers >= long_jacobian && first_share(target, records) <= longest_first_part;
+bool can_grow(Target const& target, ShorterRecords const& records) {
+  return records.make && !target.climbs_by_gradient() && target.dimension() > 0 &&
+         first_share(target, records) <= longest_first_part;
 }
 
-GrownModes search_growing(Target const& whole, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context) {
-  return GrowingSearch(whole, objective_kind, records, context).run();
+bool worth_growing(Target const& target, ShorterRecords const& records) {
+  double const numbers = static_cast<double>(target.residual_count()) * target.dimension();
+  return numbers >= long_jacobian && can_grow(target, records);
+}
+
+GrownModes search_growing(Target const& whole, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context,
+                          int finer) {
+  return GrowingSearch(whole, objective_kind, records, context, finer).run();
 }
 
 }  // namespace sysid

@@ -28,6 +28,8 @@ struct ShorterRecords {
 /// Whether a record is so long, and its parameters so many, that a search begins with a part of it: the Jacobian of its residuals
 /// has 4,000 numbers or more, and half of the rows or less are enough to begin with.
 bool worth_growing(Target const& target, ShorterRecords const& records);
+/// Whether half of the rows or less are enough to begin with, however few there are.
+bool can_grow(Target const& target, ShorterRecords const& records);
 
 struct GrownModes {
   std::vector<Mode> modes;  // ranked; empty where none was found
@@ -56,6 +58,8 @@ struct GrownModes {
 /// while the best mode may have been missed and the rest pays for it. Where the whole record is followed worse than a part, two
 /// stages are made from other draws; if they follow these rows better than the first pass did, it is made again from there, even if
 /// nothing is left to pay for it: that is the exception. Simulations of a part count as their share in the ledger.
-GrownModes search_growing(Target const& whole, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context);
+/// finer: how often the solver is refined from the beginning, no more than it may be.
+GrownModes search_growing(Target const& whole, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context,
+                          int finer = 0);
 
 }  // namespace sysid

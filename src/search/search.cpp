@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/order.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/system/failed_places.hpp"
 #include "core/text/words.hpp"
@@ -21,6 +22,7 @@
 #include "search/laplace.hpp"
 #include "search/local_searches.hpp"
 #include "search/mode_findings.hpp"
+#include "search/search_step.hpp"
 #include "search/starts.hpp"
 #include "search/work_left.hpp"
 
@@ -121,8 +123,60 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
 
 }  // namespace
 
+namespace {
+
+/// Whether what a mode leaves of the record goes on from sample to sample: so does a wrong model's error, and that of a right one
+/// with the wrong period.
+bool leaves_motion(Target const& target, Mode const& mode) {
+  constexpr double much = 0.3;    // of the correlation from one sample to the next
+  constexpr double far_off = 30;  // medians: single rows that carry the scale, not a sample, are larger, as are outliers
+  Ledger untold;
+  LaneArray rows(target.residual_count(), 1);
+  target.residuals(to_lanes({theta_of(mode)}), rows, untold);
+  std::vector<double> sizes;
+  for (int r = 0; r < rows.rows(); ++r) sizes.push_back(std::fabs(rows(r, 0)));
+  sort_numbers(sizes);
+  double const limit = far_off * sorted_quantile(sizes, 0.5);
+  auto const residual = [&](int r) { return std::fabs(rows(r, 0)) > limit ? 0 : rows(r, 0); };
+  double square = 0, product = 0;
+  for (int r = 0; r < rows.rows(); ++r) {
+    square += residual(r) * residual(r);
+    if (r > 0) product += residual(r) * residual(r - 1);
+  }
+  return product > much * square;
+}
+
+/// Nats by which another search must be higher: its solver is a finer one.
+constexpr double clearly_higher = 3;
+constexpr int finer_at_second_look = 2;
+
+/// A short record on which every wrong period is worse than none: searched from its first rows, as long ones are, where the best
+/// mode leaves motion in it.
+void look_again(Target const& target, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context,
+                SearchResult& found) {
+  auto const stop = [&] { return context.stop_requested(); };
+  if (found.modes.empty() || target.is_estimated() || !can_grow(target, records) ||
+      !kept_answer(context.journal, stop, [&] { return leaves_motion(target, found.modes.front()); }))
+    return;
+  GrownModes grown = search_growing(target, objective_kind, records, context, finer_at_second_look);
+  if (context.stop_requested()) {
+    found.interrupted = true;
+    found.modes.clear();
+    return;
+  }
+  if (grown.modes.empty() || !(grown.modes.front().log_density > found.modes.front().log_density + clearly_higher)) return;
+  found = conclude(target, objective_kind, std::move(grown.modes), true, grown.draws, context);
+  found.finer = grown.finer;
+}
+
+}  // namespace
+
 SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context, ShorterRecords const& records) {
-  if (!worth_growing(target, records)) return search_whole(target, objective_kind, context);
+  if (!worth_growing(target, records)) {
+    SearchResult result = search_whole(target, objective_kind, context);
+    if (!result.interrupted) look_again(target, objective_kind, records, context, result);
+    return result;
+  }
   GrownModes found = search_growing(target, objective_kind, records, context);
   SearchResult result = conclude(target, objective_kind, std::move(found.modes), found.begun, found.draws, context);
   result.finer = found.finer;
