@@ -9,7 +9,6 @@
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
-#include "data/cell/usual_step.hpp"
 #include "experiment/record_request.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/lags.hpp"
@@ -267,20 +266,6 @@ std::vector<NodeId> derivatives_of(Model const& model) {
   return derivatives;
 }
 
-/// The step that differs most from the median, and the row at its end.
-struct OddStep {
-  std::size_t row;
-  double step, median;
-};
-OddStep oddest_step(std::vector<double> const& time) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
-  double const median = usual_step(time).median;
-  auto const odd = std::max_element(steps.begin(), steps.end(),
-                                    [&](double a, double b) { return std::fabs(a - median) < std::fabs(b - median); });
-  return {static_cast<std::size_t>(odd - steps.begin()) + 1, *odd, median};
-}
-
 /// An input that is neither held nor, where the equations read all inputs linearly, a straight line between its samples.
 struct CurvedInput {
   std::size_t index;
@@ -297,29 +282,17 @@ std::optional<CurvedInput> curved_input(Experiment const& experiment, Model cons
 
 }  // namespace
 
-bool allows_exact_steps(Experiment const& experiment, Model const& model) {
+bool is_linear_in_states(Model const& model) {
   return model.integrated() && !model.implicit && std::ssize(model.states) <= most_exact_states &&
-         !find_nonlinear(model.graph, derivatives_of(model)) && unequal_step(experiment.time) == 0 &&
-         !curved_input(experiment, model);
+         !find_nonlinear(model.graph, derivatives_of(model));
+}
+
+bool allows_exact_steps(Experiment const& experiment, Model const& model) {
+  return is_linear_in_states(model) && !curved_input(experiment, model);
 }
 
 void require_exact_steps(Experiment const& experiment, DataBlock const& block, Model const& model, SolverSettings const& solver) {
   if (!model.integrated() || !solver.row().exact) return;
-  if (unequal_step(experiment.time) > 0) {
-    OddStep const odd = oddest_step(experiment.time);
-    throw UserError(
-        {Severity::error,
-         "E4205",
-         fmt::format("row {} of `{}` is {:.9g} s after the row before, but the median step is {:.9g} s: `{}` needs equal steps",
-                     experiment.first_row + static_cast<int>(odd.row), block.mention(), odd.step, odd.median, solver.method),
-         Label{block.time ? block.time->span : block.span, {}},
-         {},
-         std::fabs(odd.step - odd.median) < 0.1 * odd.median
-             ? "use another solver; if the sampling was regular and the printed times are rounded, give `rate` instead of the time "
-               "column"
-             : "use another solver, or split the record at this row and fit the parts as several experiments",
-         {solver.method}});
-  }
   std::optional<CurvedInput> const curved = curved_input(experiment, model);
   if (!curved) return;
   std::string const& name = model.inputs[curved->index].name;
@@ -336,6 +309,10 @@ void require_exact_steps(Experiment const& experiment, DataBlock const& block, M
        fmt::format("use another solver, or `hold {}` if that is what the input did",
                    curved->to_be_held ? "zero_order" : "zero_order` or `hold linear"),
        {solver.method, name}});
+}
+
+bool allow_exact_steps(std::vector<ExperimentData> const& data, Model const& model) {
+  return std::ranges::all_of(data, [&](ExperimentData const& each) { return allows_exact_steps(each.experiment, model); });
 }
 
 std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data) {

@@ -40,10 +40,12 @@ Record load_record(DataBlock const& block, Model const& model, std::filesystem::
 /// Throws UserError when they are outside the record, the start needs more rows, or the model needs a sample that is missing.
 Experiment cut(Record const& record, DataBlock const& block, Model const& model, int part, StartRule start);
 
-/// Whether a solver whose step is exact for linear equations could take the rows.
+/// Whether the equations are such that a solver's step may be exact for them.
+bool is_linear_in_states(Model const& model);
+/// Whether such a solver could take the rows.
 bool allows_exact_steps(Experiment const& experiment, Model const& model);
-/// UserError where a solver's step is exact, but not along these rows: they are not equally far apart, or an input between them is
-/// no straight line, or no constant where the equations read it other than linearly.
+/// UserError where a solver's step is exact, but not along these rows: an input between them is no straight line, or no constant
+/// where the equations read it other than linearly.
 void require_exact_steps(Experiment const& experiment, DataBlock const& block, Model const& model, SolverSettings const& solver);
 
 /// What a task has of one of its experiments.
@@ -53,6 +55,8 @@ struct ExperimentData {
   Experiment experiment;  // cut and started as the task says; its name is that of the data, "bench.train"
 };
 std::vector<Experiment> experiments_of(std::vector<ExperimentData> const& data);
+/// Whether a solver whose step is exact could take all of them.
+bool allow_exact_steps(std::vector<ExperimentData> const& data, Model const& model);
 
 /// The parameters of a model over the experiments of a fit.
 std::shared_ptr<ParameterSpace const> parameter_space(Model const& model, std::vector<ExperimentUse> const& uses);

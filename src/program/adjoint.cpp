@@ -83,7 +83,10 @@ AdjointExpressions adjoint_of(SimulationSource const& source, Graph& graph, std:
   for (std::size_t i = gathered; i < slopes.size(); ++i) result.slopes.push_back(graph.add(slopes[i], back[states + i - gathered]));
   result.start = added(graph, {slopes.begin(), slopes.begin() + static_cast<std::ptrdiff_t>(count)},
                        pull_back(graph, source.initial, adjoints, parameters));
-  if (once) result.start = added(graph, result.start, pull_back(graph, values, std::span(slopes).subspan(count), parameters));
+  if (once) {
+    result.values = pull_back(graph, values, std::span(slopes).subspan(count), parameters);
+    result.start = added(graph, result.start, result.values);
+  }
   by.insert(by.end(), parameters.begin(), parameters.end());
   for (ChannelSource const& channel : source.channels) {
     std::vector<NodeId> const ones(channel.sums.size(), graph.constant(1));

@@ -31,6 +31,7 @@ struct AdjointExpressions {
   std::vector<NodeId> slopes;                // [parameters] their leaf + dF/dp' a; then [values v] their leaf + dF/dv' a
   std::vector<std::vector<NodeId>> observe;  // per channel [states] their leaf + dl/dx
   std::vector<NodeId> start;                 // [parameters] their leaf + dx_0/dp' a + dv/dp' (leaves of v)
+  std::vector<NodeId> values;                // [parameters] dv/dp' (leaves of v); empty: there are none
   std::vector<std::vector<NodeId>> direct;   // per channel [parameters] dl/dp
 };
 

@@ -56,9 +56,9 @@ void touch(Code const& code, std::set<std::uint32_t>& registers) {
 
 void number_registers(SimulationProgram& program, int widest_row) {
   program.uniforms = static_cast<int>(program.constants.size()) + widest_row;
-  std::vector<Section*> sections{&program.prologue, &program.start,        &program.carry,
-                                 &program.step,     &program.record,       &program.record_after,
-                                 &program.epilogue, &program.reverse.step, &program.reverse.start};
+  std::vector<Section*> sections{&program.prologue,      &program.start,         &program.carry,    &program.step,
+                                 &program.record,        &program.record_after,  &program.epilogue, &program.reverse.step,
+                                 &program.reverse.start, &program.reverse.values};
   for (auto* const observations : {&program.observe, &program.reverse.observe})
     for (Section& observe : *observations) sections.push_back(&observe);
   for (Section* section : sections) {
@@ -73,6 +73,10 @@ void number_registers(SimulationProgram& program, int widest_row) {
   std::set<std::uint32_t> hot;
   touch(program.step.code, hot);
   touch(program.reverse.step.code, hot);
+  int const first = program.registers.first_hoisted();
+  for (std::uint32_t const each : hot)
+    if (auto const r = static_cast<int>(each); r >= first && r < first + program.registers.hoisted)
+      program.length_values.push_back(r);
   for (auto const* const observations : {&program.observe, &program.reverse.observe})
     for (Section const& observe : *observations) touch(observe.code, hot);
   program.hot_registers = static_cast<int>(hot.size());

@@ -60,6 +60,7 @@ class Compilation {
     compile_records();
     compile_epilogue();
     if (!program_.source.adjoint_by.empty()) compile_reverse();
+    if (!adjoint_.values.empty()) compile_reverse_values();
     compile_start();
     compile_prologue();
     widest_row_ = std::max(widest_row_, static_cast<int>(source.channels.size()) + data_sums_);
@@ -128,6 +129,17 @@ class Compilation {
     goals.clear();
     add_goals(adjoint_.start, slope_leaf, slope_bank, of_start, goals);
     reverse.start = section(goals);
+  }
+
+  /// Of a record whose steps differ in length, the values of each go their way alone.
+  void compile_reverse_values() {
+    std::vector<NodeId> sums;
+    for (std::size_t i = 0; i < adjoint_.values.size(); ++i)
+      sums.push_back(graph_.add(graph_.leaf(LeafKind::unknown, slope_leaf + static_cast<int>(i)), adjoint_.values[i]));
+    Algebra algebra(graph_, sums);
+    std::vector<Goal> goals;
+    add_goals(sums, slope_leaf, slope_bank, algebra, goals);
+    program_.reverse.values = section(goals);
   }
 
   /// Of a bank's registers, those that change: not the leaf that stands for the register itself.

@@ -115,6 +115,7 @@ struct ReverseSections {
   Section step;                  // states before a step, derivatives after it -> derivatives before it
   std::vector<Section> observe;  // per channel: what a summed sample adds to the derivatives by the states
   Section start;                 // what the initial states add to the derivatives by the parameters
+  Section values;                // what a method's values of one length of a step add there, once; `start` does it, too
   struct Direct {
     int row, slope;
   };
@@ -127,10 +128,11 @@ struct SimulationProgram {
   SimulationSource source;
 
   RegisterLayout registers;
-  int hot_registers = 0;  // rows that a step and the observations touch: they should stay in the first-level cache
+  std::vector<int> length_values;  // hoisted ones that a step reads, forwards or backwards
+  int hot_registers = 0;           // rows that a step and the observations touch: they should stay in the first-level cache
   std::vector<double> constants;
   int uniforms = 0;  // constants and the widest row
-  Section prologue;  // parameters, a step that all samples share -> hoisted values
+  Section prologue;  // parameters, the length of a step -> hoisted values
   Section start;     // parameters, hoisted values, data of the first sample -> initial states
   Section carry;     // what is to be remembered of a sample -> the last states
   Section step;      // one integrator step, one attempt at one, or the map from sample to sample; empty for SUNDIALS' solvers

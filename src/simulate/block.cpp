@@ -8,6 +8,17 @@
 #include "simulate/machine_loop.hpp"
 
 namespace sysid {
+namespace {
+
+/// A section that reads no data but the length of a step.
+void run_of_length(LaneFile const& file, Section const& section, int length) {
+  bool const prologue = &section == &file.program.prologue;
+  file.load_row(prologue ? file.schedule.prologue_row(length) : file.schedule.reverse_values_row(length),
+                section.uniforms.kernel.outputs);
+  run(*section.linked, file.executor, file.file);
+}
+
+}  // namespace
 
 Block::Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes, native::LoopKind loop,
              bool (*stopped)())
@@ -25,6 +36,8 @@ Block::Block(SimulationProgram const& program, Schedule const& schedule, Executo
             memory_.view().data() + uniform_space(program.uniforms),
             stopped},
       stepper_(make_stepper(file_)),
+      length_values_(program, executor, file_.registers, schedule.lengths().count(),
+                     [file = file_](Section const& section, int length) { run_of_length(file, section, length); }),
       death_(static_cast<std::size_t>(lanes), -1) {
   // Where steps are not fixed, records are interpreted: nearly all the time goes into the steps.
   if (loop == native::LoopKind::observe || loop == native::LoopKind::tape)
@@ -40,9 +53,23 @@ void Block::set_parameters(ConstLanes parameters) {
     double* const row = file_.registers + r * executor_.stride();
     for (int w = 0; w < executor_.width; ++w) row[w] = parameters(r, std::min(w, lanes_ - 1));
   }
-  file_.load_row(schedule_.prologue_row(), program_.prologue.uniforms.kernel.outputs);
-  run(*program_.prologue.linked, executor_, file_.file);
+  run_of_length(file_, program_.prologue, 0);
+  length_values_.parameters_changed();
   stepper_->parameters_changed();
+}
+
+void Block::take_length(int sample) {
+  if (schedule_.lengths().count() > 1) length_values_.take(schedule_.lengths().of[static_cast<std::size_t>(sample)]);
+}
+
+template <class Action>
+void Block::in_parts(int from, int to, Action const& action) {
+  if (schedule_.lengths().count() == 1) return action(from, to);
+  for (int end = from; from < to; from = end) {
+    end = std::min(to, schedule_.lengths().until[static_cast<std::size_t>(from)]);
+    take_length(from);
+    action(from, end);
+  }
 }
 
 void Block::start() {
@@ -55,6 +82,7 @@ void Block::start() {
 }
 
 void Block::step(int sample) {
+  take_length(sample);
   if (runs_loops())
     return call(observe_loop_ != nullptr ? observe_loop_ : record_loop_,
                 {.from = sample, .to = sample + 1, .look_from = sample + 1, .step_to = sample + 1});
@@ -63,6 +91,7 @@ void Block::step(int sample) {
 }
 
 void Block::step(int sample, int substep) {
+  take_length(sample);
   int const width = program_.step.uniforms.kernel.outputs;
   double const* const row = schedule_.step_row(sample, substep);
   // The machine code finds the row of a sample by its number.
@@ -95,7 +124,9 @@ void Block::observe(int sample) {
 
 void Block::step_to(int from, int to) {
   if (runs_loops() && !program_.source.corrects())
-    return call(observe_loop_ != nullptr ? observe_loop_ : record_loop_, {.from = from, .to = to, .look_from = to, .step_to = to});
+    return in_parts(from, to, [&](int begin, int end) {
+      call(observe_loop_ != nullptr ? observe_loop_ : record_loop_, {.from = begin, .to = end, .look_from = end, .step_to = end});
+    });
   for (int i = from; i < to; ++i) {
     pass(i);
     step(i);
@@ -108,7 +139,9 @@ void Block::pass(int sample) {
 
 void Block::advance(int from, int to, int step_to) {
   if (observe_loop_ != nullptr && fixed_step())
-    return call(observe_loop_, {.from = from, .to = to, .look_from = from, .step_to = step_to});
+    return in_parts(from, to, [&](int begin, int end) {
+      call(observe_loop_, {.from = begin, .to = end, .look_from = begin, .step_to = step_to});
+    });
   for (int i = from; i < to; ++i) {
     if (observe_loop_ != nullptr)
       call(observe_loop_, {.from = i, .to = i + 1, .look_from = i});
@@ -150,7 +183,10 @@ void Block::record(int from, int to, Lanes out) {
   if (record_loop_ == nullptr || !fixed_step()) return record_interpreted(from, to, out);
   int const rows = (to - from) * program_.registers.records;
   if (recorded_.rows() < rows) recorded_ = LaneArray(rows, executor_.width);
-  call(record_loop_, {.out = recorded_.view().data(), .from = from, .to = to, .look_from = from, .step_to = to - 1});
+  in_parts(from, to, [&](int begin, int end) {
+    double* const first = recorded_.row((begin - from) * program_.registers.records).data();
+    call(record_loop_, {.out = first, .from = begin, .to = end, .look_from = begin, .step_to = to - 1});
+  });
   for (int r = 0; r < rows; ++r) std::copy_n(recorded_.row(r).begin(), lanes_, out.row(r).begin());
 }
 
@@ -189,6 +225,7 @@ void Block::load(ConstLanes registers) {
     for (int w = 0; w < executor_.width; ++w) row[w] = registers(r, std::min(w, lanes_ - 1));
   }
   std::fill(death_.begin(), death_.end(), -1);
+  length_values_.registers_changed();
 }
 
 void Block::store(Lanes registers) const {
@@ -236,6 +273,7 @@ bool Block::bury(int sample) {
     for (int w = 0; w < executor_.width; ++w)
       if (w >= lanes_ || death_[static_cast<std::size_t>(w)] >= 0) row[w] = row[live];
   }
+  length_values_.registers_changed();
   return true;
 }
 

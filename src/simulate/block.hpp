@@ -10,6 +10,7 @@
 #include "native/machine_code.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/simulation_program.hpp"
+#include "simulate/lengths/length_values.hpp"
 #include "simulate/schedule.hpp"
 #include "simulate/stepper.hpp"
 
@@ -101,6 +102,11 @@ class Block {
   void observe(int sample);
   void reverse_interpreted(int sample, bool step, double const* tape);
   void record_interpreted(int from, int to, Lanes out);
+  /// Brings what hangs on the length of the step from `sample` to where the step reads it.
+  void take_length(int sample);
+  /// Parts [a, b) of samples [from, to), in their order, from which all steps are of one length, whose values are in place.
+  template <class Action>
+  void in_parts(int from, int to, Action const& action);
   void correct_recorded(int sample);
   /// What the call leaves open becomes that of the schedule.
   void call(native::Function function, native::Call call) const;
@@ -111,6 +117,7 @@ class Block {
   LaneArray memory_;
   LaneFile file_;
   std::unique_ptr<Stepper> stepper_;
+  LengthValues length_values_;
   std::vector<int> death_;
   native::Function observe_loop_ = nullptr, record_loop_ = nullptr, reverse_loop_ = nullptr;  // null: interpreted
   LaneArray recorded_;  // by machine code, for all lanes of the executor

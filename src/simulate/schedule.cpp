@@ -13,23 +13,30 @@ namespace {
 
 constexpr int rows_at_once = 4096;
 
-// Of a part of a record whose steps are equal, no step differs from the part's mean by more than twice as much.
-constexpr double tolerance_of_parts = 2.5e-6;
-
 std::size_t measured_channels(SimulationSource const& source) {
   return static_cast<std::size_t>(std::ranges::count_if(source.channels, [](ChannelSource const& each) { return !each.always; }));
 }
 
 bool suits_exact_steps(Experiment const& experiment) {
-  return unequal_step(experiment.time, tolerance_of_parts) == 0 &&
-         std::all_of(experiment.inputs.begin(), experiment.inputs.end(),
-                     [](InputSignal const& each) { return each.degree() <= 1; });
+  return std::ranges::all_of(experiment.inputs, [](InputSignal const& each) { return each.degree() <= 1; });
+}
+
+/// Of a method that computes nothing from the length of a step, what reads a length reads the mean.
+StepLengths lengths_of(Experiment const& experiment, SolverSettings const& solver) {
+  std::size_t const samples = experiment.time.size();
+  if (solver.row().exact) return step_lengths(experiment.time);
+  return {{samples > 1 ? mean_step(experiment.time) : 0},
+          std::vector<int>(samples),
+          std::vector<int>(samples, static_cast<int>(samples))};
 }
 
 }  // namespace
 
 Schedule::Schedule(SimulationProgram const& program, Experiment const& experiment, SolverSettings const& solver)
-    : experiment_(experiment), solver_(solver), map_(program.source.map && !program.source.stepped) {
+    : experiment_(experiment),
+      solver_(solver),
+      lengths_(lengths_of(experiment, solver)),
+      map_(program.source.map && !program.source.stepped) {
   std::size_t const channels = program.source.channels.size();
   if (solver.substeps < 1 || (map_ && solver.substeps > 1) || solver.method != program.source.integrator ||
       static_cast<int>(experiment.inputs.size()) < program.source.inputs ||
@@ -52,24 +59,26 @@ Schedule::Schedule(SimulationProgram const& program, Experiment const& experimen
 
   if (solver.row().exact && !map_ && (solver.substeps > 1 || !suits_exact_steps(experiment)))
     throw InternalError("an exact step along samples that it does not suit");
-  prologue_ = tabulate(program.prologue.uniforms, 1, false);
-  start_ = tabulate(program.start.uniforms, 1, false);
-  carry_ = tabulate(program.carry.uniforms, samples(), false);
+  prologue_ = tabulate_lengths(program.prologue.uniforms);
+  start_ = tabulate_samples(program.start.uniforms, 1);
+  carry_ = tabulate_samples(program.carry.uniforms, samples());
   // An embedded method finds its own steps: its rows belong to whole intervals.
-  if (solver.row().in_program) steps_ = tabulate(program.step.uniforms, (samples() - 1) * solver.substeps, true);
-  records_ = tabulate(program.record.uniforms, samples(), false);
-  records_after_ = tabulate(program.record_after.uniforms, samples(), false);
-  for (Section const& observe : program.observe) observe_.push_back(tabulate(observe.uniforms, samples(), false));
+  if (solver.row().in_program) steps_ = tabulate_steps(program.step.uniforms);
+  records_ = tabulate_samples(program.record.uniforms, samples());
+  records_after_ = tabulate_samples(program.record_after.uniforms, samples());
+  for (Section const& observe : program.observe) observe_.push_back(tabulate_samples(observe.uniforms, samples()));
 
   if (!program.source.adjoint_by.empty()) {
-    reverse_steps_ = tabulate(program.reverse.step.uniforms, (samples() - 1) * solver.substeps, true);
-    for (Section const& observe : program.reverse.observe) reverse_observe_.push_back(tabulate(observe.uniforms, samples(), false));
-    reverse_start_ = tabulate(program.reverse.start.uniforms, 1, false);
+    reverse_steps_ = tabulate_steps(program.reverse.step.uniforms);
+    for (Section const& observe : program.reverse.observe)
+      reverse_observe_.push_back(tabulate_samples(observe.uniforms, samples()));
+    reverse_start_ = tabulate_samples(program.reverse.start.uniforms, 1);
+    reverse_values_ = tabulate_lengths(program.reverse.values.uniforms);
   }
 
   for (int const count : counts_) epilogue_.push_back(count);
   for (std::size_t c = 0; c < channels; ++c) {
-    UniformRows const terms = tabulate(program.data_sums[c], samples(), false);
+    UniformRows const terms = tabulate_samples(program.data_sums[c], samples());
     std::vector<double> sums(static_cast<std::size_t>(terms.width));
     for (int i = 0; i < samples(); ++i)
       for (std::size_t k = 0; k < sums.size() && summed(static_cast<int>(c), i); ++k) sums[k] += terms.row(i)[k];
@@ -123,7 +132,7 @@ double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const
     case LeafKind::step_size:
       return interval / solver_.substeps;
     case LeafKind::equal_step:
-      return mean_step(experiment_.time);
+      return length_of_step(sample);
     case LeafKind::coefficient: {
       InputSignal const& input = experiment_.inputs[static_cast<std::size_t>(leaf.index / (largest_input_degree + 1))];
       auto const power = static_cast<std::size_t>(leaf.index % (largest_input_degree + 1));
@@ -161,7 +170,7 @@ double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
     case LeafKind::time:
       return row >= 0 ? time(row) : time(0) + row * (time(1) - time(0));
     case LeafKind::equal_step:
-      return mean_step(experiment_.time);
+      return length_of_step(sample);
     case LeafKind::measured:
       return measured_sample(experiment_, leaf.index, row);
     default:
@@ -169,7 +178,24 @@ double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
   }
 }
 
-UniformRows Schedule::tabulate(UniformTable const& table, int rows, bool steps) const {
+UniformRows Schedule::tabulate_steps(UniformTable const& table) const {
+  return tabulate(table, (samples() - 1) * solver_.substeps, [this](UniformLeaf const& leaf, int row) {
+    return at_step(leaf, row / solver_.substeps, row % solver_.substeps);
+  });
+}
+
+UniformRows Schedule::tabulate_samples(UniformTable const& table, int rows) const {
+  return tabulate(table, rows, [this](UniformLeaf const& leaf, int row) { return at_sample(leaf, row); });
+}
+
+UniformRows Schedule::tabulate_lengths(UniformTable const& table) const {
+  return tabulate(table, lengths_.count(), [this](UniformLeaf const& leaf, int row) {
+    if (leaf.kind != LeafKind::equal_step) throw InternalError("what is computed before the first step reads data");
+    return lengths_.values[static_cast<std::size_t>(row)];
+  });
+}
+
+UniformRows Schedule::tabulate(UniformTable const& table, int rows, ValueOf const& value_of) {
   int const width = table.kernel.outputs;
   UniformRows result{width, std::vector<double>(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width))};
   if (width == 0) return result;
@@ -180,9 +206,7 @@ UniformRows Schedule::tabulate(UniformTable const& table, int rows, bool steps) 
     LaneArray leaves(table.kernel.inputs, count), values(width, count);
     for (int k = 0; k < table.kernel.inputs; ++k) {
       UniformLeaf const& leaf = table.leaves[static_cast<std::size_t>(k)];
-      for (int r = 0; r < count; ++r)
-        leaves(k, r) =
-            steps ? at_step(leaf, (first + r) / solver_.substeps, (first + r) % solver_.substeps) : at_sample(leaf, first + r);
+      for (int r = 0; r < count; ++r) leaves(k, r) = value_of(leaf, first + r);
     }
     run(table.kernel, leaves, values);
     double* row = result.values.data() + static_cast<std::size_t>(first) * static_cast<std::size_t>(width);

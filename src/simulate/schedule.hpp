@@ -3,10 +3,12 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "data/experiment.hpp"
 #include "program/simulation_program.hpp"
+#include "simulate/lengths/step_lengths.hpp"
 #include "solver/solver.hpp"
 
 namespace sysid {
@@ -46,7 +48,9 @@ class Schedule {
 
   /// Step `substep` of the interval after `sample`; fixed steps only.
   double const* step_row(int sample, int substep) const { return steps_.row(sample * solver_.substeps + substep); }
-  double const* prologue_row() const { return prologue_.values.data(); }
+  /// Of the steps, where the method computes something from their length alone; else one for all.
+  StepLengths const& lengths() const { return lengths_; }
+  double const* prologue_row(int length) const { return prologue_.row(length); }
   double const* start_row() const { return start_.values.data(); }
   double const* carry_row(int sample) const { return carry_.row(sample); }
   double const* observe_row(int channel, int sample) const { return observe_[static_cast<std::size_t>(channel)].row(sample); }
@@ -58,6 +62,7 @@ class Schedule {
     return reverse_observe_[static_cast<std::size_t>(channel)].row(sample);
   }
   double const* reverse_start_row() const { return reverse_start_.values.data(); }
+  double const* reverse_values_row(int length) const { return reverse_values_.row(length); }
   std::vector<double> const& epilogue_row() const { return epilogue_; }
 
   /// A leaf within a step: at `stage` of step `substep` of the interval after `sample`.
@@ -67,15 +72,23 @@ class Schedule {
   double at_sample(UniformLeaf const& leaf, int sample) const;
 
  private:
-  UniformRows tabulate(UniformTable const& table, int rows, bool steps) const;
+  using ValueOf = std::function<double(UniformLeaf const& leaf, int row)>;
+  static UniformRows tabulate(UniformTable const& table, int rows, ValueOf const& value_of);
+  UniformRows tabulate_steps(UniformTable const& table) const;
+  UniformRows tabulate_samples(UniformTable const& table, int rows) const;
+  UniformRows tabulate_lengths(UniformTable const& table) const;
+  double length_of_step(int sample) const {
+    return lengths_.values[static_cast<std::size_t>(lengths_.of[static_cast<std::size_t>(sample)])];
+  }
 
   Experiment experiment_;
   SolverSettings solver_;
+  StepLengths lengths_;
   bool map_ = false;                               // what a step reads, it reads at its first sample
   std::vector<std::vector<std::uint8_t>> summed_;  // [channels][samples]
   std::vector<int> counts_;
   int last_summed_ = 0;
-  UniformRows prologue_, start_, carry_, steps_, records_, records_after_, reverse_steps_, reverse_start_;
+  UniformRows prologue_, start_, carry_, steps_, records_, records_after_, reverse_steps_, reverse_start_, reverse_values_;
   std::vector<UniformRows> observe_, reverse_observe_;
   std::vector<double> epilogue_;
 };

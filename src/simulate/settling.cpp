@@ -26,6 +26,7 @@ std::shared_ptr<Simulator const> settled_simulator(SimulationProgram const& prog
   // Equations that know the length of each step know how far the times of a record are from equal ones.
   bool const by_steps = !program.source.map || (program.source.stepped && !schedule.solver().row().exact);
   if (by_steps && unequal_step(schedule.experiment().time) != 0) return nullptr;
+  if (schedule.lengths().count() > 1) return nullptr;
   std::shared_ptr<SimulationProgram const> const settled(program.settled, &program.settled->program);
   ExecutionOptions alone = options;
   alone.threads = 1;

@@ -82,6 +82,12 @@ Kind by_states(Node const& leaf) {
   }
 }
 
+/// A product of time and an input is no straight line where the input is one.
+Kind by_time(Node const& leaf) {
+  if (leaf.leaf_kind == LeafKind::time) return Kind::linear;
+  return leaf.leaf_kind == LeafKind::input || leaf.leaf_kind == LeafKind::input_rate ? Kind::other : Kind::constant;
+}
+
 Kind by_inputs(Node const& leaf) {
   return leaf.leaf_kind == LeafKind::input || leaf.leaf_kind == LeafKind::input_rate ? Kind::linear : Kind::constant;
 }
@@ -91,8 +97,8 @@ Kind by_inputs(Node const& leaf) {
 std::optional<NotLinear> find_nonlinear(Graph const& graph, std::span<NodeId const> derivative) {
   if (std::vector<Culprit> const found = culprits(graph, derivative, &by_states); !found.empty())
     return NotLinear{found.front().product_with_other ? NotLinear::Why::varies : NotLinear::Why::nonlinear, found.front().node};
-  for (NodeId const id : graph.reachable(derivative))
-    if (graph[id].operation == Operation::leaf && graph[id].leaf_kind == LeafKind::time) return NotLinear{NotLinear::Why::time, id};
+  if (std::vector<Culprit> const found = culprits(graph, derivative, &by_time); !found.empty())
+    return NotLinear{NotLinear::Why::time, found.front().node};
   return std::nullopt;
 }
 

@@ -16,7 +16,7 @@ struct NotLinear {
   enum class Why {
     nonlinear,  // a part of f that is not linear in the states
     varies,     // a product of states with something that changes in time: an input, its rate, time
-    time,       // b reads time itself, not only through inputs
+    time,       // b reads time itself, and along a step it is no straight line for it
   };
   Why why = Why::nonlinear;
   NodeId node = 0;

@@ -31,7 +31,7 @@ struct SolverRow {
   bool stiff = false;       // suits stiff equations: it solves for each step with a Jacobian
   bool implicit = false;    // solves for derivatives that are given implicitly, and for algebraic states
   /// Steps from sample to sample without an error: of equations that are linear in their states (solver/linear_structure.hpp), with
-  /// equal steps and inputs that are straight lines between samples. There is nothing to refine.
+  /// inputs that are straight lines between samples. There is nothing to refine.
   bool exact = false;
   /// The states after one step of a method with fixed steps.
   std::vector<NodeId> (*step)(Stages const&) = nullptr;

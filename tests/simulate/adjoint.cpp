@@ -75,6 +75,7 @@ struct Case {
   SolverSettings solver;
   std::vector<double> centre;
   std::vector<int> by;
+  bool unequal = false;  // steps of the record
 };
 
 SimulationSource with_second_channel(SimulationSource source) {
@@ -107,13 +108,20 @@ std::vector<Case> cases() {
           {"chain", systems::chain(3), {.substeps = 2}, {1, 2, 400, 410, 420, 1e3}, {0, 1, 2, 3, 4, 5}},
           {"linear chain", systems::linear_chain(3), {.method = "exponential"}, {1, 2, 400, 410, 420, 1e3}, {0, 1, 2, 3, 4, 5}},
           {"linear chain, some parameters", systems::linear_chain(2), {.method = "exponential"}, {1, 2, 400, 410, 1e3}, {1, 3}},
+          {"linear chain, unequal steps",
+           systems::linear_chain(2),
+           {.method = "exponential"},
+           {1, 2, 400, 410, 1e3},
+           {0, 1, 2, 4},
+           true},
           {"map", map(), {.substeps = 1}, {0.5, 0.02, 0.1, 0.3}, {0, 1, 2, 3}}};
 }
 
-Experiment record_with_gaps() {
+Experiment record_with_gaps(bool unequal = false) {
   auto const input = [](double t) { return 10 * std::sin(300 * t) + 5 * std::cos(77 * t); };
   auto const channel = [](double t) { return 1e-4 * std::sin(90 * t); };
-  Experiment record = testing::experiment(testing::uniform_times(210, 0.001), {input}, {channel, channel});
+  Experiment record = testing::experiment(unequal ? testing::unequal_times(210, 0.001) : testing::uniform_times(210, 0.001),
+                                          {input}, {channel, channel});
   for (int const i : {0, 7, 63, 64, 128}) record.measured[0][static_cast<std::size_t>(i)] = std::nan("");
   for (std::size_t i = 20; i < 30; ++i) record.scored[i] = 0;
   return record;
@@ -171,8 +179,8 @@ TEST_CASE("adjoints are tangents over gaps, several channels, substeps, maps and
   for (Case const& each : cases()) {
     CAPTURE(each.name);
     LaneArray const parameters = around(each.centre, 3);
-    Gradients const found = gradients(each.source, each.by, record_with_gaps(), each.solver, parameters);
-    LaneArray const expected = tangents(each.source, each.by, record_with_gaps(), each.solver, parameters);
+    Gradients const found = gradients(each.source, each.by, record_with_gaps(each.unequal), each.solver, parameters);
+    LaneArray const expected = tangents(each.source, each.by, record_with_gaps(each.unequal), each.solver, parameters);
     auto const count = static_cast<int>(each.by.size());
     for (int w = 0; w < 3; ++w) {
       REQUIRE(found.outcome[static_cast<std::size_t>(w)].ok);
@@ -205,7 +213,7 @@ TEST_CASE("adjoints are the same bytes for any executor, lanes, threads and tape
     ++number;
     LaneArray parameters = around(each.centre, width);
     parameters(each.source.map ? 0 : 2, 5) = -1e12;  // fails on its way, beside others that must not feel it
-    Gradients const oracle = gradients(each.source, each.by, record_with_gaps(), each.solver, parameters,
+    Gradients const oracle = gradients(each.source, each.by, record_with_gaps(each.unequal), each.solver, parameters,
                                        {.executor = ExecutorKind::scalar, .tape_bytes = std::size_t{1} << 30});
     CHECK_FALSE(oracle.outcome[5].ok);
     CHECK(oracle.outcome[6].ok);
@@ -217,7 +225,7 @@ TEST_CASE("adjoints are the same bytes for any executor, lanes, threads and tape
         if (!full_size() && (way + number + (set == narrowest_instruction_set ? 0 : 1)) % 2 == 0) continue;
         CAPTURE(each.name);
         CAPTURE(way);
-        Gradients const found = gradients(each.source, each.by, record_with_gaps(), each.solver, parameters, ways[way]);
+        Gradients const found = gradients(each.source, each.by, record_with_gaps(each.unequal), each.solver, parameters, ways[way]);
         CHECK(same_bytes(found.sums, oracle.sums));
         CHECK(same_bytes(found.slopes, oracle.slopes));
       }

@@ -23,6 +23,7 @@ struct Setting {
   SimulationSource source;
   SolverSettings solver;
   std::vector<double> centre;
+  bool unequal = false;  // steps of the record
 };
 
 /// A memory of the last sample, a sign, a choice and two channels that share a state.
@@ -71,15 +72,18 @@ std::vector<Setting> settings() {
           {"bouc_wen", systems::bouc_wen(2), {.substeps = 1}, {2, 10, 5e4, 0.8, -1.1}},
           {"bouc_wen with a power", systems::bouc_wen(0), {.substeps = 1}, {2, 10, 5e4, 0.8, -1.1, 1.5}},
           {"linear", systems::linear_chain(2), {.method = "exponential"}, {1, 2, 400, 410, 1e8}},
+          {"linear, unequal steps", systems::linear_chain(2), {.method = "exponential"}, {1, 2, 400, 410, 1e8}, true},
+          {"linear, remembering, unequal steps", remembering(), {.method = "exponential"}, {3e3, 0.5}, true},
           {"linear, remembering", remembering(), {.method = "exponential"}, {3e3, 0.5}},
           {"switching", switching(), {.substeps = 1}, {3e3, 0.5}},
           {"switching, substeps", switching(), {.substeps = 2}, {3e3, 0.5}}};
 }
 
-Experiment record_with_gaps() {
+Experiment record_with_gaps(bool unequal = false) {
   auto const input = [](double t) { return 10 * std::sin(300 * t) + 5 * std::cos(77 * t); };
   auto const channel = [](double t) { return 1e-4 * std::sin(90 * t); };
-  Experiment record = testing::experiment(testing::uniform_times(150, 0.001), {input}, {channel, channel});
+  Experiment record = testing::experiment(unequal ? testing::unequal_times(150, 0.001) : testing::uniform_times(150, 0.001),
+                                          {input}, {channel, channel});
   for (int const i : {0, 7, 63, 64, 149}) record.measured[0][static_cast<std::size_t>(i)] = std::nan("");
   for (std::size_t i = 20; i < 30; ++i) record.scored[i] = 0;
   return record;
@@ -145,10 +149,10 @@ std::vector<std::uint64_t> everything(Simulator const& simulator, ConstLanes par
 
 TEST_CASE("every executor gives the bytes of the oracle, for any width, position and number of threads") {
   REQUIRE((native::module() != nullptr || narrowest_instruction_set == InstructionSet::neon));  // which has no such compiler
-  Experiment const record = record_with_gaps();
   InstructionSet const before = instruction_set();
   for (Setting const& setting : settings()) {
     CAPTURE(setting.name);
+    Experiment const record = record_with_gaps(setting.unequal);
     auto const program = std::make_shared<SimulationProgram const>(compile(setting.source));
     LaneArray const parameters = around(setting.centre, 45);
     auto const simulator = [&](ExecutionOptions const& options) {

@@ -14,6 +14,16 @@ inline std::vector<double> uniform_times(int samples, double step) {
   return time;
 }
 
+/// A gap every few samples at first, later no two steps of the same length.
+inline std::vector<double> unequal_times(int samples, double step) {
+  std::vector<double> time{0};
+  for (int i = 1; i < samples; ++i) {
+    double const part = i < samples / 3 ? (i % 5 == 0 ? 3 : i % 7 == 0 ? 0.5 : 1) : 0.6 + 0.0037 * ((37 * i) % 211);
+    time.push_back(time.back() + step * part);
+  }
+  return time;
+}
+
 /// All rows scored; one channel per function of time.
 inline Experiment experiment(std::vector<double> time, std::vector<std::function<double(double)>> const& inputs,
                              std::vector<std::function<double(double)>> const& channels, InputRule rule = InputRule::linear) {

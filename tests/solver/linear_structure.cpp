@@ -54,7 +54,10 @@ TEST_CASE("coefficients that change in time, and time itself, are told apart") {
     CHECK(l.of(g.divide(l.y, g.add(other, l.k)))->why == NotLinear::Why::varies);
     CHECK(l.of(g.divide(other, l.y))->why == NotLinear::Why::nonlinear);
   }
-  CHECK(l.of(g.add(l.t, l.y))->why == NotLinear::Why::time);
+  CHECK_FALSE(l.of(g.add(g.multiply(l.k, l.t), g.subtract(l.y, g.unary(Operation::absolute, l.u)))));
+  for (NodeId const part : {g.multiply(l.t, l.t), g.multiply(l.t, l.u), g.unary(Operation::square_root, l.t),
+                            g.multiply(g.multiply(l.u, l.u), l.t), g.divide(l.k, l.t)})
+    CHECK(l.of(g.add(part, l.y))->why == NotLinear::Why::time);
   CHECK(l.of(g.leaf(LeafKind::process, 0))->why == NotLinear::Why::nonlinear);
 }
 
