@@ -14,6 +14,7 @@
 #include "app/calibration/calibration_report.hpp"
 #include "app/calibration/chosen_fits.hpp"
 #include "app/calibration/replicate.hpp"
+#include "app/session/exact_steps.hpp"
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
@@ -64,6 +65,8 @@ class Calibration {
                        "calibrate with `mh`"});
     plan_.seed = checkpoint_.seed();
     data_ = load_experiments(session, plan_.what.experiments, model(), plan_.what.start, plan_.what.prediction, plan_.what.solver);
+    // Values that the usual steps do not follow are drawn, too, and fitted by what follows them.
+    if (SuitedTask suited = with_exact_steps(plan_.what, model(), data_); suited.growing > 0) plan_.what = std::move(suited.task);
     checkpoint_.of_data(data_);
   }
 

@@ -36,7 +36,7 @@ constexpr std::uint64_t before_any_seed = 0;  // of what no value of a density r
 FitDensity::FitDensity(Session& session, int index)
     : session_(session),
       task_(session.file.tasks[static_cast<std::size_t>(index)]),
-      what_(with_exact_steps(session, std::get<FitTask>(task_.what))) {
+      what_(with_exact_steps(session, std::get<FitTask>(task_.what)).task) {
   if (what_.filter == FilterRule::particle)
     no_function(task_, "its likelihood is estimated by particles, with random numbers", "use a filter that computes it");
   Model const& model = session.file.models[static_cast<std::size_t>(what_.model)];

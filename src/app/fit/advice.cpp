@@ -27,7 +27,7 @@ void add_other_solver(FitSituation const& fit, Finding& finding) {
 bool stiff(FitSituation const& fit) { return fit.scales == nullptr && fit.search != nullptr && fit.search->stiff(); }
 
 void add_stiffness(FitSituation const& fit, Finding& finding) {
-  Finding const what = stiff_prior(*fit.search).front();
+  Finding const what = stiff_prior(*fit.search, allow_exact_steps(fit.data, fit.model)).front();
   finding.message += "; " + what.message;
   finding.help = what.help;
 }

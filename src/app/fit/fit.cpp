@@ -435,12 +435,16 @@ class Fit {
 
 std::optional<UnkeptFit> fit_unkept(Session& session, int index, Task const& task, FitTask const& what, std::uint64_t seed,
                                     std::vector<double> const& at, BackendRow const* backend) {
-  FitTask const suited = with_exact_steps(session, what);
+  FitTask const suited = with_exact_steps(session, what).task;
   return Fit(session, index, task, suited, TaskCheckpoint(session, task, Unkept{seed}), backend).run_unkept(at);
 }
 
 ExitCode run_fit(Session& session, int index, Task const& task, FitTask const& what) {
-  FitTask const suited = with_exact_steps(session, what);
+  auto const [suited, growing] = with_exact_steps(session, what);
+  if (growing > 0)
+    session.notices << fmt::format(
+        "{}: {} integrates exactly: with {}, the steps grow without bound on {:.0f} % of the prior draws\n", task.name,
+        suited.solver.method, accuracy(what.solver), 100 * growing);
   return Fit(session, index, task, suited).run();
 }
 

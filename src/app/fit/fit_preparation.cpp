@@ -87,7 +87,7 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   preparation.findings = std::move(found.findings);
   preparation.findings.insert(preparation.findings.end(), ahead.begin(), ahead.end());
   if (solver && !scales)
-    for (Finding& each : stiff_prior(*solver)) preparation.findings.push_back(std::move(each));
+    for (Finding& each : stiff_prior(*solver, allow_exact_steps(data_, model))) preparation.findings.push_back(std::move(each));
   print_findings(session_, task_, likelihood_.check_ranges(preparation.modes.front().declared, preparation.solver));
   MakeTarget const make = [this](SolverSettings const& tried) { return target(tried); };
   if (what_.refine_solver && !refine_solver(session_, task_, make, objective_kind_, from, preparation, context)) return false;

@@ -164,7 +164,7 @@ void preflight_fit(Session& session, Task const& task, TaskDataList const& data,
   check_bands(page);
   check_rules(page);
   if (experiments && !refusal(task, what, model, *experiments))
-    run_preflight(session, with_exact_steps(what, model, *experiments), *experiments, page.preflights.emplace_back());
+    run_preflight(session, with_exact_steps(what, model, *experiments).task, *experiments, page.preflights.emplace_back());
 }
 
 void preflight_select(Session& session, Task const& task, TaskDataList const& data, TaskPage& page) {

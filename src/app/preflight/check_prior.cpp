@@ -115,7 +115,7 @@ void check_search(Preflight const& preflight) {
                            preflight.space, preflight.experiments, solver, preflight.session.abandonable());
   };
   std::uint64_t const seed = preflight.session.options.seed.value_or(preflight.what.seed.value_or(1));
-  for (Finding const& each : stiff_prior(search_solver(make, preflight.what.solver, seed)))
+  for (Finding const& each : stiff_prior(search_solver(make, preflight.what.solver, seed), preflight.exact_steps))
     preflight.add(each.code, each.severity, each.names, each.message, each.help);
 }
 

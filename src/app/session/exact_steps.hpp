@@ -1,13 +1,23 @@
-// The solver of fits whose filter may step exactly.
+// The solver of fits whose equations are linear in their states, where the task states none.
 #pragma once
 #include "app/session/session.hpp"
 
 namespace sysid {
 
-/// The task with an exact solver where it states none, its model has random states, and its equations and data allow it: then mean
-/// and covariance make no error between samples, and one step of any length costs the same.
-FitTask with_exact_steps(Session& session, FitTask what);
-FitTask with_exact_steps(FitTask what, Model const& model, std::vector<ExperimentData> const& data);
+struct SuitedTask {
+  FitTask task;
+  /// The share of the prior on which the steps of the task's own solver grow without bound; 0 where that is not why another solver
+  /// was taken.
+  double growing = 0;
+};
+
+/// The task with an exact solver where it states none, its equations and data allow it, and
+///
+///   its model has random states and its samples are equally far apart: then mean and covariance make no error between samples, and
+///   one step of any length costs the same; or
+///   the steps that the task would begin with grow without bound over a notable part of the prior, where the motion does not.
+SuitedTask with_exact_steps(Session& session, FitTask what);
+SuitedTask with_exact_steps(FitTask what, Model const& model, std::vector<ExperimentData> const& data);
 
 /// The solver of a prediction: as the fit had it, but an exact one that the task did not state gives way to adaptive steps where
 /// the data that are predicted do not suit it. fit: with the errors that inputs have there.

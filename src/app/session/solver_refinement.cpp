@@ -102,7 +102,7 @@ std::string solver_advice(SolverSettings const& solver, Ledger const& ledger) {
   return solver.fixed_step() ? "or let the solver choose its steps: " + other : "or use " + other;
 }
 
-Findings stiff_prior(SearchSolver const& search) {
+Findings stiff_prior(SearchSolver const& search, bool exact) {
   if (!search.stiff() && search.too_fast())
     return {
         {FindingCode::stiff_prior,
@@ -111,9 +111,9 @@ Findings stiff_prior(SearchSolver const& search) {
          fmt::format("{:.0f} % of the prior draws overflow with {}, fewer than with longer steps: the motion is too fast for these "
                      "steps there, and the search ignores that part of the prior",
                      100 * search.failed, accuracy(search.solver)),
-         fmt::format("fit with `solver = {}`, which takes as many steps as the motion needs, or narrow the priors if such fast "
-                     "motion is not intended",
-                     adaptive_solver().name)}};
+         fmt::format("fit with `solver = {}`, which {}, or narrow the priors if such fast motion is not intended",
+                     exact ? exact_solver().name : adaptive_solver().name,
+                     exact ? "is exact for these equations" : "takes as many steps as the motion needs")}};
   if (!search.stiff()) return {};
   return {{FindingCode::stiff_prior,
            Severity::warning,
@@ -121,7 +121,8 @@ Findings stiff_prior(SearchSolver const& search) {
            fmt::format("{:.0f} % of the prior draws overflow even with {}; {} of these were simulated with {}, {} of them without "
                        "failure: the model is stiff there, and the search ignores that part of the prior",
                        100 * search.failed, accuracy(search.solver), search.tried, stiff_solver().name, search.followed),
-           fmt::format("fit with `solver = {}`, or narrow the priors if such fast motion is not intended", stiff_solver().name)}};
+           fmt::format("fit with `solver = {}`{}, or narrow the priors if such fast motion is not intended",
+                       exact ? exact_solver().name : stiff_solver().name, exact ? ", which is exact for these equations" : "")}};
 }
 
 }  // namespace sysid

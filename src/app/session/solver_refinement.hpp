@@ -23,7 +23,8 @@ std::string settling_advice(SolverSettings const& solver);
 /// another method than the one in use. Empty where there is nothing to advise.
 std::string solver_advice(SolverSettings const& solver, Ledger const& ledger);
 
-/// Of the prior draws that the search cannot see, where a solver for stiff equations follows them.
-Findings stiff_prior(SearchSolver const& search);
+/// Of the prior draws that the search cannot see, where a solver for stiff equations follows them. exact: whether exact steps would
+/// suit equations and data.
+Findings stiff_prior(SearchSolver const& search, bool exact = false);
 
 }  // namespace sysid

@@ -121,8 +121,9 @@ struct FitTask {
   StartRule start;
   PredictionRule prediction = PredictionRule::as_written;
   SolverSettings solver;
-  bool refine_solver = true;  // the tolerance guard chooses how fine the solver is, from `solver` on
-  std::optional<int> near;    // index of the fit at whose draws the search for modes begins; absent: it begins everywhere
+  bool solver_stated = false;  // its method, or how fine it is
+  bool refine_solver = true;   // the tolerance guard chooses how fine the solver is, from `solver` on
+  std::optional<int> near;     // index of the fit at whose draws the search for modes begins; absent: it begins everywhere
   EvidenceMethod evidence = EvidenceMethod::automatic;
   std::optional<std::uint64_t> seed;
   FilterRule filter = FilterRule::automatic;  // of random states

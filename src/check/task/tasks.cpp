@@ -102,8 +102,10 @@ bool TaskChecker::simulation_option(ast::Option const& option, std::string const
     filter(option, task.filter);
   else if (key == "seed")
     options_.seed(option, task.seed);
-  else
+  else {
+    task.solver_stated = true;
     task.refine_solver = !options_.solver(option, task.solver);
+  }
   return true;
 }
 

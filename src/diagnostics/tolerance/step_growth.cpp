@@ -1,0 +1,117 @@
+// The factor is found by squaring: units of states cancel in it.
+#include "diagnostics/tolerance/step_growth.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/numeric/elementary.hpp"
+#include "linear_algebra/decompositions.hpp"
+
+namespace sysid {
+namespace {
+
+constexpr int draws = 256;
+constexpr int squarings = 10;
+constexpr double notable_growth = 1e-2;  // of the log factor by step: e^5 over 500 samples
+
+/// The Jacobian of the derivatives by the states, of parameters alone.
+class Rates {
+ public:
+  explicit Rates(Model const& model) : graph_(model.graph) {
+    for (State const& of : model.states)
+      for (std::size_t j = 0; j < model.states.size(); ++j)
+        slopes_.push_back(graph_.differentiate(of.derivative, graph_.leaf(LeafKind::state, static_cast<int>(j))));
+    states_ = static_cast<Eigen::Index>(model.states.size());
+  }
+
+  /// At column w of parameters [parameters x W], SI.
+  Eigen::MatrixXd at(LaneArray const& parameters, int w) const {
+    std::vector<double> const slopes = graph_.evaluate(slopes_, [&](NodeId leaf) {
+      Node const& node = graph_[leaf];
+      return node.leaf_kind == LeafKind::parameter ? parameters(node.index, w) : std::numeric_limits<double>::quiet_NaN();
+    });
+    Eigen::MatrixXd result(states_, states_);
+    for (Eigen::Index i = 0; i < states_; ++i)
+      for (Eigen::Index j = 0; j < states_; ++j) result(i, j) = slopes[static_cast<std::size_t>(i * states_ + j)];
+    return result;
+  }
+
+ private:
+  Graph graph_;
+  std::vector<NodeId> slopes_;
+  Eigen::Index states_;
+};
+
+/// The polynomial of exp(z) up to z^order.
+Eigen::MatrixXd polynomial(Eigen::MatrixXd const& z, int order) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Identity(z.rows(), z.cols());
+  for (int k = order; k > 0; --k) result = (Eigen::MatrixXd::Identity(z.rows(), z.cols()) + z * result / k).eval();
+  return result;
+}
+
+/// log of the size of the largest eigenvalue; -infinity of a matrix whose power is 0.
+double log_radius(Eigen::MatrixXd power) {
+  double log_size = 0, exponent = 1;  // the matrix to the power of `exponent` is `power` times exp(log_size)
+  for (int k = 0; k <= squarings; ++k) {
+    double const norm = power.norm();
+    if (norm == 0) return -std::numeric_limits<double>::infinity();
+    power /= norm;
+    log_size += elementary::log(norm);
+    if (k == squarings) break;
+    power = (power * power).eval();
+    log_size *= 2;
+    exponent *= 2;
+  }
+  return log_size / exponent;
+}
+
+bool grows(Eigen::MatrixXd const& z, int order) {
+  if (!z.allFinite() || z.norm() < 1) return false;
+  double const growth = log_radius(polynomial(z, order));
+  if (!(growth > notable_growth)) return false;
+  return growth > std::max(0.0, largest_real_eigenvalue(z)) + notable_growth;
+}
+
+double longest_step(std::vector<double> const& time) {
+  double longest = 0;
+  for (std::size_t i = 1; i < time.size(); ++i) longest = std::max(longest, time[i] - time[i - 1]);
+  return longest;
+}
+
+bool same_lane(LaneArray const& a, LaneArray const& b, int lane) {
+  for (int r = 0; r < a.rows(); ++r)
+    if (!(a(r, lane) == b(r, lane))) return false;
+  return true;
+}
+
+}  // namespace
+
+double share_of_growing_steps(ParameterSpace const& space, std::vector<Experiment> const& experiments,
+                              SolverSettings const& solver) {
+  SolverRow const& row = solver.row();
+  if (row.step == nullptr || row.order == 0) return 0;
+  Rates const rates(space.model());
+  LaneArray theta(space.dimension(), draws);
+  space.sample_prior({1, Purpose::start, 0, 0}, theta);
+  LaneArray const values = space.values(theta);
+  std::vector<bool> growing(draws);
+  LaneArray parameters(static_cast<int>(space.model().parameters.size()), draws), before = parameters;
+  double step_before = 0;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    space.select(values, static_cast<int>(e), parameters);
+    double const step = longest_step(experiments[e].time) / solver.substeps;
+    for (int w = 0; w < draws; ++w) {
+      auto const lane = static_cast<std::size_t>(w);
+      bool const known = growing[lane] || (step <= step_before && same_lane(parameters, before, w));
+      if (!known) growing[lane] = grows(step * rates.at(parameters, w), row.order);
+    }
+    std::swap(parameters, before);
+    step_before = step;
+  }
+  return static_cast<double>(std::ranges::count(growing, true)) / draws;
+}
+
+}  // namespace sysid
