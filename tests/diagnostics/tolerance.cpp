@@ -364,7 +364,7 @@ TEST_CASE("a motion that ends between two samples is not tied to the step that f
              " parameter k2 [1/s] ~ log_uniform(1e-3, 1e3)\n parameter sigma [-] ~ log_uniform(1e-5, 1)\n a' = -(k1 + k2)*a\n"
              " c' = k2*a\n observe p ~ normal(a, sd = sigma)\n observe q ~ normal(c, sd = sigma)\n}\n"
              "data record { file \"record.csv\"; time t [s]; measure p = p [-]; measure q = q [-] }\n"
-             "best = fit split to record with ml, seed = 1\n",
+             "best = fit split to record with ml, solver = rk4, seed = 1\n",
              options);
     auto const summary = nlohmann::json::parse(read_file(options.output / "best/summary.json"));
     CHECK(summary.at("settings").at("substeps") >= 4);

@@ -91,6 +91,7 @@ class Fit {
     if (stored && stored->contains("preparation")) {
       preparation_ = checkpoint_.preparation(*stored);
       checkpoint_.reading([&] {
+        require_method(preparation_.solver);
         likelihood_->refer(preparation_.references);
         likelihood_->standardise(preparation_.standardised);
       });
@@ -281,11 +282,17 @@ class Fit {
     return searched;
   }
 
+  // Of a solver that a checkpoint holds: a run refines its steps, and keeps its method.
+  void require_method(SolverSettings const& stored) const {
+    if (stored.method != what_.solver.method) throw checkpoint::Mismatch("its solver is another one");
+  }
+
   // Where a run was interrupted in `choose_again`.
   bool go_on_choosing(json const& stored) {
     Again from;
     checkpoint_.reading([&] {
       from = {read_solver(stored.at("solver")), checkpoint::decode(stored.at("place"))};
+      require_method(from.solver);
       bool const fits = from.place.empty() || std::ssize(from.place) == likelihood_->space().dimension();
       if (!fits) throw checkpoint::Mismatch("its parameters differ in number");
       ledger_ = checkpoint::decode_ledger(stored.at("ledger"));

@@ -239,10 +239,10 @@ TEST_CASE("a summary with a whole seal and other content than is written is dama
     char const* pointer;
     json value;
   };
-  for (Forged const& each :
-       {Forged{"/settings", 3}, Forged{"/settings/solver", 3}, Forged{"/settings/solver", "none"}, Forged{"/settings/substeps", -1},
-        Forged{"/findings", json::array({4})}, Forged{"/task", 9}, Forged{"/data", json::array({1})}, Forged{"/data/0/name", 1},
-        Forged{"/versions/model_sha256", 1}, Forged{"/versions/files", 1}}) {
+  for (Forged const& each : {Forged{"/settings", 3}, Forged{"/settings/solver", 3}, Forged{"/settings/solver", "none"},
+                             Forged{"/settings", {{"solver", "rk4"}, {"substeps", -1}}}, Forged{"/findings", json::array({4})},
+                             Forged{"/task", 9}, Forged{"/data", json::array({1})}, Forged{"/data/0/name", 1},
+                             Forged{"/versions/model_sha256", 1}, Forged{"/versions/files", 1}}) {
     CAPTURE(each.pointer);
     Answer const refused = predicted(each.pointer, each.value);
     CHECK(refused.exit == ExitCode::user_error);
