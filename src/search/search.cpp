@@ -143,7 +143,7 @@ bool leaves_motion(Target const& target, Mode const& mode) {
     square += residual(r) * residual(r);
     if (r > 0) product += residual(r) * residual(r - 1);
   }
-  return product > much * square;
+  return std::fabs(product) > much * square;
 }
 
 /// Nats by which another search must be higher: its solver is a finer one.
