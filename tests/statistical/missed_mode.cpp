@@ -1,4 +1,4 @@
-// A mode that a search has missed and draws have found.
+// A mode that a search may miss, and one that it has missed and draws have found.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -43,15 +43,12 @@ data rec { file "rec.csv"; time t [s]; measure x = x [mm] }
 
 }  // namespace
 
-TEST_CASE("a search that has missed the mode is repeated from where weighted draws are higher") {
-  int repeated = 0;
+TEST_CASE("a decay near Nyquist's frequency, whose mode draws of the prior hardly meet, is found") {
   for (std::uint64_t record = 1; record <= 3; ++record) {
     CAPTURE(record);
     Fitted const fitted = run_file(model + "post = fit decay to rec with map, seed = 1\n", {}, {{"rec.csv", decay(record)}});
-    repeated += fitted.notices.find("searching again") != std::string::npos ? 1 : 0;
     CHECK(std::fabs(fitted.of("post", "f").at("mean").get<double>() - 7.3) < 0.01);
   }
-  CHECK(repeated > 0);  // else the search has become better than this record
 }
 
 namespace {
