@@ -47,6 +47,11 @@ Eigen::VectorXd solve_symmetric(Eigen::MatrixXd const& symmetric, Eigen::VectorX
 
 Eigen::MatrixXd inverse(Eigen::MatrixXd const& square) { return square.partialPivLu().inverse(); }
 
+Eigen::VectorXcd eigenvalues(Eigen::MatrixXd const& square) {
+  Eigen::EigenSolver<Eigen::MatrixXd> const solver(square, false);
+  return solver.info() == Eigen::Success ? Eigen::VectorXcd(solver.eigenvalues()) : Eigen::VectorXcd();
+}
+
 double largest_real_eigenvalue(Eigen::MatrixXd const& square) {
   Eigen::EigenSolver<Eigen::MatrixXd> const solver(square, false);
   return solver.info() == Eigen::Success ? solver.eigenvalues().real().maxCoeff() : std::numeric_limits<double>::quiet_NaN();

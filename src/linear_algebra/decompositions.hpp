@@ -33,6 +33,8 @@ Eigen::VectorXd solve_symmetric(Eigen::MatrixXd const& symmetric, Eigen::VectorX
 
 Eigen::MatrixXd inverse(Eigen::MatrixXd const& square);
 
+/// In no order; none where the iteration does not converge.
+Eigen::VectorXcd eigenvalues(Eigen::MatrixXd const& square);
 /// The largest real part of an eigenvalue, to about 1e-15 of the largest entry; NaN where the iteration does not converge.
 double largest_real_eigenvalue(Eigen::MatrixXd const& square);
 

@@ -125,8 +125,7 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
 
 namespace {
 
-/// Whether what a mode leaves of the record goes on from sample to sample: so does a wrong model's error, and that of a right one
-/// with the wrong period.
+/// Whether the residuals at a mode are correlated from one sample to the next, as those of a wrong model or of a wrong period are.
 bool leaves_motion(Target const& target, Mode const& mode) {
   constexpr double much = 0.3;    // of the correlation from one sample to the next
   constexpr double far_off = 30;  // medians: single rows that carry the scale, not a sample, are larger, as are outliers
@@ -150,14 +149,19 @@ bool leaves_motion(Target const& target, Mode const& mode) {
 constexpr double clearly_higher = 3;
 constexpr int finer_at_second_look = 2;
 
-/// A short record on which every wrong period is worse than none: searched from its first rows, as long ones are, where the best
-/// mode leaves motion in it.
+/// A short record, on which a wrong frequency may fit worse than no motion: searched from its first rows, as long ones are, where
+/// the best mode leaves motion in it.
 void look_again(Target const& target, ObjectiveKind objective_kind, ShorterRecords const& records, RunContext& context,
                 SearchResult& found) {
   auto const stop = [&] { return context.stop_requested(); };
-  if (found.modes.empty() || target.is_estimated() || !can_grow(target, records) ||
-      !kept_answer(context.journal, stop, [&] { return leaves_motion(target, found.modes.front()); }))
+  if (found.modes.empty() || target.is_estimated() || !can_grow(target, records)) return;
+  bool const wanted = kept_answer(context.journal, stop, [&] { return leaves_motion(target, found.modes.front()); });
+  if (!wanted && !stop()) return;
+  if (stop()) {
+    found.interrupted = true;
+    found.modes.clear();
     return;
+  }
   GrownModes grown = search_growing(target, objective_kind, records, context, finer_at_second_look);
   if (context.stop_requested()) {
     found.interrupted = true;

@@ -31,7 +31,7 @@ struct SearchResult {
 /// end; where an equation holds an unknown function, 16 are climbed from, its coefficients at zero, 3 to the end, in one pass.
 /// Progress counts simulations against those of a typical search. Long records that can be cut are searched as `search_growing`
 /// says. So are shorter ones, with a solver that is refined twice, where the best mode leaves residuals whose correlation from one
-/// sample to the next is above 0.3; what is found so counts where it is 3 nats higher.
+/// sample to the next is above 0.3 or below -0.3; their modes replace the others if the best is 3 nats higher.
 SearchResult search(Target const& target, ObjectiveKind objective_kind, RunContext& context, ShorterRecords const& records = {});
 
 /// Local searches from `starts` [P x N] alone, which need not have a finite density: a search that somebody has aimed. What lies

@@ -4,7 +4,8 @@
 // No matrix is inverted, so A may be singular or defective. All three functions come by scaling and doubling (Moler & Van Loan
 // 2003, method 3), with X in place of exp(hA), which would round the slow part of a step to that of 1:
 //   X(2z) = 2 X + X^2,   phi_1(2z) = phi_1 + X phi_1/2,   phi_2(2z) = (2 phi_2 + phi_1 + X phi_2)/4
-// The matrices read parameters and the sampling step alone, so that they are computed once per parameter vector.
+// The matrices read parameters and the sampling step alone, so that they are computed once per parameter vector
+// and length of a step.
 //
 // White noise of intensity Q adds the covariance V = integral of exp(sA) Q exp(sA)' over the step, which comes in the same way:
 //   V(2z) = V + (1 + X) V (1 + X)'

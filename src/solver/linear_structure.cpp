@@ -82,14 +82,32 @@ Kind by_states(Node const& leaf) {
   }
 }
 
-/// A product of time and an input is no straight line where the input is one.
+/// A product of time and an input is no straight line where the input is one, and one of time and a disturbance is noise of another
+/// intensity at each moment.
 Kind by_time(Node const& leaf) {
-  if (leaf.leaf_kind == LeafKind::time) return Kind::linear;
-  return leaf.leaf_kind == LeafKind::input || leaf.leaf_kind == LeafKind::input_rate ? Kind::other : Kind::constant;
+  switch (leaf.leaf_kind) {
+    case LeafKind::time:
+      return Kind::linear;
+    case LeafKind::input:
+    case LeafKind::input_rate:
+    case LeafKind::disturbance:
+      return Kind::other;
+    default:
+      return Kind::constant;
+  }
 }
 
+/// The same of an input and a disturbance.
 Kind by_inputs(Node const& leaf) {
-  return leaf.leaf_kind == LeafKind::input || leaf.leaf_kind == LeafKind::input_rate ? Kind::linear : Kind::constant;
+  switch (leaf.leaf_kind) {
+    case LeafKind::input:
+    case LeafKind::input_rate:
+      return Kind::linear;
+    case LeafKind::disturbance:
+      return Kind::other;
+    default:
+      return Kind::constant;
+  }
 }
 
 }  // namespace

@@ -28,6 +28,20 @@ TEST_CASE("sums, and products with parameters, are linear") {
   CHECK_FALSE(l.of(g.constant(0)));
 }
 
+TEST_CASE(
+    "the intensity of a disturbance stays the same along a step: time does not scale it, and an input only where it is held") {
+  Leaves l;
+  Graph& g = l.g;
+  NodeId const noise = g.leaf(LeafKind::disturbance, 0);
+  CHECK_FALSE(l.of(g.add(l.t, g.multiply(l.k, noise))));
+  auto const found = l.of(g.add(l.y, g.multiply(l.t, noise)));
+  REQUIRE(found);
+  CHECK(found->why == NotLinear::Why::time);
+  NodeId const scaled = g.multiply(l.u, noise), beside = g.add(l.w, noise);
+  CHECK(inputs_not_linear(g, {&scaled, 1}) == std::vector<int>{0});
+  CHECK(inputs_not_linear(g, {&beside, 1}).empty());
+}
+
 TEST_CASE("the part that is not linear is found, however small it is") {
   Leaves l;
   Graph& g = l.g;

@@ -188,7 +188,7 @@ SolverSettings FitPreparation::coarsest(SearchResult const& found, Preparation& 
   if (found.finer == 0) return what_.solver;
   SolverSettings const finer = refined(preparation.solver, found.finer);
   session_.notices << fmt::format(
-      "{}: the search uses {}, because with {} the parameters that fit the first rows no longer fit the whole record\n", task_.name,
+      "{}: the search uses {}, because with {} it found no parameters that fit the whole record as well\n", task_.name,
       accuracy(finer), accuracy(preparation.solver));
   preparation.solver = finer;
   return finer;

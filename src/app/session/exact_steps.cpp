@@ -15,13 +15,13 @@ namespace {
 bool is_random(FitTask const& what, Model const& model) { return model.filtered() || !what.input_errors.empty(); }
 
 bool may_step_exactly(FitTask const& what, Model const& model) {
-  if (!what.refine_solver || !model.integrated() || what.filter == FilterRule::particle) return false;
-  return is_random(what, model) || (!what.solver_stated && model.processes.empty());
+  if (what.solver_stated || !what.refine_solver || !model.integrated() || what.filter == FilterRule::particle) return false;
+  return is_random(what, model) || model.processes.empty();
 }
 
 /// Of the prior; 0 where it has no draws.
 double share_of_growth(FitTask const& what, Model const& model, std::vector<ExperimentData> const& data) {
-  if (what.solver_stated || !model.processes.empty()) return 0;
+  if (!model.processes.empty()) return 0;
   auto const space = parameter_space(model, what.experiments);
   if (!improper_coordinates(space->infos()).empty()) return 0;
   return share_of_growing_steps(*space, experiments_of(data), what.solver);

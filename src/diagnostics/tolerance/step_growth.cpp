@@ -1,9 +1,10 @@
-// The factor is found by squaring: units of states cancel in it.
+// By eigenvalues, in which the units of states cancel.
 #include "diagnostics/tolerance/step_growth.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <utility>
 
@@ -14,7 +15,6 @@ namespace sysid {
 namespace {
 
 constexpr int draws = 256;
-constexpr int squarings = 10;
 constexpr double notable_growth = 1e-2;  // of the log factor by step: e^5 over 500 samples
 
 /// The Jacobian of the derivatives by the states, of parameters alone.
@@ -45,34 +45,18 @@ class Rates {
   Eigen::Index states_;
 };
 
-/// The polynomial of exp(z) up to z^order.
-Eigen::MatrixXd polynomial(Eigen::MatrixXd const& z, int order) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Identity(z.rows(), z.cols());
-  for (int k = order; k > 0; --k) result = (Eigen::MatrixXd::Identity(z.rows(), z.cols()) + z * result / k).eval();
-  return result;
-}
-
-/// log of the size of the largest eigenvalue; -infinity of a matrix whose power is 0.
-double log_radius(Eigen::MatrixXd power) {
-  double log_size = 0, exponent = 1;  // the matrix to the power of `exponent` is `power` times exp(log_size)
-  for (int k = 0; k <= squarings; ++k) {
-    double const norm = power.norm();
-    if (norm == 0) return -std::numeric_limits<double>::infinity();
-    power /= norm;
-    log_size += elementary::log(norm);
-    if (k == squarings) break;
-    power = (power * power).eval();
-    log_size *= 2;
-    exponent *= 2;
-  }
-  return log_size / exponent;
+/// log |R(z)| of the polynomial of exp(z) up to z^order.
+double log_factor(std::complex<double> z, int order) {
+  std::complex<double> value = 1;
+  for (int k = order; k > 0; --k) value = 1.0 + z * value / static_cast<double>(k);
+  return elementary::log(std::abs(value));
 }
 
 bool grows(Eigen::MatrixXd const& z, int order) {
-  if (!z.allFinite() || z.norm() < 1) return false;
-  double const growth = log_radius(polynomial(z, order));
-  if (!(growth > notable_growth)) return false;
-  return growth > std::max(0.0, largest_real_eigenvalue(z)) + notable_growth;
+  if (!z.allFinite()) return false;
+  for (std::complex<double> const& each : eigenvalues(z))
+    if (log_factor(each, order) > std::max(0.0, each.real()) + notable_growth) return true;
+  return false;
 }
 
 double longest_step(std::vector<double> const& time) {
