@@ -97,8 +97,8 @@ Finding other_timing(InputOf const& input, double shift, double gain, int scored
   std::string const help =
       later ? fmt::format(
                   "the response begins {} after the input: if the recording causes this, {}; otherwise the model lacks a dead time "
-                  "or a "
-                  "slow actuator of about this size",
+                  "or a slow "
+                  "actuator of about this size",
                   by, move_column("the column of " + name_of(input), true, count))
             : fmt::format("the column of {} is {} late against the response: {}, or correct the delay of the recording",
                           name_of(input), by, move_column("it", false, count));
