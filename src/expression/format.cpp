@@ -10,8 +10,8 @@
 namespace sysid {
 namespace {
 
-// Binding strength; an operand weaker than its place asks for stands in parentheses. A minus sign binds like a sum, so that no
-// two operators stand side by side: (-a)*b, a + (-b).
+// OperatorBinding strength; an operand weaker than its place asks for stands in parentheses. A minus sign binds like a sum, so that
+// no two operators stand side by side: (-a)*b, a + (-b).
 enum Strength { conditional, alternative, conjunctive, negated, comparison, sum, product, exponent, atom };
 
 struct Text {

@@ -14,31 +14,35 @@ namespace {
 
 /// sysid.ebnf's levels. The right operand of `^` may carry a sign; comparisons do not associate.
 constexpr std::array<OperatorRow, 14> operators{{
-    {"..", Binding::conditional, Binding::conditional, Binding::conditional},  // of arguments alone
-    {"or", Binding::disjunction, Binding::disjunction, Binding::conjunction},
-    {"and", Binding::conjunction, Binding::conjunction, Binding::negation},
-    {"<", Binding::comparison, Binding::sum, Binding::sum},
-    {"<=", Binding::comparison, Binding::sum, Binding::sum},
-    {">", Binding::comparison, Binding::sum, Binding::sum},
-    {">=", Binding::comparison, Binding::sum, Binding::sum},
-    {"==", Binding::comparison, Binding::sum, Binding::sum},
-    {"!=", Binding::comparison, Binding::sum, Binding::sum},
-    {"+", Binding::sum, Binding::sum, Binding::product},
-    {"-", Binding::sum, Binding::sum, Binding::product},
-    {"*", Binding::product, Binding::product, Binding::sign},
-    {"/", Binding::product, Binding::product, Binding::sign},
-    {"^", Binding::power, Binding::primary, Binding::sign},
+    {"..", OperatorBinding::conditional, OperatorBinding::conditional, OperatorBinding::conditional},  // of arguments alone
+    {"or", OperatorBinding::disjunction, OperatorBinding::disjunction, OperatorBinding::conjunction},
+    {"and", OperatorBinding::conjunction, OperatorBinding::conjunction, OperatorBinding::negation},
+    {"<", OperatorBinding::comparison, OperatorBinding::sum, OperatorBinding::sum},
+    {"<=", OperatorBinding::comparison, OperatorBinding::sum, OperatorBinding::sum},
+    {">", OperatorBinding::comparison, OperatorBinding::sum, OperatorBinding::sum},
+    {">=", OperatorBinding::comparison, OperatorBinding::sum, OperatorBinding::sum},
+    {"==", OperatorBinding::comparison, OperatorBinding::sum, OperatorBinding::sum},
+    {"!=", OperatorBinding::comparison, OperatorBinding::sum, OperatorBinding::sum},
+    {"+", OperatorBinding::sum, OperatorBinding::sum, OperatorBinding::product},
+    {"-", OperatorBinding::sum, OperatorBinding::sum, OperatorBinding::product},
+    {"*", OperatorBinding::product, OperatorBinding::product, OperatorBinding::sign},
+    {"/", OperatorBinding::product, OperatorBinding::product, OperatorBinding::sign},
+    {"^", OperatorBinding::power, OperatorBinding::primary, OperatorBinding::sign},
 }};
 
 struct BindingOf {
-  Binding operator()(ast::Number const& number) const { return std::signbit(number.value) ? Binding::sign : Binding::primary; }
-  Binding operator()(ast::Text const&) const { return Binding::primary; }
-  Binding operator()(ast::Reference const&) const { return Binding::primary; }
-  Binding operator()(ast::Box<ast::Unary> const& unary) const { return unary->symbol == "not" ? Binding::negation : Binding::sign; }
-  Binding operator()(ast::Box<ast::Binary> const& binary) const { return operator_row(binary->symbol).binding; }
-  Binding operator()(ast::Box<ast::Call> const&) const { return Binding::primary; }
-  Binding operator()(ast::Box<ast::Conditional> const&) const { return Binding::conditional; }
-  Binding operator()(ast::Box<ast::List> const&) const { return Binding::primary; }
+  OperatorBinding operator()(ast::Number const& number) const {
+    return std::signbit(number.value) ? OperatorBinding::sign : OperatorBinding::primary;
+  }
+  OperatorBinding operator()(ast::Text const&) const { return OperatorBinding::primary; }
+  OperatorBinding operator()(ast::Reference const&) const { return OperatorBinding::primary; }
+  OperatorBinding operator()(ast::Box<ast::Unary> const& unary) const {
+    return unary->symbol == "not" ? OperatorBinding::negation : OperatorBinding::sign;
+  }
+  OperatorBinding operator()(ast::Box<ast::Binary> const& binary) const { return operator_row(binary->symbol).binding; }
+  OperatorBinding operator()(ast::Box<ast::Call> const&) const { return OperatorBinding::primary; }
+  OperatorBinding operator()(ast::Box<ast::Conditional> const&) const { return OperatorBinding::conditional; }
+  OperatorBinding operator()(ast::Box<ast::List> const&) const { return OperatorBinding::primary; }
 };
 
 }  // namespace
@@ -49,6 +53,6 @@ OperatorRow const& operator_row(std::string_view symbol) {
   throw InternalError(fmt::format("no operator `{}` to print", symbol));
 }
 
-Binding binding(ast::Expression const& expression) { return std::visit(BindingOf{}, expression.node); }
+OperatorBinding binding(ast::Expression const& expression) { return std::visit(BindingOf{}, expression.node); }
 
 }  // namespace sysid

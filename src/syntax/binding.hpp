@@ -7,15 +7,15 @@
 namespace sysid {
 
 /// How tightly an expression holds together, loosest first; an operand looser than its place wants needs parentheses.
-enum class Binding { conditional, disjunction, conjunction, negation, comparison, sum, product, sign, power, primary };
+enum class OperatorBinding { conditional, disjunction, conjunction, negation, comparison, sum, product, sign, power, primary };
 
 /// A binary operator, and what its operands must hold at least.
 struct OperatorRow {
   std::string_view symbol;
-  Binding binding, left, right;
+  OperatorBinding binding, left, right;
 };
 OperatorRow const& operator_row(std::string_view symbol);
 
-Binding binding(ast::Expression const& expression);
+OperatorBinding binding(ast::Expression const& expression);
 
 }  // namespace sysid

@@ -16,9 +16,9 @@ class Printer {
  public:
   explicit Printer(bool leading = false) : leading_(leading) {}
 
-  std::string operator()(ast::Expression const& expression, Binding place) const {
-    bool const parentheses = binding(expression) < place || (leading_ && binding(expression) == Binding::sign);
-    if (parentheses) return fmt::format("({})", Printer()(expression, Binding::conditional));
+  std::string operator()(ast::Expression const& expression, OperatorBinding place) const {
+    bool const parentheses = binding(expression) < place || (leading_ && binding(expression) == OperatorBinding::sign);
+    if (parentheses) return fmt::format("({})", Printer()(expression, OperatorBinding::conditional));
     return std::visit([&](auto const& node) { return (*this)(node); }, expression.node);
   }
 
@@ -27,20 +27,21 @@ class Printer {
   std::string operator()(ast::Text const& text) const { return string_literal(text.value); }
   std::string operator()(ast::Reference const& reference) const { return text_of(reference); }
   std::string operator()(ast::Box<ast::Unary> const& unary) const {
-    if (unary->symbol == "not") return "not " + Printer()(*unary->operand, Binding::negation);
-    return unary->symbol + Printer()(*unary->operand, Binding::sign);
+    if (unary->symbol == "not") return "not " + Printer()(*unary->operand, OperatorBinding::negation);
+    return unary->symbol + Printer()(*unary->operand, OperatorBinding::sign);
   }
   std::string operator()(ast::Box<ast::Binary> const& binary) const {
     OperatorRow const& row = operator_row(binary->symbol);
-    bool const tight = row.binding >= Binding::product || binary->symbol == "..";
+    bool const tight = row.binding >= OperatorBinding::product || binary->symbol == "..";
     return fmt::format("{}{}{}{}{}", (*this)(*binary->left, row.left), tight ? "" : " ", binary->symbol, tight ? "" : " ",
                        Printer()(*binary->right, row.right));
   }
   std::string operator()(ast::Box<ast::Call> const& call) const { return text_of(*call); }
   std::string operator()(ast::Box<ast::Conditional> const& conditional) const {
     Printer const print;
-    return fmt::format("if {} then {} else {}", print(*conditional->condition, Binding::conditional),
-                       print(*conditional->then, Binding::conditional), print(*conditional->otherwise, Binding::conditional));
+    return fmt::format("if {} then {} else {}", print(*conditional->condition, OperatorBinding::conditional),
+                       print(*conditional->then, OperatorBinding::conditional),
+                       print(*conditional->otherwise, OperatorBinding::conditional));
   }
   std::string operator()(ast::Box<ast::List> const& list) const {
     return fmt::format("({})", joined(list->items, ", ", [](ast::Expression const& item) { return unparse(item); }));
@@ -97,7 +98,7 @@ std::string string_literal(std::string_view text) {
 
 std::string bracketed(std::optional<ast::UnitExpression> const& unit) { return unit ? fmt::format(" [{}]", unparse(*unit)) : ""; }
 
-std::string leading_text(ast::Expression const& expression) { return Printer(true)(expression, Binding::conditional); }
+std::string leading_text(ast::Expression const& expression) { return Printer(true)(expression, OperatorBinding::conditional); }
 
 std::string text_of(ast::Name const& name) { return name.text; }
 
@@ -135,6 +136,6 @@ std::string unparse(ast::UnitExpression const& unit) {
   return out;
 }
 
-std::string unparse(ast::Expression const& expression) { return Printer()(expression, Binding::conditional); }
+std::string unparse(ast::Expression const& expression) { return Printer()(expression, OperatorBinding::conditional); }
 
 }  // namespace sysid

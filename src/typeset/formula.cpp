@@ -100,7 +100,7 @@ class Formula::Visitor {
  public:
   Visitor(Formula const& formula, bool in_exponent) : formula_(formula), to_(formula.to_), in_exponent_(in_exponent) {}
 
-  std::string operator()(ast::Expression const& expression, Binding place) const {
+  std::string operator()(ast::Expression const& expression, OperatorBinding place) const {
     std::string const written = std::visit([&](auto const& node) { return (*this)(node); }, expression.node);
     return needs_fence(expression, place) ? to_.fenced(Fence::parentheses, written) : written;
   }
@@ -112,23 +112,23 @@ class Formula::Visitor {
   std::string operator()(ast::Text const& text) const { return to_.quoted(text.value); }
   std::string operator()(ast::Reference const& reference) const { return formula_(reference); }
   std::string operator()(ast::Box<ast::Unary> const& unary) const {
-    if (unary->symbol == "not") return to_.row({to_.sign(Sign::negation), (*this)(*unary->operand, Binding::negation)});
+    if (unary->symbol == "not") return to_.row({to_.sign(Sign::negation), (*this)(*unary->operand, OperatorBinding::negation)});
     ast::Expression const& operand = *unary->operand;
-    bool const fence = begins_with_sign(operand) && sysid::binding(operand) >= Binding::sign;
-    return to_.row({to_.sign(Sign::negative), fence ? to_.fenced(Fence::parentheses, (*this)(operand, Binding::conditional))
-                                                    : (*this)(operand, Binding::sign)});
+    bool const fence = begins_with_sign(operand) && sysid::binding(operand) >= OperatorBinding::sign;
+    return to_.row({to_.sign(Sign::negative), fence ? to_.fenced(Fence::parentheses, (*this)(operand, OperatorBinding::conditional))
+                                                    : (*this)(operand, OperatorBinding::sign)});
   }
   std::string operator()(ast::Box<ast::Binary> const& binary) const {
     ast::Expression const &left = *binary->left, &right = *binary->right;
     if (binary->symbol == "^")
-      return to_.raised((*this)(left, Binding::primary), Visitor(formula_, true)(right, Binding::conditional));
+      return to_.raised((*this)(left, OperatorBinding::primary), Visitor(formula_, true)(right, OperatorBinding::conditional));
     if (binary->symbol == "/" && !in_exponent_)
-      return to_.fraction((*this)(left, Binding::conditional), (*this)(right, Binding::conditional));
+      return to_.fraction((*this)(left, OperatorBinding::conditional), (*this)(right, OperatorBinding::conditional));
     OperatorRow const& row = operator_row(binary->symbol);
     std::string const before = (*this)(left, row.left);
     bool const fence = begins_with_sign(right) && sysid::binding(right) >= row.right;
     std::string const after =
-        fence ? to_.fenced(Fence::parentheses, (*this)(right, Binding::conditional)) : (*this)(right, row.right);
+        fence ? to_.fenced(Fence::parentheses, (*this)(right, OperatorBinding::conditional)) : (*this)(right, row.right);
     if (binary->symbol == "/") return to_.row({before, to_.quoted("/"), after});
     if (binary->symbol != "*") return to_.row({before, to_.sign(sign_of(binary->symbol)), after});
     return to_.row({before, to_.sign(begins_with_digit(right) ? Sign::times : Sign::invisible), after});
@@ -153,19 +153,19 @@ class Formula::Visitor {
   }
 
  private:
-  bool needs_fence(ast::Expression const& expression, Binding place) const {
-    if (place == Binding::conditional) return false;
+  bool needs_fence(ast::Expression const& expression, OperatorBinding place) const {
+    if (place == OperatorBinding::conditional) return false;
     auto const* binary = std::get_if<ast::Box<ast::Binary>>(&expression.node);
     bool const fraction = binary != nullptr && (*binary)->symbol == "/" && !in_exponent_;
     // A bar holds its fraction together, but not under a power; digits times a power of ten, and units, are products.
-    if (fraction) return place >= Binding::power;
+    if (fraction) return place >= OperatorBinding::power;
     auto const* number = std::get_if<ast::Number>(&expression.node);
-    if (number != nullptr && place >= Binding::power)
+    if (number != nullptr && place >= OperatorBinding::power)
       return number->unit.has_value() || std::signbit(number->value) || number_text(number->value).find('e') != std::string::npos;
     auto const* reference = std::get_if<ast::Reference>(&expression.node);
-    if (reference != nullptr && place >= Binding::power) return reference->primes > 3;
+    if (reference != nullptr && place >= OperatorBinding::power) return reference->primes > 3;
     if (auto const* call = std::get_if<ast::Box<ast::Call>>(&expression.node))
-      return place >= Binding::power ? !is_absolute(**call) : is_cases(**call);
+      return place >= OperatorBinding::power ? !is_absolute(**call) : is_cases(**call);
     return sysid::binding(expression) < place;
   }
   /// Bars have their own ends; f(x) squared would read as f of x squared, and a root's line would seem to cover the power.
@@ -177,11 +177,11 @@ class Formula::Visitor {
 };
 
 std::string Formula::operator()(ast::Expression const& expression) const {
-  return Visitor(*this, false)(expression, Binding::conditional);
+  return Visitor(*this, false)(expression, OperatorBinding::conditional);
 }
 
 std::string Formula::operator()(ast::Reference const& reference) const {
-  Symbol const printed = symbols_(reference.name.text);
+  TypesetSymbol const printed = symbols_(reference.name.text);
   std::string out = to_.letter(printed.base);
   if (reference.primes > 0 && reference.primes <= 3) out = to_.dotted(out, reference.primes);
   std::vector<std::string> indices;
@@ -235,10 +235,10 @@ std::string Formula::distribution(ast::Call const& call) const {
     // Bishop's N(mean, variance), whatever the scale is given by.
     Visitor const visit(*this, false);
     std::string variance;
-    if (ast::Expression const* sd = named(call, "sd")) variance = to_.raised(visit(*sd, Binding::primary), to_.digits("2"));
+    if (ast::Expression const* sd = named(call, "sd")) variance = to_.raised(visit(*sd, OperatorBinding::primary), to_.digits("2"));
     if (ast::Expression const* given = named(call, "variance")) variance = (*this)(*given);
     if (ast::Expression const* precision = named(call, "precision"))
-      variance = to_.raised(visit(*precision, Binding::primary), to_.row({to_.sign(Sign::negative), to_.digits("1")}));
+      variance = to_.raised(visit(*precision, OperatorBinding::primary), to_.row({to_.sign(Sign::negative), to_.digits("1")}));
     if (!variance.empty())
       return to_.row({to_.calligraphic("N"),
                       to_.fenced(Fence::parentheses, list({(*this)(call.arguments.front().value), std::move(variance)}))});
@@ -258,7 +258,8 @@ std::string Formula::unit(ast::UnitExpression const& unit) const {
                            ? to_.fenced(Fence::parentheses, this->unit(*std::get<ast::Box<ast::UnitExpression>>(factor.base)))
                        : atom->text == "1" ? to_.digits("1")
                                            : to_.word(atom->text);
-    pieces.push_back(factor.exponent ? to_.raised(base, Visitor(*this, true)(**factor.exponent, Binding::conditional)) : base);
+    pieces.push_back(factor.exponent ? to_.raised(base, Visitor(*this, true)(**factor.exponent, OperatorBinding::conditional))
+                                     : base);
   }
   return pieces.empty() ? std::string() : to_.row(pieces);
 }

@@ -25,7 +25,7 @@ constexpr std::array<GreekLetter, 34> greek{{
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Of a name without a dot and without an underscore.
-Symbol without_underscore(std::string_view name) {
+TypesetSymbol without_underscore(std::string_view name) {
   std::size_t end = name.size();
   while (end > 0 && is_digit(name[end - 1])) --end;
   std::string_view const word = name.substr(0, end);
@@ -42,9 +42,9 @@ GreekLetter const* greek_letter(std::string_view text) {
   return row == greek.end() ? nullptr : &*row;
 }
 
-Symbol symbol(std::string_view name) {
+TypesetSymbol symbol(std::string_view name) {
   if (std::size_t const dot = name.rfind('.'); dot != std::string_view::npos) {
-    Symbol out = symbol(name.substr(dot + 1));
+    TypesetSymbol out = symbol(name.substr(dot + 1));
     for (std::string_view path = name.substr(0, dot); !path.empty();) {
       std::size_t const next = path.rfind('.');
       std::size_t const begin = next == std::string_view::npos ? 0 : next + 1;
@@ -55,18 +55,18 @@ Symbol symbol(std::string_view name) {
   }
   std::size_t const underscore = name.find('_');
   if (underscore == 0 || underscore == std::string_view::npos || underscore + 1 == name.size()) return without_underscore(name);
-  Symbol out = without_underscore(name.substr(0, underscore));
+  TypesetSymbol out = without_underscore(name.substr(0, underscore));
   std::string index(name.substr(underscore + 1));
   std::replace(index.begin(), index.end(), '_', ' ');
   out.indices.push_back(std::move(index));
   return out;
 }
 
-Symbol Symbols::operator()(std::string const& name) {
-  Symbol const printed = symbol(name);
+TypesetSymbol Symbols::operator()(std::string const& name) {
+  TypesetSymbol const printed = symbol(name);
   auto const [known, first] = names_.emplace(printed, name);
   if (!first && known->second != name) alike_.insert({known->second, name});
-  return alike_.contains(name) ? Symbol{name, {}} : printed;
+  return alike_.contains(name) ? TypesetSymbol{name, {}} : printed;
 }
 
 }  // namespace sysid

@@ -10,25 +10,25 @@
 namespace sysid {
 
 /// A letter or a word, and its indices from left to right.
-struct Symbol {
+struct TypesetSymbol {
   std::string base;
   std::vector<std::string> indices;
-  friend auto operator<=>(Symbol const&, Symbol const&) = default;
+  friend auto operator<=>(TypesetSymbol const&, TypesetSymbol const&) = default;
 };
 
 /// Digits at the end of a letter and what follows an underscore are indices; of `spring.k3`, so is `spring`. A name of several
 /// letters, `Cd`, stays whole: nobody but its user knows whether it is one symbol or two.
-Symbol symbol(std::string_view name);
+TypesetSymbol symbol(std::string_view name);
 
 /// The symbols of the names of one model. Names that would be printed alike, `k1` and `k_1`, are printed as they are typed.
 class Symbols {
  public:
   /// The symbol of a name, which is known from now on: what has been written before another name like it came up is to be written
   /// again.
-  Symbol operator()(std::string const& name);
+  TypesetSymbol operator()(std::string const& name);
 
  private:
-  std::map<Symbol, std::string> names_;
+  std::map<TypesetSymbol, std::string> names_;
   std::set<std::string> alike_;
 };
 

@@ -54,7 +54,7 @@ std::string record_json(RecordLook const& look) {
   out["columns"] = nlohmann::ordered_json::array();
   for (ColumnLook const& column : look.columns) out["columns"].push_back(json_of(column));
   out["left_out"] = nlohmann::ordered_json::array();
-  for (LeftOut const& each : look.left_out) out["left_out"].push_back({{"name", each.name}, {"why", each.reason}});
+  for (UnreadVariable const& each : look.left_out) out["left_out"].push_back({{"name", each.name}, {"why", each.reason}});
   out["block"] = look.block;
   return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

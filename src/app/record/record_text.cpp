@@ -88,7 +88,7 @@ std::string record_text(RecordLook const& look) {
     if (column.name == look.time.column) continue;
     for (std::string const& remark : remarks(column)) said += fmt::format("`{}` {}\n", column.name, remark);
   }
-  for (LeftOut const& each : look.left_out) said += fmt::format("`{}` {}\n", each.name, each.reason);
+  for (UnreadVariable const& each : look.left_out) said += fmt::format("`{}` {}\n", each.name, each.reason);
   if (!said.empty()) out += "\n" + said;
   if (look.lines_below > 0)
     out +=

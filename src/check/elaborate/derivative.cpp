@@ -15,7 +15,7 @@ constexpr int deepest_rate = 4500;
 
 class Rate {
  public:
-  Rate(std::function<std::optional<Motion>(std::string const&)> const& motion_of, std::size_t& left)
+  Rate(std::function<std::optional<OverTime>(std::string const&)> const& motion_of, std::size_t& left)
       : motion_of_(motion_of), left_(left) {}
 
   std::optional<Expression> of(Expression const& expression) {
@@ -33,7 +33,7 @@ class Rate {
  private:
   std::optional<Expression> derivative(Expression const& expression);
 
-  std::function<std::optional<Motion>(std::string const&)> const& motion_of_;
+  std::function<std::optional<OverTime>(std::string const&)> const& motion_of_;
   std::size_t& left_;
   int depth_ = 0;
 };
@@ -45,13 +45,13 @@ std::optional<Expression> Rate::derivative(Expression const& expression) {
     auto const motion = motion_of_(reference->name.text);
     if (!motion) return std::nullopt;
     switch (motion->kind) {
-      case Motion::Kind::moving:
+      case OverTime::Kind::moving:
         return tree::reference(reference->name.text, reference->primes + 1, span);
-      case Motion::Kind::still:
+      case OverTime::Kind::still:
         return tree::number(0, span);
-      case Motion::Kind::time:
+      case OverTime::Kind::time:
         return tree::number(1, span);
-      case Motion::Kind::defined:
+      case OverTime::Kind::defined:
         return reference->primes == 0 ? of(*motion->definition) : std::nullopt;
     }
   }
@@ -91,7 +91,7 @@ std::optional<Expression> Rate::derivative(Expression const& expression) {
 }  // namespace
 
 std::optional<Expression> time_derivative(Expression const& expression,
-                                          std::function<std::optional<Motion>(std::string const&)> const& motion_of,
+                                          std::function<std::optional<OverTime>(std::string const&)> const& motion_of,
                                           std::size_t& left) {
   return Rate(motion_of, left).of(expression);
 }

@@ -10,7 +10,7 @@
 namespace sysid {
 
 /// What a name of the flat model stands for when time passes.
-struct Motion {
+struct OverTime {
   enum class Kind {
     moving,   // a state or an input: a prime more
     still,    // a parameter, a constant, a number
@@ -25,7 +25,7 @@ struct Motion {
 /// where nothing moves. left: how many expressions may still be looked at, definitions included each time they occur; 0 and
 /// nothing when that, or the stack, is not enough.
 std::optional<ast::Expression> time_derivative(ast::Expression const& expression,
-                                               std::function<std::optional<Motion>(std::string const&)> const& motion_of,
+                                               std::function<std::optional<OverTime>(std::string const&)> const& motion_of,
                                                std::size_t& left);
 
 }  // namespace sysid

@@ -178,7 +178,7 @@ std::optional<Array> Evaluator::reference(ast::Reference const& reference, Frame
   std::string const flat = found.frame->prefix + found.name;
   bool const defined = symbol.value != nullptr;
   if (symbol.kind == FrameSymbol::Kind::time && !time_name.empty()) {
-    motions_[time_name] = Motion::Kind::time;
+    motions_[time_name] = OverTime::Kind::time;
     return element(scalar(tree::reference(time_name, reference.primes, span)), reference, frame);
   }
   std::optional<Array> value;
@@ -204,18 +204,18 @@ std::optional<Array> Evaluator::reference(ast::Reference const& reference, Frame
       if (!derived) return std::nullopt;
       array.items.push_back(std::move(*derived));
     } else {
-      if (!defined) motions_[each] = symbol.kind == FrameSymbol::Kind::parameter ? Motion::Kind::still : Motion::Kind::moving;
+      if (!defined) motions_[each] = symbol.kind == FrameSymbol::Kind::parameter ? OverTime::Kind::still : OverTime::Kind::moving;
       array.items.push_back(tree::reference(each, reference.primes, span));
     }
   }
   return element(std::move(array), reference, frame);
 }
 
-std::optional<Motion> Evaluator::motion_of(std::string const& name) const {
-  if (auto const motion = motions_.find(name); motion != motions_.end()) return Motion{motion->second, nullptr};
+std::optional<OverTime> Evaluator::motion_of(std::string const& name) const {
+  if (auto const motion = motions_.find(name); motion != motions_.end()) return OverTime{motion->second, nullptr};
   if (auto const definition = definitions_.find(name); definition != definitions_.end())
-    return Motion{Motion::Kind::defined, &definition->second};
-  if (name == "pi" || name == "inf") return Motion{Motion::Kind::still, nullptr};
+    return OverTime{OverTime::Kind::defined, &definition->second};
+  if (name == "pi" || name == "inf") return OverTime{OverTime::Kind::still, nullptr};
   return std::nullopt;
 }
 

@@ -96,7 +96,7 @@ class Evaluator {
   bool is_plain(ast::FunctionDefinition const& function, Frame const& frame,
                 std::vector<ast::FunctionDefinition const*>& seen) const;
   std::optional<ast::Expression> rate(ast::Expression expression, int primes, Span use, std::string const& input);
-  std::optional<Motion> motion_of(std::string const& name) const;
+  std::optional<OverTime> motion_of(std::string const& name) const;
 
   Diagnostics& diagnostics_;
   ArrayAlgebra algebra_;
@@ -105,7 +105,7 @@ class Evaluator {
   int depth_ = 0;                               // of evaluate
   std::vector<ast::FunctionDefinition const*> expanding_;
   std::map<std::string, ast::Expression> definitions_;  // by flat name
-  std::map<std::string, Motion::Kind> motions_;
+  std::map<std::string, OverTime::Kind> motions_;
 };
 
 }  // namespace sysid

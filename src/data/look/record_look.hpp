@@ -26,7 +26,7 @@ struct TimeLook {
 };
 
 /// A variable of the file that is no column of numbers.
-struct LeftOut {
+struct UnreadVariable {
   std::string name, reason;  // "is an array of structs: ..."
 };
 
@@ -38,7 +38,7 @@ struct RecordLook {
   std::string question;               // what may be read in two ways; the first way is shown
   std::vector<std::string> readings;  // the ways
   TimeLook time;
-  std::vector<LeftOut> left_out;
+  std::vector<UnreadVariable> left_out;
   std::vector<ColumnLook> columns;          // in the order of the file
   std::vector<double> times;                // s; row numbers where no column has them
   std::vector<std::vector<double>> values;  // of the columns; empty where one cannot be read
