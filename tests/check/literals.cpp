@@ -244,3 +244,26 @@ TEST_CASE("beside a pure number a bare number is pure, and ratios of like quanti
   CHECK(value(1) == doctest::Approx(0.25).epsilon(1e-12));
   CHECK(value(2) == doctest::Approx(0.95).epsilon(1e-12));
 }
+
+TEST_CASE("products, quotients, powers and roots of quantities count in SI, whatever their factors are declared in") {
+  Model const model = model_of(
+      "input x [mm]\nparameter k [N/m] ~ normal(3, sd = 1)\nparameter p [percent] ~ normal(3, sd = 1)\n"
+      "parameter f [kHz] ~ normal(3, sd = 1)\nderive force = k*x\nderive part = p*100 [N]\nderive area = x^2\n"
+      "derive angular = 2*pi*f\nobserve pull ~ normal(k*x + 5, sd = 1)\nobserve bare ~ normal(x + 5, sd = 1)");
+  auto const derived = [&](std::string const& name) -> Derived const& {
+    for (Derived const& each : model.derived)
+      if (each.name == name) return each;
+    throw std::out_of_range(name);
+  };
+  // Numbers beside units that have no name of their own are shown with the dimension: so they count in SI.
+  for (char const* name : {"force", "part", "area", "angular"}) {
+    CAPTURE(name);
+    CHECK(derived(name).unit->text.empty());
+    CHECK(derived(name).from_si(7) == near(7));
+  }
+  REQUIRE(model.channels.size() == 2);
+  CHECK(model.channels[0].from_si(7) == near(7));
+  CHECK(at(model, model.channels[0].noise.arguments[0], {{"k", 3}, {"x", 2e-3}}) == near(5.006));
+  CHECK(model.channels[1].unit_text() == "mm");
+  CHECK(at(model, model.channels[1].noise.arguments[0], {{"x", 2e-3}}) == near(7e-3));
+}

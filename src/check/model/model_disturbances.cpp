@@ -38,7 +38,7 @@ ast::Expression const* argument_named(ast::Call const& call, std::string_view na
 /// The unit of the variate from that of an argument which is a power of it.
 Unit root_of(Unit const& unit, int unit_power, int second_power) {
   Unit const without = second_power == 0 ? unit : divide(unit, power(unit_of_time(), {second_power, 1}));
-  return unit_power == 1 ? without : power(without, {1, unit_power});
+  return unit_power == 1 ? without : named_or_coherent(power(without, {1, unit_power}));
 }
 
 }  // namespace

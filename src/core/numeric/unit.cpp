@@ -308,6 +308,11 @@ Unit power(Unit const& a, Rational exponent) {
   return result;
 }
 
+Unit named_or_coherent(Unit unit) {
+  if (unit.text.empty()) unit.scale = 1;
+  return unit;
+}
+
 double convert(double value, Unit const& from, Unit const& to) {
   if (from.scale == to.scale && from.offset == to.offset) return value;  // no rounding where nothing changes
   return (value * from.scale + (from.offset - to.offset)) / to.scale;

@@ -47,6 +47,9 @@ Unit multiply(Unit const& a, Unit const& b);
 Unit divide(Unit const& a, Unit const& b);
 Unit power(Unit const& a, Rational exponent);
 
+/// The unit itself where it has a text, else the coherent SI unit of its dimension, which is what is written beside numbers then.
+Unit named_or_coherent(Unit unit);
+
 /// The number in unit `to` of the quantity that is `value` in unit `from`, offsets applied (20 degC = 293.15 K).
 /// Dimensions must agree (the caller has checked).
 double convert(double value, Unit const& from, Unit const& to);
