@@ -60,8 +60,8 @@ std::vector<RowRange> rows_between(Gaps const& gaps, Experiment const& experimen
 
 struct InitialValues {
   std::set<int> parameters;                // that some initial value reads
-  bool all_free = true;                    // each reads one
-  std::vector<std::string> shared, alone;  // of the sampled ones: not `per experiment`; read by nothing else
+  bool all_free = true;                    // each reads some, none of which is read by anything else
+  std::vector<std::string> shared, alone;  // of those that nothing else reads: not `per experiment`; all
 };
 
 InitialValues initial_values(Model const& model) {
@@ -88,8 +88,10 @@ InitialValues initial_values(Model const& model) {
   }
   for (int const p : values.parameters) {
     Parameter const& parameter = model.parameters[static_cast<std::size_t>(p)];
-    if (!parameter.per_experiment) values.shared.push_back(parameter.name);
-    if (!elsewhere.contains(p)) values.alone.push_back(parameter.name);
+    bool const alone = !elsewhere.contains(p);
+    if (alone && !parameter.per_experiment) values.shared.push_back(parameter.name);
+    if (alone) values.alone.push_back(parameter.name);
+    values.all_free = values.all_free && (alone || parameter.per_experiment);
   }
   return values;
 }

@@ -116,3 +116,13 @@ TEST_CASE("initial values that are parameters become those of each range") {
   CHECK(messages(cured, "time_gap").empty());
   CHECK(messages(cured, "not_identifiable").empty());
 }
+
+TEST_CASE("an initial value that the equations read, too, is that of the first range alone: the others' is estimated") {
+  // As the temperature around a body that begins as warm: another one for each range would change the equation as well.
+  std::string const read = with(gap_text, "initial y = 0.003", "initial y = y0\n parameter y0 [m] ~ normal(0, sd = 0.01)");
+  std::string const rest = with(read, "c*y\n", "c*(y - y0)\n");
+  std::string const help = gap_help(check_gap(rest, one_gap));
+  CHECK(help.find("start = estimated(rows = ") != std::string::npos);
+  CHECK(help.find("per experiment") == std::string::npos);
+  CHECK(help.find("`y0` a value") == std::string::npos);
+}

@@ -42,10 +42,13 @@ Findings check_prior_size(Session& session, FitTask const& what, std::vector<Exp
     preflight_processes(session, what, data, page);
   } else {
     Preflight const preflight(session, what, data, page);
-    describe_prior(preflight, draw_prior(preflight));
+    PriorDraws const prior = draw_prior(preflight);
+    describe_prior(preflight, prior);
+    check_initial(preflight, prior);
   }
   std::erase_if(page.findings, [](Finding const& each) {
-    return each.code != FindingCode::prior_far_from_data && each.code != FindingCode::prior_at_rest;
+    return each.code != FindingCode::prior_far_from_data && each.code != FindingCode::prior_at_rest &&
+           each.code != FindingCode::initial_far_off;
   });
   return page.findings;
 }
