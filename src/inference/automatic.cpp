@@ -8,9 +8,9 @@
 #include "inference/chain/independence.hpp"
 #include "inference/chain/ridge.hpp"
 #include "inference/table.hpp"
+#include "search/global/search.hpp"
 #include "search/laplace.hpp"
 #include "search/mode_findings.hpp"
-#include "search/search.hpp"
 
 namespace sysid::automatic {
 namespace {

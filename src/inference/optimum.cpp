@@ -14,11 +14,11 @@
 #include "diagnostics/bound_check.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/evidence/weighted_draws.hpp"
+#include "search/global/search.hpp"
 #include "search/journal.hpp"
 #include "search/laplace.hpp"
 #include "search/mode/at_bound.hpp"
 #include "search/objective.hpp"
-#include "search/search.hpp"
 #include "search/settle.hpp"
 
 namespace sysid::optimum {
@@ -110,9 +110,10 @@ Finding widths_wrong(Target const& target, Mode const& best, WeightedDraws const
   std::string const others =
       found.size() > 1 ? fmt::format("; the same holds for {}", counted(found.size() - 1, "further parameter")) : "";
   return {FindingCode::widths_not_normal, wrong ? Severity::error : Severity::warning, std::move(names),
-          fmt::format("the posterior is not normal around its optimum: weighted draws give {} = {:.3g} ± {:.2g}{}, the "
+          fmt::format("the posterior is not normal around its optimum: {} {} = {:.3g} ± {:.2g}{}, the "
                       "Laplace approximation {:.3g} ± {:.2g}{}{}{}",
-                      worst.name, draws.mean[p], draws.sd[p], unit_after_number(worst.unit), best.declared[p], best.sd[p],
+                      draws.walked && !draws.confirmed ? "an ensemble of short chains gives" : "weighted draws give", worst.name,
+                      draws.mean[p], draws.sd[p], unit_after_number(worst.unit), best.declared[p], best.sd[p],
                       unit_after_number(worst.unit), others,
                       draws.confirmed ? "" : "; these draws are too few to determine the sds, which may be larger still"),
           "fit with mh to get the sds of the posterior; use only the optimum of this result"};

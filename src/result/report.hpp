@@ -15,6 +15,7 @@
 #include "result/discovery.hpp"
 #include "result/draws.hpp"
 #include "result/evidence.hpp"
+#include "result/facts.hpp"
 #include "result/finding.hpp"
 #include "result/fixed_value.hpp"
 #include "result/function.hpp"
@@ -26,9 +27,6 @@
 #include "result/summary.hpp"
 
 namespace sysid {
-
-/// Named values in the order in which they are shown.
-using Facts = std::vector<std::pair<std::string, SettingValue>>;
 
 /// A prior whose arguments are numbers, as its density can be computed again from: SI values.
 struct PriorNumbers {

@@ -10,6 +10,7 @@
 #include "core/numeric/lanes.hpp"
 #include "core/setting/settings.hpp"
 #include "result/draws.hpp"
+#include "result/facts.hpp"
 #include "result/finding.hpp"
 #include "result/parameter_info.hpp"
 #include "result/summary.hpp"
@@ -77,6 +78,7 @@ struct SelectedModel {
   std::vector<WeightedSummary> summaries;
   /// Parameters that its statements name and its arguments take out: `k2` of duffing(quadratic = 0). They stay at their priors.
   std::vector<std::string> absent = {};
+  Facts simulated_with = {};  // the solver of its particles and its settings; empty where nothing is solved
 
   bool is_absent(std::string const& parameter) const { return std::find(absent.begin(), absent.end(), parameter) != absent.end(); }
 };

@@ -20,7 +20,7 @@ constexpr Breadth few{2048, 12, 4, 3, 100};
 /// Curvature in prior widths below which a direction is drawn again.
 constexpr double loose = 30;
 
-/// Draws of the prior, moved to where a local search has ended along all that it has determined (search/growing_search.hpp).
+/// Draws of the prior, moved to where a local search has ended along all that it has determined (search/global/growing_search.hpp).
 class Pulled {
  public:
   Pulled(Climber const& climber, Objective const& objective) : at_(climber.theta), objective_(objective) {

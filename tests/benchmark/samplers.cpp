@@ -13,7 +13,7 @@
 #include "likelihood/model_target.hpp"
 #include "load/load.hpp"
 #include "processor_time.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 

@@ -9,14 +9,14 @@
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
-#include "app/session/solver_refinement.hpp"
+#include "app/search/solver_refinement.hpp"
 #include "core/numeric/random.hpp"
 #include "inference/targets.hpp"
+#include "search/global/search.hpp"
 #include "search/journal.hpp"
 #include "search/mode/at_bound.hpp"
 #include "search/mode/moves.hpp"
 #include "search/refit.hpp"
-#include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "inference/targets.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

@@ -11,7 +11,7 @@
 #include "diagnostics/verdict.hpp"
 #include "inference/interruptions.hpp"
 #include "linear_algebra/decompositions.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

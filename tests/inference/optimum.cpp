@@ -9,7 +9,7 @@
 #include "diagnostics/verdict.hpp"
 #include "inference/table.hpp"
 #include "inference/targets.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

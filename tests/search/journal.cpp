@@ -8,8 +8,8 @@
 
 #include "inference/targets.hpp"
 #include "replications.hpp"
+#include "search/global/search.hpp"
 #include "search/refit.hpp"
-#include "search/search.hpp"
 #include "search/stored_values.hpp"
 
 using namespace sysid;

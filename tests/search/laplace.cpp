@@ -7,7 +7,7 @@
 
 #include "inference/targets.hpp"
 #include "linear_algebra/decompositions.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

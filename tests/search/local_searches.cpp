@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "inference/targets.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

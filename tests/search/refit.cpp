@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "inference/targets.hpp"
+#include "search/global/search.hpp"
 #include "search/mode/moves.hpp"
-#include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

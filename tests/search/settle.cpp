@@ -9,8 +9,8 @@
 #include "inference/optimum.hpp"
 #include "inference/targets.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "search/global/search.hpp"
 #include "search/local_searches.hpp"
-#include "search/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

@@ -13,8 +13,8 @@
 #include "likelihood/model_target.hpp"
 #include "load/load.hpp"
 #include "replications.hpp"
+#include "search/global/search.hpp"
 #include "search/laplace.hpp"
-#include "search/search.hpp"
 
 using namespace sysid;
 

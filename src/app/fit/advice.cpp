@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "app/session/solver_refinement.hpp"
+#include "app/search/solver_refinement.hpp"
 #include "experiment/sticking.hpp"
 
 namespace sysid {

@@ -9,16 +9,13 @@
 #include "app/fit/hierarchies.hpp"
 #include "app/preflight/check_file.hpp"
 #include "app/preflight/time_scales.hpp"
+#include "app/search/search_near.hpp"
+#include "app/search/solver_refinement.hpp"
 #include "app/session/fit_end.hpp"
-#include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
 #include "app/session/provenance.hpp"
 #include "app/session/reporting.hpp"
-#include "app/session/search_near.hpp"
-#include "app/session/solver_refinement.hpp"
 #include "core/numeric/random.hpp"
-#include "data/start_rule.hpp"
-#include "likelihood/first_rows.hpp"
 #include "search/hierarchy/standardised.hpp"
 #include "search/improper/propriety.hpp"
 #include "search/improper/references.hpp"
@@ -28,11 +25,6 @@ namespace sysid {
 namespace {
 
 constexpr std::uint64_t other_references = 13'000'000;  // of Purpose::start
-
-SolverSettings refined(SolverSettings solver, int times) {
-  for (; times > 0; --times) solver = solver.finer();
-  return solver;
-}
 
 }  // namespace
 
@@ -50,6 +42,17 @@ std::unique_ptr<Target> FitPreparation::target(SolverSettings const& solver) con
   return likelihood_.make_target(experiments_of(data_), solver, session_.interruptible());
 }
 
+SearchableRecord FitPreparation::searchable_record() const {
+  return {session_,
+          task_.name,
+          what_,
+          data_,
+          likelihood_.model(),
+          [this](std::vector<Experiment> experiments, SolverSettings const& solver) {
+            return likelihood_.make_target(std::move(experiments), solver, session_.interruptible());
+          }};
+}
+
 bool FitPreparation::run(RunContext& context, Preparation& preparation) {
   Model const& model = likelihood_.model();
   Findings ahead = check_method(session_, what_);
@@ -61,17 +64,19 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
 
   preparation.solver = what_.solver;
   if (!find_references(context, context.seed, preparation)) return false;
+  SearchableRecord const record = searchable_record();
   std::optional<SearchSolver> solver;
-  if (what_.refine_solver && model.integrated()) {
-    solver = choose_search_solver(context, preparation);
+  if (record.refines()) {
+    solver = choose_search_solver(record, context);
     if (!solver) return false;
+    preparation.solver = solver->solver;
   }
   FitSituation const situation{
       model, data_, preparation.solver, preparation.ledger, solver ? &*solver : nullptr, scales ? &*scales : nullptr};
   if (ParameterSpace const* const space = hierarchies()) likelihood_.standardise(non_centred(*space));
   auto const searched = target(preparation.solver);
   SearchResult found = what_.near ? search_near(session_, *what_.near, *searched, objective_kind_, context)
-                                  : search(*searched, objective_kind_, context, shorter_records(preparation.solver));
+                                  : search(*searched, objective_kind_, context, shorter_records(record, preparation.solver));
   if (found.interrupted) return false;
   if (found.failure && !preparation.references.empty())
     if (auto singular = unbounded::unbounded_density(*searched, before_search_, context.seed)) found.failure = std::move(singular);
@@ -80,7 +85,7 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
     checkpoint_.drop();
     throw UserError(no_result(task_, *found.failure));
   }
-  SolverSettings const from = coarsest(found, preparation);
+  SolverSettings const from = coarsest_solver(record, found, preparation.solver);
   if (!follow_members(found, context, preparation)) return false;
   if (!require_proper(found, preparation, context)) return false;
   preparation.modes = std::move(found.modes);
@@ -156,42 +161,6 @@ bool FitPreparation::require_proper(SearchResult& found, Preparation& preparatio
   }
   found.findings.insert(found.findings.end(), propriety.findings.begin(), propriety.findings.end());
   return true;
-}
-
-// Empty: interrupted.
-std::optional<SearchSolver> FitPreparation::choose_search_solver(RunContext const& context, Preparation& preparation) {
-  MakeTarget const make = [this](SolverSettings const& tried) { return target(tried); };
-  SearchSolver const search = search_solver(make, what_.solver, context.seed, context.interrupted, context.journal);
-  if (context.stop_requested()) return std::nullopt;
-  if (search.solver != what_.solver)
-    session_.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws overflow\n", task_.name,
-                                    accuracy(search.solver), accuracy(what_.solver), 100 * search.failed_as_given);
-  preparation.solver = search.solver;
-  return search;
-}
-
-// What a search of a long record begins with. solver: that of the search.
-ShorterRecords FitPreparation::shorter_records(SolverSettings const& solver) const {
-  std::vector<Experiment> const whole = experiments_of(data_);
-  int const least = 4 * start_rows(what_.start);  // an estimated start is not all that a part is for
-  constexpr int most_refinements = 4;
-  return {most_scored_rows(whole), what_.refine_solver && likelihood_.model().integrated() ? most_refinements : 0,
-          [this, whole, least, solver](double share, int finer) {
-            FirstRows part = first_rows(whole, share, least);
-            return FirstPart{likelihood_.make_target(std::move(part.experiments), refined(solver, finer), session_.interruptible()),
-                             part.share};
-          }};
-}
-
-// Where the search has followed the record with a finer solver than it began with, that is the coarsest to be tried.
-SolverSettings FitPreparation::coarsest(SearchResult const& found, Preparation& preparation) {
-  if (found.finer == 0) return what_.solver;
-  SolverSettings const finer = refined(preparation.solver, found.finer);
-  session_.notices << fmt::format(
-      "{}: the search uses {}, because with {} it found no parameters that fit the whole record as well\n", task_.name,
-      accuracy(finer), accuracy(preparation.solver));
-  preparation.solver = finer;
-  return finer;
 }
 
 // Where members of hierarchies may have other coordinates than declared; else null.

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "app/fit/fit_likelihood.hpp"
+#include "app/search/record_search.hpp"
 #include "app/session/preparation.hpp"
 #include "app/session/task_checkpoint.hpp"
 #include "diagnostics/tolerance/tolerance.hpp"
+#include "search/global/search.hpp"
 #include "search/objective_kind.hpp"
-#include "search/search.hpp"
 
 namespace sysid {
 
@@ -28,11 +29,9 @@ class FitPreparation {
   bool run(RunContext& context, Preparation& preparation);
 
  private:
-  ShorterRecords shorter_records(SolverSettings const& solver) const;
-  std::optional<SearchSolver> choose_search_solver(RunContext const& context, Preparation& preparation);
+  SearchableRecord searchable_record() const;
   bool find_references(RunContext const& context, std::uint64_t seed, Preparation& preparation);
   bool require_proper(SearchResult& found, Preparation& preparation, RunContext& context);
-  SolverSettings coarsest(SearchResult const& found, Preparation& preparation);
   ParameterSpace const* hierarchies() const;
   bool follow_members(SearchResult& found, RunContext& context, Preparation& preparation);
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "app/session/solver_refinement.hpp"
+#include "app/search/solver_refinement.hpp"
+#include "search/global/search.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
-#include "search/search.hpp"
 
 namespace sysid {
 namespace {

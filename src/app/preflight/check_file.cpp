@@ -142,7 +142,9 @@ void preflight_candidates(Session& session, Task const& task, SelectTask const& 
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(selection.candidates)];
   for (std::size_t k = 0; k < selection.fits.size(); ++k) {
     page.preflights.emplace_back().candidate = set.models[k].name;
-    run_preflight(session, selection.fits[k], data[k], page.preflights.back());
+    FitTask const& fit = selection.fits[k];
+    run_preflight(session, with_exact_steps(fit, session.file.models[static_cast<std::size_t>(fit.model)], data[k]).task, data[k],
+                  page.preflights.back());
   }
 }
 

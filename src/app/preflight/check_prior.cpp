@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "app/preflight/preflight.hpp"
-#include "app/session/solver_refinement.hpp"
+#include "app/search/solver_refinement.hpp"
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"

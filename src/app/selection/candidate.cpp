@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/session/exact_steps.hpp"
 #include "app/session/fit_target.hpp"
 #include "core/numeric/elementary.hpp"
 #include "core/text/diagnostic.hpp"
@@ -59,13 +60,16 @@ void refuse_idle_weights(DistanceRule const& rule, Candidate const& candidate) {
 std::vector<Candidate> prepare_candidates(Session& session, SelectTask const& what, CandidateSet const& set) {
   std::vector<Candidate> all;
   for (std::size_t k = 0; k < set.models.size(); ++k) {
-    FitTask const& fit = what.fits[k];
     Candidate candidate;
     candidate.what = &set.models[k];
-    candidate.fit = &fit;
+    Model const& written = session.file.models[static_cast<std::size_t>(what.fits[k].model)];
+    candidate.data = load_experiments(session, what.fits[k].experiments, written, what.fits[k].start, what.fits[k].prediction,
+                                      what.fits[k].solver);
+    SuitedTask suited = with_exact_steps(what.fits[k], written, candidate.data);
+    if (suited.growing > 0) session.notices << exact_notice(candidate.what->name, what.fits[k].solver, suited);
+    candidate.fit = std::move(suited.task);
+    FitTask const& fit = candidate.fit;
     candidate.compiled = session.compiled(fit, fit.solver.method);
-    candidate.data = load_experiments(session, fit.experiments, session.file.models[static_cast<std::size_t>(fit.model)], fit.start,
-                                      fit.prediction, fit.solver);
     Model const& model = candidate.compiled->model;
     candidate.space = parameter_space(model, fit.experiments);
     candidate.simulated = parameter_space(without_noise_parameters(model), fit.experiments);
@@ -81,10 +85,10 @@ ModelSelectionTarget selection_target(Session const& session, SelectTask const& 
   std::vector<SelectionCandidate> all;
   for (Candidate const& each : candidates) {
     TargetOptions options;
-    options.solver = finer ? each.fit->solver.finer() : each.fit->solver;
-    options.start_rows = start_rows(each.fit->start);
+    options.solver = finer ? each.fit.solver.finer() : each.fit.solver;
+    options.start_rows = start_rows(each.fit.start);
     options.execution = session.abandonable();
-    options.describe = [&session, model = each.fit->model](NodeId node, Graph const& graph) {
+    options.describe = [&session, model = each.fit.model](NodeId node, Graph const& graph) {
       return session.describe(model, graph, node);
     };
     all.push_back({each.what->name, each.what->probability, each.compiled, each.simulated, experiments_of(each.data), each.measure,
@@ -93,10 +97,16 @@ ModelSelectionTarget selection_target(Session const& session, SelectTask const& 
   return ModelSelectionTarget(std::move(all));
 }
 
-std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver,
+std::unique_ptr<ModelTarget> likelihood_target(Session& session, Candidate const& candidate, std::vector<Experiment> experiments,
+                                               SolverSettings const& solver, ExecutionOptions const& execution) {
+  auto const compiled =
+      solver.method == candidate.fit.solver.method ? candidate.compiled : session.compiled(candidate.fit, solver.method);
+  return make_fit_target(session, candidate.fit, compiled, candidate.space, std::move(experiments), solver, execution);
+}
+
+std::unique_ptr<ModelTarget> likelihood_target(Session& session, Candidate const& candidate, SolverSettings const& solver,
                                                ExecutionOptions const& execution) {
-  return make_fit_target(session, *candidate.fit, candidate.compiled, candidate.space, experiments_of(candidate.data), solver,
-                         execution);
+  return likelihood_target(session, candidate, experiments_of(candidate.data), solver, execution);
 }
 
 void require_same_samples(std::vector<Candidate> const& candidates, Span place) {

@@ -13,7 +13,7 @@ namespace sysid {
 
 struct Candidate {
   CandidateModel const* what;
-  FitTask const* fit;
+  FitTask fit;  // with exact steps where it states no solver and they suit it
   std::shared_ptr<CompiledModel const> compiled;
   std::vector<ExperimentData> data;
   std::shared_ptr<ParameterSpace const> space, simulated;  // of all parameters; of those that a simulation without noise reads
@@ -28,8 +28,11 @@ ModelSelectionTarget selection_target(Session const& session, SelectTask const& 
                                       bool finer);
 
 /// The candidate as a fit would see it.
-std::unique_ptr<ModelTarget> likelihood_target(Session const& session, Candidate const& candidate, SolverSettings const& solver,
+std::unique_ptr<ModelTarget> likelihood_target(Session& session, Candidate const& candidate, SolverSettings const& solver,
                                                ExecutionOptions const& execution);
+/// Of other experiments than its own, such as their first rows.
+std::unique_ptr<ModelTarget> likelihood_target(Session& session, Candidate const& candidate, std::vector<Experiment> experiments,
+                                               SolverSettings const& solver, ExecutionOptions const& execution);
 
 /// UserError E6520 where candidates would score different samples: a likelihood of fewer of them is no weaker model's.
 void require_same_samples(std::vector<Candidate> const& candidates, Span place);

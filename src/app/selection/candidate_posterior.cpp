@@ -8,9 +8,9 @@
 #include <limits>
 #include <numeric>
 
+#include "app/search/solver_refinement.hpp"
 #include "app/selection/likelihood_check.hpp"
 #include "app/session/fit_target.hpp"
-#include "app/session/solver_refinement.hpp"
 #include "core/numeric/elementary.hpp"
 #include "diagnostics/tolerance/tolerance.hpp"
 
@@ -26,14 +26,14 @@ constexpr double negligible = 30;
 /// Follows the modes to finer solvers; a solver that the task states is only asked.
 void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_t seed, Journal& journal,
                       CandidatePosterior& posterior) {
-  if (!candidate.compiled->model.integrated() || candidate.fit->solver.row().exact || posterior.modes.empty() ||
+  if (!candidate.compiled->model.integrated() || candidate.fit.solver.row().exact || posterior.modes.empty() ||
       posterior.modes.front().theta.empty())
     return;
   Ledger extra;
-  if (!candidate.fit->refine_solver) {
+  if (!candidate.fit.refine_solver) {
     std::vector<Mode> const weightiest = {posterior.modes.front()};
     posterior.move = move_to_finer(
-        *likelihood_target(session, candidate, candidate.fit->solver.finer(), session.interruptible()), ObjectiveKind::posterior,
+        *likelihood_target(session, candidate, candidate.fit.solver.finer(), session.interruptible()), ObjectiveKind::posterior,
         weightiest, seed, extra, [&] { return session.interrupted(); }, &journal);
     return;
   }
@@ -48,7 +48,7 @@ void refine_solver_of(Session& session, Candidate const& candidate, std::uint64_
                      .checkpoint_interval = 0,
                      .journal = &journal};
   RefinedSolver refined =
-      find_converged_solver(make, ObjectiveKind::posterior, candidate.fit->solver, std::move(posterior.modes), context);
+      find_converged_solver(make, ObjectiveKind::posterior, candidate.fit.solver, std::move(posterior.modes), context);
   posterior.modes = std::move(refined.modes);
   if (refined.lost) posterior.modes.clear();  // places that only a coarse solver could reach are none
   // What is left is weighed as the finer one has it.
@@ -82,7 +82,7 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
   double best = -std::numeric_limits<double>::infinity();  // of what a model's probability is in proportion to
   for (std::size_t i = 0; i < order.size(); ++i) {
     std::size_t const k = order[i];
-    SolverSettings const& solver = candidates[k].fit->solver;
+    SolverSettings const& solver = candidates[k].fit.solver;
     double const per_mass = log_unit(candidates[k], candidates.front()) + elementary::log(result.models[k].prior);
     LocalSearches found = modes_near(
         *likelihood_target(session, candidates[k], solver, session.interruptible()), result.models[k], best - per_mass - negligible,
@@ -105,10 +105,10 @@ std::optional<std::vector<CandidatePosterior>> candidate_posteriors(Session& ses
     }
     examined[k] = true;
     refine_solver_of(session, candidates[k], seed, journal, posteriors[k]);
-    if (posteriors[k].solver != candidates[k].fit->solver)
+    if (posteriors[k].solver != candidates[k].fit.solver)
       finer += fmt::format("the likelihood of `{}` is computed with {}, because {} would be too coarse: with {}, {}\n",
-                           candidates[k].what->name, posteriors[k].solver.text(), candidates[k].fit->solver.text(),
-                           candidates[k].fit->solver.finer_words(), moved(*posteriors[k].move));
+                           candidates[k].what->name, posteriors[k].solver.text(), candidates[k].fit.solver.text(),
+                           candidates[k].fit.solver.finer_words(), moved(*posteriors[k].move));
     if (stopped()) return std::nullopt;
     k = 0;
   }
@@ -142,7 +142,7 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
   Findings findings;
   for (std::size_t k = 0; k < posteriors.size(); ++k) {
     CandidatePosterior const& posterior = posteriors[k];
-    SolverSettings const& stated = candidates[k].fit->solver;
+    SolverSettings const& stated = candidates[k].fit.solver;
     if (posterior.move && *posterior.move > tolerable_offset) {
       std::string const finer = posterior.solver == stated ? stated.finer().option() : posterior.solver.option();
       findings.push_back({FindingCode::integration_step,

@@ -55,7 +55,7 @@ class PredictSelection {
     add_source(session_.result_folder(select_task_), report);
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)}, {"start", start_text(what_.start)}};
     if (session_.file.models[static_cast<std::size_t>(select_.fits[lead].model)].integrated())
-      add_solver(select_.fits[lead].solver, report.settings);
+      add_solver(trajectories_.solver(lead), report.settings);
     report.verdict = prediction_verdict(report, false);
     keep_result(session_, task_, report);
     return grade(report) == Severity::error ? ExitCode::doubtful : ExitCode::success;
@@ -72,7 +72,7 @@ class PredictSelection {
     add_data(session_.file, *leading.data, leading.model(), report);
     for (Finding& finding : find_fitted_rows(session_.file, *leading.data, select_.fits[lead].experiments, select_task_.name))
       report.findings.push_back(std::move(finding));
-    add_ranges(lead, leading, report);
+    add_ranges(leading, report);
     int const leading_failed = leading.result.failed();
     Owners owners(leading.result.values.size());
     own(lead, leading.result, owners);
@@ -82,7 +82,7 @@ class PredictSelection {
       if (k == lead || counts[k] == 0) continue;
       SelectionTrajectories::Along const other = trajectories_.along(k, e);
       all.ledger.merge(other.result.ledger);
-      add_ranges(k, other, report);
+      add_ranges(other, report);
       append(leading, other, all);
       own(k, all, owners);
     }
@@ -106,9 +106,9 @@ class PredictSelection {
       report.findings.push_back(std::move(finding));
   }
 
-  void add_ranges(std::size_t candidate, SelectionTrajectories::Along const& along, Report& report) const {
-    for (Finding& finding : check_ranges(along.model(), along.data->experiment, select_.fits[candidate].solver, along.start_rows,
-                                         along.parameters, session_.abandonable()))
+  void add_ranges(SelectionTrajectories::Along const& along, Report& report) const {
+    for (Finding& finding : check_ranges(along.model(), along.data->experiment, along.solver, along.start_rows, along.parameters,
+                                         session_.abandonable()))
       report.findings.push_back(std::move(finding));
   }
 

@@ -5,12 +5,13 @@
 
 #include <algorithm>
 
+#include "app/search/record_search.hpp"
+#include "app/search/solver_refinement.hpp"
 #include "app/session/fit_target.hpp"
-#include "app/session/solver_refinement.hpp"
 #include "core/system/interrupt.hpp"
 #include "diagnostics/tolerance/tolerance.hpp"
 #include "search/local_searches.hpp"
-#include "search/search.hpp"
+#include "search/refit.hpp"
 
 namespace sysid {
 namespace {
@@ -32,18 +33,35 @@ class CandidateSearch {
                  .journal = &journal} {}
 
   std::optional<SearchedCandidate> run() {
-    SearchedCandidate found{{}, candidate_.fit->solver, {}};
+    SolverSettings const stated = candidate_.fit.solver;
+    SearchedCandidate found{{}, stated, {}};
     if (candidate_.space->dimension() == 0) return found;
-    SearchResult search = sysid::search(*target(found.solver), ObjectiveKind::posterior, context_);
+    SearchableRecord const record = searchable_record();
+    std::optional<SearchSolver> followed;
+    if (record.refines()) {
+      followed = choose_search_solver(record, context_);
+      if (!followed) return std::nullopt;
+      found.solver = followed->solver;
+    }
+    SearchResult search =
+        sysid::search(*target(found.solver), ObjectiveKind::posterior, context_, shorter_records(record, found.solver));
     if (search.interrupted || session_.interrupted()) return std::nullopt;
     if (search.failure) {
       found.excluded = search.failure->message;
       return found;
     }
+    SolverSettings const coarsest = coarsest_solver(record, search, found.solver);
     found.modes = std::move(search.modes);
-    bool const solved = candidate_.compiled->model.integrated() && !found.solver.row().exact;
-    if (solved && candidate_.fit->refine_solver) refine(found);
-    if (solved && !candidate_.fit->refine_solver) ask(found);
+    if (followed)
+      for (Finding& each : stiff_prior(*followed, allow_exact_steps(candidate_.data, candidate_.compiled->model))) {
+        each.names.push_back(name());
+        each.message = fmt::format("`{}`: {}", name(), each.message);
+        findings_.push_back(std::move(each));
+      }
+    if (record.refines())
+      refine(found, coarsest);
+    else if (candidate_.compiled->model.integrated() && !found.solver.row().exact)
+      ask(found);
     if (session_.interrupted()) return std::nullopt;
     return found;
   }
@@ -54,8 +72,23 @@ class CandidateSearch {
   }
   std::string const& name() const { return candidate_.what->name; }
 
-  void refine(SearchedCandidate& found) {
-    SolverSettings const stated = found.solver;
+  SearchableRecord searchable_record() const {
+    return {session_,
+            name(),
+            candidate_.fit,
+            candidate_.data,
+            candidate_.compiled->model,
+            [this](std::vector<Experiment> experiments, SolverSettings const& solver) {
+              return likelihood_target(session_, candidate_, std::move(experiments), solver, session_.interruptible());
+            }};
+  }
+
+  /// stated: the coarsest that is tried.
+  void refine(SearchedCandidate& found, SolverSettings const& stated) {
+    // Modes may need fewer steps than far corners of the prior.
+    if (found.solver != stated)
+      found.modes = refit(*target(stated), ObjectiveKind::posterior, found.modes, context_.seed, ledger_, context_.interrupted,
+                          nullptr, context_.journal);
     RefinedSolver refined = find_converged_solver([this](SolverSettings const& solver) { return target(solver); },
                                                   ObjectiveKind::posterior, stated, std::move(found.modes), context_);
     found.solver = refined.solver;

@@ -170,7 +170,7 @@ class Select {
   void add_predictions(SelectionReport const& selection, Report& report) const {
     Candidate const& leading = candidates_[static_cast<std::size_t>(selection.leader())];
     add_leading_predictions(leading,
-                            {*leading.simulated, leading_values(selection), leading.fit->solver,
+                            {*leading.simulated, leading_values(selection), leading.fit.solver,
                              leading.space->dimension() == leading.simulated->dimension()},
                             seed_, session_.abandonable(), report);
   }
@@ -218,6 +218,9 @@ class Select {
     SelectionReport selection;
     selection.result = std::move(result);
     name_absent(candidates_, selection.result);
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+      if (candidates_[k].compiled->model.integrated())
+        add_solver(candidates_[k].fit.solver, selection.result.models[k].simulated_with);
     selection.distance = what_.distance.text.empty() ? "nmse" : what_.distance.text;
     selection.likelihoods.resize(candidates_.size());
     selection.resampling_seed = seed_;
@@ -239,8 +242,8 @@ class Select {
                          SelectionReport const& selection, Report& report) {
     add(solver_findings(candidates_, posteriors), report);
     add(check_threshold(selection), report);
-    if (leading.compiled->model.integrated() && !leading.fit->solver.row().exact && std::isfinite(selection.result.threshold))
-      add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit->solver), report);
+    if (leading.compiled->model.integrated() && !leading.fit.solver.row().exact && std::isfinite(selection.result.threshold))
+      add(check_distances(make_target(true), selection.leader(), selection.result, leading.fit.solver), report);
   }
 
   static void note_end(SelectionReport const& selection, bool interrupted, bool refined, Report& report) {
@@ -266,8 +269,8 @@ class Select {
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : selection.result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("distance", selection.distance);
-    report.settings.emplace_back("start_state", start_text(first.fit->start));
-    if (first.compiled->model.integrated()) add_solver(first.fit->solver, report.settings);
+    report.settings.emplace_back("start_state", start_text(first.fit.start));
+    if (first.compiled->model.integrated()) add_solver(first.fit.solver, report.settings);
     report.resolved_text = resolved_select(session_, task_, what_, seed_);
   }
 
@@ -283,7 +286,8 @@ class Select {
     std::vector<SelectedCandidate>& kept = session_.selected[index_];
     kept.clear();
     for (SelectedModel const& model : result.models)
-      kept.push_back({model.probability, model.died_in > 0 ? Draws{} : resampled_draws(model, seed_)});
+      kept.push_back(
+          {model.probability, model.died_in > 0 ? Draws{} : resampled_draws(model, seed_), candidates_[kept.size()].fit.solver});
   }
 
   static std::string headline(SelectionReport const& selection, Findings const& findings) {

@@ -22,9 +22,11 @@
 #include "app/session/solver_record.hpp"
 #include "app/session/task_checkpoint.hpp"
 #include "core/system/files.hpp"
+#include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 #include "core/text/number.hpp"
 #include "data/start_rule.hpp"
+#include "diagnostics/tolerance/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/table.hpp"
 #include "report/file/selection.hpp"
@@ -66,7 +68,11 @@ class SelectByLikelihood {
     if (!search()) return interrupted();
     std::optional<SelectionResult> result = select();
     if (!result) return interrupted();
-    return finish(std::move(*result));
+    try {
+      return finish(std::move(*result));
+    } catch (Interrupted const&) {  // bands of fewer draws would be another result
+      return interrupted();
+    }
   }
 
  private:
@@ -116,7 +122,10 @@ class SelectByLikelihood {
       throw UserError({Severity::error, "E6206", result.failure->message, Label{task_.span, {}}, {}, result.failure->help});
     if (result.interrupted) return std::nullopt;
     for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (candidates_[k].compiled->model.integrated()) result.jumps->models[k].solver = searched_[k].solver.text();
+      if (candidates_[k].compiled->model.integrated()) {
+        result.jumps->models[k].solver = searched_[k].solver.text();
+        add_solver(searched_[k].solver, result.models[k].simulated_with);
+      }
     return result;
   }
 
@@ -146,6 +155,13 @@ class SelectByLikelihood {
       report.fit = std::move(check.lines);
       report.findings.insert(report.findings.end(), check.findings.begin(), check.findings.end());
     }
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      SelectedModel const& model = selection.result.models[k];
+      if (model.probability < weight_of_interest || model.weight.empty()) continue;
+      for (Finding& each :
+           check_solver(session_, candidates_[k], resampled_draws(model, seed_), searched_[k].modes, searched_[k].solver, seed_))
+        report.findings.push_back(std::move(each));
+    }
     if (!selection.result.models[lead].weight.empty()) add_predictions(lead, selection, report);
     add_settings(lead, selection, report);
     keep_draws(selection.result);
@@ -162,13 +178,13 @@ class SelectByLikelihood {
     Candidate const& leading = candidates_[lead];
     LaneArray values = leading.space->values_of_declared(spread(resampled_draws(selection.result.models[lead], seed_), band_draws));
     add_leading_predictions(leading, {*leading.space, std::move(values), searched_[lead].solver, true}, seed_,
-                            session_.interruptible(), report);
+                            session_.abandonable(), report);
   }
 
   void add_settings(std::size_t lead, SelectionReport const& selection, Report& report) const {
     report.settings = {{"backend", what_.backend}};
     for (auto const& [name, value] : selection.result.settings.all()) report.settings.emplace_back(name, value);
-    report.settings.emplace_back("start_state", start_text(candidates_.front().fit->start));
+    report.settings.emplace_back("start_state", start_text(candidates_.front().fit.start));
     if (candidates_[lead].compiled->model.integrated()) add_solver(searched_[lead].solver, report.settings);
     report.resolved_text = resolved_select(session_, task_, what_, seed_);
     report.ledger = ledger_;
@@ -194,7 +210,7 @@ class SelectByLikelihood {
         draws.chains.front().values.emplace_back();
         for (std::size_t const c : columns) draws.chains.front().values.back().push_back(row[c]);
       }
-      kept.push_back({result.models[k].probability, std::move(draws)});
+      kept.push_back({result.models[k].probability, std::move(draws), searched_[k].solver});
     }
   }
 

@@ -12,6 +12,7 @@
 #include "app/session/fit_target.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "diagnostics/tolerance/tolerance_check.hpp"
 #include "experiment/noise_statement.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -20,6 +21,13 @@ namespace {
 
 /// A finer solver may move the median distance by this part of the threshold.
 constexpr double tolerable_shift = 0.05;
+
+void name_candidate(Candidate const& candidate, Findings& findings) {
+  for (Finding& finding : findings) {
+    finding.names.insert(finding.names.begin(), candidate.what->name);
+    finding.message = fmt::format("`{}`: {}", candidate.what->name, finding.message);
+  }
+}
 
 /// What noise leaves of a candidate's distance at one of its parameter vectors (declared); nothing but for normal noise.
 struct Floor {
@@ -40,7 +48,7 @@ std::optional<Floor> floor_at(Session const& session, Candidate const& candidate
       Experiment const& experiment = candidate.data[e].experiment;
       LaneArray parameters(static_cast<int>(model.parameters.size()), 1);
       candidate.space->select(candidate.space->values_of_declared(declared), static_cast<int>(e), parameters);
-      Trajectory const trajectory(candidate.compiled, experiment, candidate.fit->solver, start_rows(candidate.fit->start),
+      Trajectory const trajectory(candidate.compiled, experiment, candidate.fit.solver, start_rows(candidate.fit.start),
                                   session.abandonable());
       auto const arguments = trajectory.noise_arguments(parameters, static_cast<int>(c));
       for (std::size_t i = 0; i < arguments.size(); ++i)
@@ -122,7 +130,7 @@ Findings check_threshold(SelectionReport const& selection) {
        "`relative_change`, or a longer `schedule`); if the threshold stays above the noise floor, none of the models is right"}};
 }
 
-FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior) {
+FitCheck check_candidate(Session& session, Candidate const& candidate, CandidatePosterior const& posterior) {
   if (posterior.modes.empty() || posterior.given_up) return {};
   FitCheck check = check_residuals(*likelihood_target(session, candidate, posterior.solver, session.abandonable()),
                                    posterior.modes.front().declared,
@@ -130,11 +138,19 @@ FitCheck check_candidate(Session const& session, Candidate const& candidate, Can
                                             [&](Channel const& channel, std::string const& parameter) {
                                               return noise_statement_with(session.source, channel, parameter);
                                             }});
-  for (Finding& finding : check.findings) {
-    finding.names.insert(finding.names.begin(), candidate.what->name);
-    finding.message = fmt::format("`{}`: {}", candidate.what->name, finding.message);
-  }
+  name_candidate(candidate, check.findings);
   return check;
+}
+
+Findings check_solver(Session& session, Candidate const& candidate, Draws const& draws, std::vector<Mode> const& modes,
+                      SolverSettings const& solver, std::uint64_t seed) {
+  if (!candidate.compiled->model.integrated() || solver.row().exact || draws.total() < 2) return {};
+  Ledger untold;
+  auto const target = [&](SolverSettings const& by) { return likelihood_target(session, candidate, by, session.abandonable()); };
+  SolverCheck const check = check_draws(*target(solver), *target(solver.finer()), draws, modes, seed, untold);
+  Findings found = tolerance_findings(check, solver, candidate.fit.refine_solver);
+  name_candidate(candidate, found);
+  return found;
 }
 
 Findings check_distances(SelectionTarget const& finer, int model, SelectionResult const& result, SolverSettings const& solver) {
@@ -154,7 +170,7 @@ Findings check_distances(SelectionTarget const& finer, int model, SelectionResul
           ? fmt::format("distances change by {:.2g} at a threshold of 0: they depend on the integrator", median)
           : fmt::format("distances change by {:.2g} times the threshold: they depend on the integrator", median / result.threshold);
   return {{FindingCode::step_not_settled,
-           Severity::warning,
+           median < result.threshold ? Severity::warning : Severity::error,
            {selected.name},
            fmt::format("with {}, {}", solver.finer_words(), what),
            fmt::format("use a finer solver: `{}`{}", solver.finer().option(), other.empty() ? "" : ", or " + other)}};

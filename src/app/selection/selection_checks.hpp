@@ -26,9 +26,15 @@ Findings check_threshold(SelectionReport const& selection);
 
 /// What a candidate leaves of the record at the heaviest mode near its particles, scored and tested as a fit is; findings name
 /// the model. Nothing where the likelihood has no mode there.
-FitCheck check_candidate(Session const& session, Candidate const& candidate, CandidatePosterior const& posterior);
+FitCheck check_candidate(Session& session, Candidate const& candidate, CandidatePosterior const& posterior);
 
-/// Particles of a model once more with the next finer solver: their distances must not be those of the integrator.
+/// Draws of a candidate's posterior once more with the next finer solver than `solver`, by which they and `modes` are: do they
+/// move? Findings name the candidate. Nothing where no solver is refined, or there are no draws.
+Findings check_solver(Session& session, Candidate const& candidate, Draws const& draws, std::vector<Mode> const& modes,
+                      SolverSettings const& solver, std::uint64_t seed);
+
+/// Particles of a model once more with the next finer solver: their distances must not be those of the integrator. An error where
+/// they change by as much as the threshold.
 Findings check_distances(SelectionTarget const& finer, int model, SelectionResult const& result, SolverSettings const& solver);
 
 }  // namespace sysid

@@ -48,9 +48,9 @@ Report begin_selection_report(Session& session, Task const& task, SelectTask con
   Candidate const& leading = candidates[static_cast<std::size_t>(selection.leader())];
   CandidateSet const& set = session.file.candidates[static_cast<std::size_t>(what.candidates)];
   Report report = begin_report(
-      session, task, leading.fit->model,
-      fmt::format("select {} to {} with {}", set.name, data_names(session.file, first.fit->experiments), what.backend), seed);
-  add_prediction_rule(leading.compiled->model, leading.fit->prediction, report);
+      session, task, leading.fit.model,
+      fmt::format("select {} to {} with {}", set.name, data_names(session.file, first.fit.experiments), what.backend), seed);
+  add_prediction_rule(leading.compiled->model, leading.fit.prediction, report);
   report.priors = priors_of(*leading.space, report.priors);
   report.findings = selection.result.findings;
   add_fitted_data(session.file, first.data, first.compiled->model, report);
@@ -66,7 +66,7 @@ Report begin_selection_report(Session& session, Task const& task, SelectTask con
 void add_leading_predictions(Candidate const& leading, LeadingDraws const& draws, std::uint64_t seed,
                              ExecutionOptions const& execution, Report& report) {
   Model const& model = leading.compiled->model;
-  int const start = start_rows(leading.fit->start);
+  int const start = start_rows(leading.fit.start);
   for (std::size_t e = 0; e < leading.data.size(); ++e) {
     Experiment const& experiment = leading.data[e].experiment;
     LaneArray parameters(static_cast<int>(model.parameters.size()), draws.values.width());

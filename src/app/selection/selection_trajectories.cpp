@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/session/exact_steps.hpp"
 #include "app/session/fit_target.hpp"
 #include "app/session/posterior_trajectories.hpp"
 #include "app/session/stored_draws.hpp"
@@ -44,16 +45,23 @@ std::size_t SelectionTrajectories::lead() const {
   return static_cast<std::size_t>(most - candidates_.begin());
 }
 
+SolverSettings SelectionTrajectories::solver(std::size_t candidate) const {
+  FitTask fit = select_.fits[candidate];
+  fit.input_errors = what_.candidate_input_errors[candidate];
+  return solver_along(session_, fit, candidates_[candidate].solver, what_.candidate_experiments[candidate], what_);
+}
+
 SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate, std::size_t experiment) const {
   FitTask fit = select_.fits[candidate];
   fit.input_errors = what_.candidate_input_errors[candidate];
   bool const free_start = what_.start.kind == StartRule::Kind::estimated;
   Along out;
-  out.compiled = session_.compiled(fit, free_start, fit.solver.method, what_.prediction);
+  out.solver = solver(candidate);
+  out.compiled = session_.compiled(fit, free_start, out.solver.method, what_.prediction);
   out.start_rows = start_rows(what_.start);
   Model const& written = session_.file.models[static_cast<std::size_t>(fit.model)];
   std::vector<ExperimentData> data = load_experiments(session_, what_.candidate_experiments[candidate], written, what_.start,
-                                                      rule_of_lags(fit, written, what_.prediction), fit.solver);
+                                                      rule_of_lags(fit, written, what_.prediction), out.solver);
   if (out.model().filtered()) data[experiment].experiment.corrects = corrected_rows(data[experiment].experiment, what_.prediction);
   out.data = std::make_unique<ExperimentData const>(std::move(data[experiment]));
   auto const space = parameter_space(without_noise_parameters(out.model()), fit.experiments);
@@ -66,7 +74,7 @@ SelectionTrajectories::Along SelectionTrajectories::along(std::size_t candidate,
     out.parameters = space->of_new_experiment(
         declared, out.data->use.constants, {seed_, Purpose::population, static_cast<std::uint64_t>(experiment) << 32, candidate});
   out.trajectory = std::make_unique<Trajectory const>(
-      out.compiled, out.data->experiment, fit.solver, out.start_rows, session_.abandonable(),
+      out.compiled, out.data->experiment, out.solver, out.start_rows, session_.abandonable(),
       [this, model = fit.model](NodeId node, Graph const& graph) { return session_.describe(model, graph, node); });
   out.result = out.trajectory->run(out.parameters, prediction_noise(seed_, static_cast<int>(experiment)));
   out.result.noisy.assign(out.model().channels.size(), {});

@@ -18,6 +18,8 @@ class SelectionTrajectories {
   std::vector<int> const& counts() const { return counts_; }
   /// The most probable candidate.
   std::size_t lead() const;
+  /// That of its particles, unless the data that are predicted do not suit it.
+  SolverSettings solver(std::size_t candidate) const;
 
   /// A candidate's trajectories along an experiment. Of its noise nothing is known: `result.noisy` is without values.
   struct Along {
@@ -26,6 +28,7 @@ class SelectionTrajectories {
     std::unique_ptr<Trajectory const> trajectory;
     LaneArray parameters;  // of the model, SI [parameters x trajectories]
     int start_rows = 0;
+    SolverSettings solver;
     Trajectory::Result result;
 
     Model const& model() const { return compiled->model; }

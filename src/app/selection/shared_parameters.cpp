@@ -47,7 +47,7 @@ std::optional<WeightedSummary> averaged(std::string const& row, SelectionResult 
 std::optional<SelectionReport::Unmoved> unmoved(Session const& session, std::string const& name,
                                                 std::vector<Candidate> const& candidates, std::string why) {
   for (Candidate const& each : candidates)
-    for (PriorInfo const& prior : declared_priors(session, each.fit->model))
+    for (PriorInfo const& prior : declared_priors(session, each.fit.model))
       if (stands_for(prior.name, name)) return SelectionReport::Unmoved{name, prior.unit, prior.text, std::move(why)};
   return std::nullopt;
 }

@@ -1,6 +1,8 @@
 // Decided by the equations, the data and the prior together, before anything is computed.
 #include "app/session/exact_steps.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -49,10 +51,16 @@ SuitedTask with_exact_steps(Session& session, FitTask what) {
   return with_exact_steps(std::move(what), model, data);
 }
 
-SolverSettings solver_along(Session& session, FitTask const& fit, SolverSettings const& fitted, PredictTask const& what) {
+std::string exact_notice(std::string const& name, SolverSettings const& given, SuitedTask const& suited) {
+  return fmt::format("{}: {} integrates exactly: with {}, the steps grow without bound on {:.0f} % of the prior draws\n", name,
+                     suited.task.solver.method, accuracy(given), 100 * suited.growing);
+}
+
+SolverSettings solver_along(Session& session, FitTask const& fit, SolverSettings const& fitted,
+                            std::vector<ExperimentUse> const& along, PredictTask const& what) {
   Model const& model = session.file.models[static_cast<std::size_t>(fit.model)];
   if (!fitted.row().exact || !may_step_exactly(fit, model)) return fitted;
-  auto const data = load_experiments(session, what.experiments, model, what.start, what.prediction);
+  auto const data = load_experiments(session, along, model, what.start, what.prediction);
   return allow_exact_steps(data, model) ? fitted : SolverSettings{.method = std::string(adaptive_solver().name)};
 }
 

@@ -1,5 +1,8 @@
 // The solver of fits whose equations are linear in their states, where the task states none.
 #pragma once
+#include <string>
+#include <vector>
+
 #include "app/session/session.hpp"
 
 namespace sysid {
@@ -19,8 +22,12 @@ struct SuitedTask {
 SuitedTask with_exact_steps(Session& session, FitTask what);
 SuitedTask with_exact_steps(FitTask what, Model const& model, std::vector<ExperimentData> const& data);
 
+/// Why the steps of a task or candidate are exact, in a line; given: the solver that its steps would have begun with.
+std::string exact_notice(std::string const& name, SolverSettings const& given, SuitedTask const& suited);
+
 /// The solver of a prediction: as the fit had it, but an exact one that the task did not state gives way to adaptive steps where
-/// the data that are predicted do not suit it. fit: with the errors that inputs have there.
-SolverSettings solver_along(Session& session, FitTask const& fit, SolverSettings const& fitted, PredictTask const& what);
+/// the data that are predicted, `along`, do not suit it. fit: with the errors that inputs have there.
+SolverSettings solver_along(Session& session, FitTask const& fit, SolverSettings const& fitted,
+                            std::vector<ExperimentUse> const& along, PredictTask const& what);
 
 }  // namespace sysid

@@ -35,7 +35,7 @@ PosteriorTrajectories::PosteriorTrajectories(Session& session, PredictTask const
       what_(what),
       fitted_(fitted_model(session, what.fit)),
       fit_(fit_of(session, what)),
-      solver_(solver_along(session, fit_, fitted_.solver, what)),
+      solver_(solver_along(session, fit_, fitted_.solver, what.experiments, what)),
       free_start_(what.start.kind == StartRule::Kind::estimated),
       compiled_(session.compiled(fit_, free_start_, solver_.method, what.prediction)),
       space_(parameter_space(compiled_->model, fit_.experiments)),

@@ -28,6 +28,7 @@ struct FittedModel {
 struct SelectedCandidate {
   double probability = 0;
   Draws draws;
+  SolverSettings solver;  // of their simulations
 };
 
 class Session {

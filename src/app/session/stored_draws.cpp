@@ -143,9 +143,13 @@ std::vector<SelectedCandidate> const& selected_candidates(Session& session, int 
                        "run the selection again, with --force or another -o"});
     candidate.probability =
         interpreted(folder / "summary.json", [&] { return summary.at("models").at(name).value("probability", 0.0); });
+    FitTask const& fit = what.fits[k];
+    candidate.solver = interpreted(folder / "summary.json", [&] {
+      nlohmann::json const& model = summary.at("models").at(name);
+      return model.contains("simulated_with") ? read_solver(model.at("simulated_with")) : fit.solver;
+    });
     auto const path = folder / fmt::format("draws_{}.csv", model_file_name(name));
     if (std::filesystem::exists(path)) {
-      FitTask const& fit = what.fits[k];
       auto const space =
           parameter_space(without_noise_parameters(session.file.models[static_cast<std::size_t>(fit.model)]), fit.experiments);
       candidate.draws.names = names_of(*space);

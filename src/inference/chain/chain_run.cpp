@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include "inference/backend/checkpoint.hpp"
-#include "search/search.hpp"
+#include "search/global/chain_starts.hpp"
+#include "search/global/search.hpp"
 
 namespace sysid {
 

@@ -239,10 +239,12 @@ void candidate_members(Way way, Candidate& model) {
 void to_json(json& out, SelectedModel const& model) {
   candidate_members(Writer(out), model);
   if (!model.absent.empty()) out["absent"] = model.absent;
+  if (!model.simulated_with.empty()) out["simulated_with"] = model.simulated_with;
 }
 void from_json(json const& stored, SelectedModel& model) {
   candidate_members(Reader(stored), model);
   model.absent = stored.value("absent", std::vector<std::string>());
+  model.simulated_with = stored.value("simulated_with", Facts());
   model.distance = model.weight;
   model.declared = LaneArray(static_cast<int>(model.parameters.size()), static_cast<int>(model.weight.size()));
 }

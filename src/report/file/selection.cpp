@@ -253,6 +253,8 @@ nlohmann::ordered_json models_json(SelectionReport const& selection) {
       entry["died_in_population"] = model.died_in > 0 ? Json(model.died_in) : Json(nullptr);
     }
     if (model.died_in > 0) entry["died_by_chance"] = model.by_chance;
+    for (auto const& [name, value] : model.simulated_with)
+      std::visit([&, key = name](auto const& each) { entry["simulated_with"][key] = each; }, value);
     if (m < selection.likelihoods.size() && selection.likelihoods[m]) {
       LikelihoodCheck const& check = *selection.likelihoods[m];
       entry["laplace"] = {{"log_evidence", check.log_evidence}, {"probability", check.probability}};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "likelihood/parameter_space.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 namespace sysid {
 
@@ -38,11 +38,11 @@ struct StandardisedSearch {
   SearchResult found;
 };
 
-/// Follows the modes of the posterior that a search in `non_centred` coordinates has `found` to those that suit the data: first those
-/// of members given their population and what the data say, in which the highest density over members and population lies where that
-/// of the population alone is highest, if the likelihood is normal. There all members of a population get the declared ones if each has
-/// h tau^2 >= 25, h its precision, or if only a combination of them has; the others keep theirs, by what the data say at the new modes.
-/// space: with declared coordinates.
+/// Follows the modes of the posterior that a search in `non_centred` coordinates has `found` to those that suit the data: first
+/// those of members given their population and what the data say, in which the highest density over members and population lies
+/// where that of the population alone is highest, if the likelihood is normal. There all members of a population get the declared
+/// ones if each has h tau^2 >= 25, h its precision, or if only a combination of them has; the others keep theirs, by what the data
+/// say at the new modes. space: with declared coordinates.
 StandardisedSearch follow_members(ParameterSpace const& space, SearchResult found, MakeStandardised const& make,
                                   RunContext& context);
 

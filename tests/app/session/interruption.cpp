@@ -1,6 +1,10 @@
 // An interruption at any safe point ends with 75 or not at all, never with a crash, from the first poll of the search on.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "app/running.hpp"
 
 using namespace sysid;
@@ -79,6 +83,35 @@ TEST_CASE("an interruption while the solver is chosen, or while the result is ch
     run_text(name, text, options, {"fit"});
     for (char const* file : {"summary.json", "draws_1.csv"})
       CHECK(read_file(options.output / "posterior" / file) == read_file(folder.path() / "unbroken/posterior" / file));
+  }
+}
+
+TEST_CASE("an interruption while the bands of a selection are computed is answered, and the selection goes on to the same bytes") {
+  std::string rows = "t,y\n";
+  for (int i = 0; i < 40; ++i) rows += fmt::format("{},{}\n", i, 3 * std::exp(-0.1 * i) + (i % 3 - 1) * 0.05);
+  auto const decay = [](std::string const& name, std::string const& law) {
+    return "model " + name + " {\n  state y\n  initial y = 3\n  parameter a [1/s] ~ log_uniform(0.01, 1)\n  y' = -a*" + law +
+           "\n  observe level ~ normal(y, sd = 0.05)\n}\n";
+  };
+  std::string const text =
+      decay("linear", "y") + decay("quadratic", "y^2") +
+      "data record { file \"decay.csv\"; time t [s]; measure level = y }\ncandidates laws { linear; quadratic }\n"
+      "selection = select laws to record with reversible_jump(samples = 400, burn_in = 100, pilot = 200), seed = 1\n";
+  TemporaryFolder folder;
+  write_file(folder.path() / "decay.csv", rows);
+  RunOptions options;
+  options.output = folder.path() / "unbroken";
+  run_text(folder.path() / "case.sysid", text, options);
+  options.output = folder.path() / "broken";
+  Interrupting progress("jumping between models", true);
+  CHECK(run_text(folder.path() / "case.sysid", text, options, {}, &progress).exit == 75);
+  clear_interrupt();
+  CHECK(!std::filesystem::exists(options.output / "selection/summary.json"));
+  options.resume = true;
+  run_text(folder.path() / "case.sysid", text, options);
+  for (char const* file : {"summary.json", "predict.csv", "draws_linear.csv"}) {
+    CAPTURE(file);
+    CHECK(read_file(options.output / "selection" / file) == read_file(folder.path() / "unbroken/selection" / file));
   }
 }
 

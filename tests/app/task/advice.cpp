@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/session/solver_refinement.hpp"
+#include "app/search/solver_refinement.hpp"
 #include "load/load.hpp"
 
 using namespace sysid;

@@ -9,7 +9,7 @@
 #include "inference/evidence/evidence.hpp"
 #include "inference/evidence/known.hpp"
 #include "replications.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

@@ -11,7 +11,7 @@
 #include "inference/evidence/laplace.hpp"
 #include "inference/optimum.hpp"
 #include "inference/targets.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

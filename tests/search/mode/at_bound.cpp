@@ -7,7 +7,7 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "inference/targets.hpp"
-#include "search/search.hpp"
+#include "search/global/search.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;

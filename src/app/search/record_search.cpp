@@ -1,0 +1,56 @@
+// Notices say what was chosen, and why.
+#include "app/search/record_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "app/session/fit_target.hpp"
+#include "likelihood/first_rows.hpp"
+
+namespace sysid {
+namespace {
+
+SolverSettings refined(SolverSettings solver, int times) {
+  for (; times > 0; --times) solver = solver.finer();
+  return solver;
+}
+
+}  // namespace
+
+std::optional<SearchSolver> choose_search_solver(SearchableRecord const& record, RunContext const& context) {
+  SolverSettings const& stated = record.what.solver;
+  MakeTarget const make = [&](SolverSettings const& tried) { return record.target(tried); };
+  SearchSolver const search = search_solver(make, stated, context.seed, context.interrupted, context.journal);
+  if (context.stop_requested()) return std::nullopt;
+  if (search.solver != stated)
+    record.session.notices << fmt::format("{}: searching with {}: with {}, {:.0f} % of the prior draws overflow\n", record.name,
+                                          accuracy(search.solver), accuracy(stated), 100 * search.failed_as_given);
+  return search;
+}
+
+ShorterRecords shorter_records(SearchableRecord const& record, SolverSettings const& solver) {
+  std::vector<Experiment> const whole = experiments_of(record.data);
+  int const least = 4 * start_rows(record.what.start);  // an estimated start is not all that a part is for
+  constexpr int most_refinements = 4;
+  return {.rows = most_scored_rows(whole),
+          .finest = record.refines() ? most_refinements : 0,
+          .make =
+              [record, whole, least, solver](double share, int finer) {
+                FirstRows part = first_rows(whole, share, least);
+                return FirstPart{record.make(std::move(part.experiments), refined(solver, finer)), part.share};
+              },
+          .has_states = !record.model.states.empty()};
+}
+
+SolverSettings coarsest_solver(SearchableRecord const& record, SearchResult const& found, SolverSettings& of_search) {
+  if (found.finer == 0) return record.what.solver;
+  SolverSettings const finer = refined(of_search, found.finer);
+  record.session.notices << fmt::format(
+      "{}: the search uses {}, because with {} it found no parameters that fit the whole record as well\n", record.name,
+      accuracy(finer), accuracy(of_search));
+  return of_search = finer;
+}
+
+}  // namespace sysid
