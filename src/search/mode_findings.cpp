@@ -2,6 +2,7 @@
 #include "search/mode_findings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -84,6 +85,32 @@ Finding second_optimum(Target const& target, std::vector<Mode> const& modes, std
           "describes the whole posterior"};
 }
 
+bool is_notable(Mode const& mode) { return mode.share > notable_share; }
+
+/// One finding, however many there are: they call for one thing.
+std::optional<Finding> other_modes(Target const& target, std::vector<Mode> const& modes) {
+  constexpr std::size_t most_listed = 4;
+  std::vector<std::string> shares;
+  Mode const* largest = nullptr;
+  for (std::size_t i = 1; i < modes.size(); ++i) {
+    if (!is_notable(modes[i])) continue;
+    if (largest == nullptr || modes[i].share > largest->share) largest = &modes[i];
+    shares.push_back(fmt::format("{:.0f}", 100 * modes[i].share));
+  }
+  if (shares.empty()) return std::nullopt;
+  std::size_t const count = shares.size();
+  if (count > most_listed) shares = {shares.begin(), shares.begin() + most_listed};
+  std::string const place = describe(target, *largest);
+  return Finding{
+      FindingCode::second_mode,
+      Severity::warning,
+      {},
+      count == 1 ? fmt::format("a second mode has about {} % of the posterior mass: {}", shares.front(), place)
+                 : fmt::format("{} further modes have about {}{} % of the posterior mass, the largest at {}", count,
+                               fmt::join(shares, ", "), count > most_listed ? ", ..." : "", place),
+      "compare the solutions: add data or prior knowledge that distinguishes them, or run more chains and report them all"};
+}
+
 /// Whether the likelihood falls far at all of the prior's 16, 50 and 84 % points of parameter p, the others as they are. At a bound
 /// the coordinate is flat for as long as one likes, though the data hold the parameter there.
 bool is_held(Target const& target, Mode const& mode, std::size_t p) {
@@ -107,21 +134,12 @@ bool is_held(Target const& target, Mode const& mode, std::size_t p) {
 
 Findings mode_findings(Target const& target, ObjectiveKind objective_kind, std::vector<Mode> const& modes) {
   Findings findings;
-  auto const notable = [](Mode const& mode) { return mode.share > notable_share; };
   if (objective_kind == ObjectiveKind::likelihood) {
-    auto const others = static_cast<std::size_t>(std::count_if(modes.begin() + 1, modes.end(), notable));
+    auto const others = static_cast<std::size_t>(std::count_if(modes.begin() + 1, modes.end(), is_notable));
     if (others > 0) findings.push_back(second_optimum(target, modes, others));
   }
-  for (std::size_t i = 1; i < modes.size() && objective_kind != ObjectiveKind::likelihood; ++i) {
-    if (!notable(modes[i])) continue;
-    findings.push_back(
-        {FindingCode::second_mode,
-         Severity::warning,
-         {},
-         fmt::format("a {} mode has about {:.0f} % of the posterior mass: {}", i == 1 ? "second" : "further", 100 * modes[i].share,
-                     describe(target, modes[i])),
-         "compare both solutions: add data or prior knowledge that distinguishes them, or run more chains and report both"});
-  }
+  if (objective_kind != ObjectiveKind::likelihood)
+    if (auto others = other_modes(target, modes)) findings.push_back(std::move(*others));
   auto const parameters = static_cast<std::size_t>(target.dimension());
   std::vector<std::vector<std::string>> told;
   for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters) {

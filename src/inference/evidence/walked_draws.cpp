@@ -74,13 +74,14 @@ LaneArray declared(Target const& target, LaneArray const& theta) {
 }
 
 /// Whether means with such weights are to be believed. Widths are compared in declared values: a tail that is thin in a logarithm
-/// may hold most of a variance. `before`: the widths of the round before; changed to those of this one.
-void judge(Target const& target, WalkedDraws& draws, std::vector<double>& before) {
+/// may hold most of a variance. `before`: the widths of the round before; changed to those of this one. The weights, where they are
+/// healthy, believed or not; else none.
+std::vector<double> judge(Target const& target, WalkedDraws& draws, std::vector<double>& before) {
   double const largest = *std::max_element(draws.log_weights.begin(), draws.log_weights.end());
   draws.confirmed = false;
   draws.effective = 0;
-  if (!std::isfinite(largest)) return;
   std::vector<double> weights;
+  if (!std::isfinite(largest)) return weights;
   double sum = 0, square = 0;
   for (double const each : draws.log_weights) {
     weights.push_back(elementary::exp(each - largest));
@@ -90,9 +91,24 @@ void judge(Target const& target, WalkedDraws& draws, std::vector<double>& before
   draws.effective = sum * sum / square;
   double const k = smooth_weights(draws.log_weights, pareto_tail_length(draws.theta.width(), 1)).k;
   std::vector<double> const sds = sds_of(declared(target, draws.theta), weights);
-  draws.confirmed = draws.effective >= least_effective && k < worst_k && agree(sds, before, as_before) &&
-                    agree(sds, sds_of(declared(target, draws.walked), {}), as_wide);
+  bool const healthy = draws.effective >= least_effective && k < worst_k;
+  draws.confirmed = healthy && agree(sds, before, as_before) && agree(sds, sds_of(declared(target, draws.walked), {}), as_wide);
   before = sds;
+  return healthy ? weights : std::vector<double>();
+}
+
+/// Each draw as often as its weight says.
+LaneArray resampled(LaneArray const& draws, std::vector<double> const& weights, int count) {
+  double total = 0;
+  for (double const each : weights) total += each;
+  LaneArray out(draws.rows(), count);
+  std::size_t at = 0;
+  double passed = weights.front();
+  for (int w = 0; w < count; ++w) {
+    while (at + 1 < weights.size() && (w + 0.5) / count * total > passed) passed += weights[++at];
+    for (int i = 0; i < out.rows(); ++i) out(i, w) = draws(i, static_cast<int>(at));
+  }
+  return out;
 }
 
 LaneArray last_of(LaneArray const& states, int count) {
@@ -134,7 +150,9 @@ WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uin
     for (std::size_t d = 0; d < mixed.size(); ++d)
       found.log_weights[d] = std::isfinite(mixed[d]) ? found.log_weights[d] - mixed[d] : -infinity;
     found.walked = std::move(states);
-    judge(objective.target, found, sds);
+    // A walker that has strayed into a place of next to no mass may stay there: weights know how little it is.
+    std::vector<double> const weights = judge(objective.target, found, sds);
+    if (!weights.empty()) walkers = resampled(found.theta, weights, walkers.width());
   }
   return found;
 }
