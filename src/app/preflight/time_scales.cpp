@@ -14,6 +14,7 @@
 #include "core/text/words.hpp"
 #include "data/table/reading_rules.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "model/state_jacobian.hpp"
 
 namespace sysid {
 namespace {
@@ -23,14 +24,11 @@ constexpr std::size_t most_states = 12;
 constexpr double part_of_record = 1e-5;
 constexpr double within_a_step = 6.283185307179586;  // a whole oscillation, or a decay to 0.2 %, between two rows
 
-/// The Jacobian of the derivatives by the states, as expressions.
+/// About the start of a record.
 class Linearisation {
  public:
-  explicit Linearisation(Model const& model) : model_(model), graph_(model.graph) {
+  explicit Linearisation(Model const& model) : model_(model), by_states_(model) {
     for (State const& by : model.states) initial_.push_back(by.initial);
-    for (State const& of : model.states)
-      for (std::size_t j = 0; j < model.states.size(); ++j)
-        slopes_.push_back(graph_.differentiate(of.derivative, graph_.leaf(LeafKind::state, static_cast<int>(j))));
   }
 
   struct Motion {
@@ -40,8 +38,7 @@ class Linearisation {
   /// parameters [SI], inputs [SI], time [s].
   Motion slowest(std::vector<double> const& parameters, std::vector<double> const& inputs, double time) const {
     std::vector<double> state;
-    auto const value = [&](NodeId leaf) {
-      Node const& node = graph_[leaf];
+    auto const value = [&](Node const& node) {
       auto const index = static_cast<std::size_t>(node.index);
       switch (node.leaf_kind) {
         case LeafKind::parameter:
@@ -59,12 +56,8 @@ class Linearisation {
           return std::numeric_limits<double>::quiet_NaN();
       }
     };
-    state = graph_.evaluate(initial_, value);
-    std::vector<double> const slopes = graph_.evaluate(slopes_, value);
-    auto const n = static_cast<Eigen::Index>(state.size());
-    Eigen::MatrixXd jacobian(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) jacobian(i, j) = slopes[static_cast<std::size_t>(i * n + j)];
+    state = model_.graph.evaluate(initial_, [&](NodeId leaf) { return value(model_.graph[leaf]); });
+    Eigen::MatrixXd const jacobian = by_states_.at(value);
     if (!jacobian.allFinite() || !std::isfinite(log_absolute_determinant(jacobian))) return {};
     Eigen::MatrixXd power = inverse(jacobian);
     constexpr int squarings = 7;
@@ -86,8 +79,8 @@ class Linearisation {
 
  private:
   Model const& model_;
-  Graph graph_;
-  std::vector<NodeId> initial_, slopes_;
+  StateJacobian by_states_;
+  std::vector<NodeId> initial_;
 };
 
 struct Rates {

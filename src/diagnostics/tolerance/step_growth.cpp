@@ -10,6 +10,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "model/state_jacobian.hpp"
 
 namespace sysid {
 namespace {
@@ -17,33 +18,12 @@ namespace {
 constexpr int draws = 256;
 constexpr double notable_growth = 1e-2;  // of the log factor by step: e^5 over 500 samples
 
-/// The Jacobian of the derivatives by the states, of parameters alone.
-class Rates {
- public:
-  explicit Rates(Model const& model) : graph_(model.graph) {
-    for (State const& of : model.states)
-      for (std::size_t j = 0; j < model.states.size(); ++j)
-        slopes_.push_back(graph_.differentiate(of.derivative, graph_.leaf(LeafKind::state, static_cast<int>(j))));
-    states_ = static_cast<Eigen::Index>(model.states.size());
-  }
-
-  /// At column w of parameters [parameters x W], SI.
-  Eigen::MatrixXd at(LaneArray const& parameters, int w) const {
-    std::vector<double> const slopes = graph_.evaluate(slopes_, [&](NodeId leaf) {
-      Node const& node = graph_[leaf];
-      return node.leaf_kind == LeafKind::parameter ? parameters(node.index, w) : std::numeric_limits<double>::quiet_NaN();
-    });
-    Eigen::MatrixXd result(states_, states_);
-    for (Eigen::Index i = 0; i < states_; ++i)
-      for (Eigen::Index j = 0; j < states_; ++j) result(i, j) = slopes[static_cast<std::size_t>(i * states_ + j)];
-    return result;
-  }
-
- private:
-  Graph graph_;
-  std::vector<NodeId> slopes_;
-  Eigen::Index states_;
-};
+/// Of parameters alone: at column w of [parameters x W], SI.
+Eigen::MatrixXd rates_at(StateJacobian const& jacobian, LaneArray const& parameters, int w) {
+  return jacobian.at([&](Node const& leaf) {
+    return leaf.leaf_kind == LeafKind::parameter ? parameters(leaf.index, w) : std::numeric_limits<double>::quiet_NaN();
+  });
+}
 
 /// log |R(z)| of the polynomial of exp(z) up to z^order.
 double log_factor(std::complex<double> z, int order) {
@@ -77,7 +57,7 @@ double share_of_growing_steps(ParameterSpace const& space, std::vector<Experimen
                               SolverSettings const& solver) {
   SolverRow const& row = solver.row();
   if (row.step == nullptr || row.order == 0) return 0;
-  Rates const rates(space.model());
+  StateJacobian const rates(space.model());
   LaneArray theta(space.dimension(), draws);
   space.sample_prior({1, Purpose::start, 0, 0}, theta);
   LaneArray const values = space.values(theta);
@@ -90,7 +70,7 @@ double share_of_growing_steps(ParameterSpace const& space, std::vector<Experimen
     for (int w = 0; w < draws; ++w) {
       auto const lane = static_cast<std::size_t>(w);
       bool const known = growing[lane] || (step <= step_before && same_lane(parameters, before, w));
-      if (!known) growing[lane] = grows(step * rates.at(parameters, w), row.order);
+      if (!known) growing[lane] = grows(step * rates_at(rates, parameters, w), row.order);
     }
     std::swap(parameters, before);
     step_before = step;
