@@ -58,7 +58,7 @@ enum class LeafKind : std::uint8_t {
   previous,     // a remembered value, `index` says which, as it was at the sample before
   unknown,      // a highest derivative still to be solved for, or a place holder of a symbolic pass
   step_size,    // h of the integrator
-  equal_step,   // the same, read by what is computed once for all steps of that length
+  step_length,  // the same, read by what is computed once for all steps of that length
   control,      // a lane's step control: program/embedded.hpp
   interval,     // what step control reads of the data between two samples
   coefficient,  // of an input's polynomial there

@@ -39,7 +39,7 @@ std::string present_name(Model const& model, Node const& leaf) {
       return model.disturbances[index].state < 0 ? model.disturbances[index].name
                                                  : fmt::format("noise({})", model.disturbances[index].name);
     case LeafKind::step_size:
-    case LeafKind::equal_step:
+    case LeafKind::step_length:
       return "h";
     case LeafKind::control:
     case LeafKind::interval:

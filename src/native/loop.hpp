@@ -24,6 +24,7 @@ enum class LoopKind {
   tape,     // as `observe`, and the states at each sample and before each step are written out
   reverse,  // the samples backwards: the states are read from where `tape` wrote them; back over the steps from a sample, then the
             // sections whose channel is summed there
+  values,   // for each length of a step: one section, whose results are written out; it reads parameters alone
 };
 
 /// One loop in full. Registers below `kept` hold their values from sample to sample; what is written above them is temporary.
@@ -35,15 +36,15 @@ struct Loop {
   int stride = 4;                     // doubles from one register to the next
   bool one_step = true;               // from sample to sample; else `Call::substeps` of them
   std::span<double const> constants;  // the uniforms before a section's row
-  std::vector<SectionCode> samples;   // per channel; of a record: one
+  std::vector<SectionCode> samples;   // per channel; of a record, of values: one
   SectionCode carry, step;            // an empty step: the states are moved by somebody else
   int kept = 0;
   /// The form in vectors, of 8 lanes if `wide`, else 4, of a function over lanes: called with vectors in registers. Null: none, or
   /// the function has no such form; then it is called through memory.
   void const* (*vector_form)(void const* lanes, bool wide) = nullptr;
-  int first_record = 0, records = 0;  // registers that a record writes out
-  int first_state = 0, states = 0;    // registers of the tape
-  int position = 0;                   // of an attempt: the register of the lanes' places in the interval
+  std::vector<std::uint32_t> outputs;  // registers that a record, and values, write out
+  int first_state = 0, states = 0;     // registers of the tape
+  int position = 0;                    // of an attempt: the register of the lanes' places in the interval
 };
 
 /// Arguments of the machine code. Tables are those of the schedule, from its first row on.
@@ -53,7 +54,7 @@ struct Call {
   std::uint8_t const* const* summed = nullptr;  // per channel: a flag for each sample
   double const* carry = nullptr;                // a row for each sample
   double const* steps = nullptr;                // `substeps` rows for each sample; of an attempt: the row
-  double* out = nullptr;                        // records x lanes for each sample from `from` on
+  double* out = nullptr;                        // outputs x lanes for each sample from `from` on
   double* tape = nullptr;                       // states x lanes for each step of each sample from `from` on
   std::int64_t from = 0, to = 0;                // samples [from, to)
   std::int64_t look_from = 0;                   // the first that is observed or recorded

@@ -31,6 +31,12 @@ Function MachineCode::function(LoopName const& name, std::function<Loop()> const
   return found->second ? found->second->function() : nullptr;
 }
 
+Function MachineCode::compiled(LoopName const& name) {
+  std::lock_guard const lock(mutex_);
+  auto const found = machines_.find(name);
+  return found != machines_.end() && found->second ? found->second->function() : nullptr;
+}
+
 bool MachineCode::pays(LoopName const& name, double seconds, double compilation) {
   std::lock_guard const lock(mutex_);
   expected_ = std::max(0.0, expected_ - seconds);

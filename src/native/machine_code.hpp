@@ -25,6 +25,8 @@ class MachineCode {
   /// The function of the loop, which `write` describes where it has not been compiled yet; null where it cannot be. The first
   /// caller compiles, the others wait.
   Function function(LoopName const& name, std::function<Loop()> const& write);
+  /// Null where it has not been compiled.
+  Function compiled(LoopName const& name);
 
   /// Whether the machine code of a loop pays: adds `seconds` of interpretation to what this loop would have saved so far, and
   /// compares with the seconds that its compilation takes. Where it has been compiled, it does. As much as there was may well come

@@ -7,7 +7,7 @@ namespace {
 Binding of_leaf(LeafKind kind) {
   switch (kind) {
     case LeafKind::parameter:
-    case LeafKind::equal_step:
+    case LeafKind::step_length:
       return Binding::parameter;
     case LeafKind::input:
     case LeafKind::input_rate:

@@ -16,7 +16,7 @@ std::vector<bool> without_data(SimulationSource const& source) {
   auto const reads = [&](NodeId id) {
     return source.graph.depends(id, [&](Node const& leaf) {
       if (leaf.leaf_kind == LeafKind::state) return !result[static_cast<std::size_t>(leaf.index)];
-      return leaf.leaf_kind != LeafKind::parameter && leaf.leaf_kind != LeafKind::equal_step &&
+      return leaf.leaf_kind != LeafKind::parameter && leaf.leaf_kind != LeafKind::step_length &&
              leaf.leaf_kind != LeafKind::step_size;  // the same along records on which anything settles
     });
   };

@@ -5,7 +5,7 @@
 namespace sysid {
 
 struct UniformLeaf {
-  LeafKind kind = LeafKind::time;  // input, input_rate, time, measured, step_size, equal_step
+  LeafKind kind = LeafKind::time;  // input, input_rate, time, measured, step_size, step_length
   int index = 0;
   Stage stage = Stage::begin;
   int lag = 0;  // samples back

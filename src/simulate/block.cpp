@@ -18,6 +18,11 @@ void run_of_length(LaneFile const& file, Section const& section, int length) {
   run(*section.linked, file.executor, file.file);
 }
 
+native::Function length_loop_if_compiled(SimulationProgram const& program, Schedule const& schedule, Executor executor) {
+  if (schedule.lengths().count() == 1 || executor.kind != ExecutorKind::native) return nullptr;
+  return program.machine_code->compiled(length_loop_name());
+}
+
 }  // namespace
 
 Block::Block(SimulationProgram const& program, Schedule const& schedule, Executor executor, int lanes, native::LoopKind loop,
@@ -37,7 +42,8 @@ Block::Block(SimulationProgram const& program, Schedule const& schedule, Executo
             stopped},
       stepper_(make_stepper(file_)),
       length_values_(program, executor, file_.registers, schedule.lengths().count(),
-                     [file = file_](Section const& section, int length) { run_of_length(file, section, length); }),
+                     [file = file_](Section const& section, int length) { run_of_length(file, section, length); },
+                     {length_loop_if_compiled(program, schedule, executor), lanes_of_length_loop(), schedule.prologue_row(0)}),
       death_(static_cast<std::size_t>(lanes), -1) {
   // Where steps are not fixed, records are interpreted: nearly all the time goes into the steps.
   if (loop == native::LoopKind::observe || loop == native::LoopKind::tape)

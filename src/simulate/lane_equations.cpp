@@ -30,7 +30,7 @@ void LaneEquations::set_interval(int sample) {
 double LaneEquations::data(UniformLeaf const& leaf, double time) const {
   if (leaf.kind == LeafKind::time) return schedule_.time(0) + time;
   double const begin = this->time(interval_), end = this->time(interval_ + 1);
-  if (leaf.kind == LeafKind::equal_step) return mean_step(schedule_.experiment().time);
+  if (leaf.kind == LeafKind::step_length) return mean_step(schedule_.experiment().time);
   if (leaf.kind == LeafKind::interval) {  // what is held from sample to sample reads how long that is
     if (static_cast<IntervalData>(leaf.index) != IntervalData::length)
       throw InternalError("equations read what only the control of a step has");

@@ -16,6 +16,8 @@ native::SectionCode code_of(Section const& section) { return {section.code, sect
 /// latencies that they hide.
 constexpr double largest_body = 500;
 
+constexpr double seconds_by_instruction = 75e-6;  // of one vector, compiled
+
 /// Of a loop over samples, for one vector.
 double body(std::size_t steps, std::vector<Section> const& observations) {
   std::size_t sum = steps;
@@ -58,13 +60,37 @@ native::Loop write_loop(SimulationProgram const& program, SolverSettings const& 
   if (kind == native::LoopKind::record) loop.samples.push_back(code_of(program.record));
   if (solver.fixed_step() && kind != native::LoopKind::attempt) loop.carry = code_of(program.carry);
   if (solver.fixed_step() || kind == native::LoopKind::attempt) loop.step = code_of(program.step);
-  loop.first_record = program.registers.first_record();
-  loop.records = program.registers.records;
+  for (int r = 0; r < program.registers.records; ++r)
+    loop.outputs.push_back(static_cast<std::uint32_t>(program.registers.first_record() + r));
   loop.position = program.registers.first_control() + static_cast<int>(Control::position);
   return loop;
 }
 
+native::Loop write_length_loop(SimulationProgram const& program) {
+  native::Loop loop;
+  loop.kind = native::LoopKind::values;
+  loop.wide = uses_avx512();
+  loop.stride = loop.vector_lanes = lanes_of_length_loop();
+  loop.vector_form = &elementary::vector_form;
+  loop.constants = program.constants;
+  loop.samples.push_back(code_of(program.prologue));
+  for (int const each : program.length_values) loop.outputs.push_back(static_cast<std::uint32_t>(each));
+  return loop;
+}
+
 }  // namespace
+
+int lanes_of_length_loop() { return vector_lanes(instruction_set()); }
+
+native::LoopName length_loop_name() { return {native::LoopKind::values, uses_avx512(), lanes_of_length_loop(), true}; }
+
+native::Function length_loop(SimulationProgram const& program) {
+  return program.machine_code->function(length_loop_name(), [&] { return write_length_loop(program); });
+}
+
+double length_compilation_time(SimulationProgram const& program) {
+  return seconds_by_instruction * static_cast<double>(program.prologue.code.size());
+}
 
 native::LoopName machine_loop_name(SolverSettings const& solver, Executor executor, native::LoopKind kind) {
   return {kind, uses_avx512(), executor.width, solver.substeps == 1};
@@ -78,7 +104,7 @@ native::Function machine_loop(SimulationProgram const& program, SolverSettings c
 }
 
 double compilation_time(SimulationProgram const& program, Executor executor) {
-  return 75e-6 * (forwards(program) + backwards(program)) * vectors(executor);
+  return seconds_by_instruction * (forwards(program) + backwards(program)) * vectors(executor);
 }
 
 int most_native_lanes(SimulationProgram const& program) {

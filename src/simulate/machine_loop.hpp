@@ -15,8 +15,14 @@ native::LoopName machine_loop_name(SolverSettings const& solver, Executor execut
 native::Function machine_loop(SimulationProgram const& program, SolverSettings const& solver, Executor executor,
                               native::LoopKind kind);
 
+/// The values that a step takes from its length, for one vector of lanes: blocks of any width take the same code.
+native::LoopName length_loop_name();
+native::Function length_loop(SimulationProgram const& program);
+int lanes_of_length_loop();
+
 /// Seconds that compiling that loop takes, with an adjoint both loops, roughly, once the compiler has been loaded.
 double compilation_time(SimulationProgram const& program, Executor executor);
+double length_compilation_time(SimulationProgram const& program);
 /// The widest block that suits the program: vectors side by side hide latencies, unless they no longer fit the processor.
 int most_native_lanes(SimulationProgram const& program);
 /// How many times as fast as interpretation in lanes an executor is, roughly: to share the work out.

@@ -7,7 +7,7 @@ namespace sysid {
 namespace {
 
 Executor executor_of(Simulator const& simulator, int count) {
-  double const work = work_per_sample(simulator.program(), simulator.schedule().solver());
+  double const work = work_per_sample(simulator.program(), simulator.schedule());
   return simulator.executor(count, work * simulator.schedule().last_summed() * count, native::LoopKind::record);
 }
 

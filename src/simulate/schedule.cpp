@@ -131,7 +131,7 @@ double Schedule::at_step(UniformLeaf const& leaf, int sample, int substep) const
       return time(sample) + s * interval;
     case LeafKind::step_size:
       return interval / solver_.substeps;
-    case LeafKind::equal_step:
+    case LeafKind::step_length:
       return length_of_step(sample);
     case LeafKind::coefficient: {
       InputSignal const& input = experiment_.inputs[static_cast<std::size_t>(leaf.index / (largest_input_degree + 1))];
@@ -169,7 +169,7 @@ double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
       return experiment_.inputs[static_cast<std::size_t>(leaf.index)].rate(last ? sample - 1 : sample, last ? 1 : 0);
     case LeafKind::time:
       return row >= 0 ? time(row) : time(0) + row * (time(1) - time(0));
-    case LeafKind::equal_step:
+    case LeafKind::step_length:
       return length_of_step(sample);
     case LeafKind::measured:
       return measured_sample(experiment_, leaf.index, row);
@@ -190,7 +190,7 @@ UniformRows Schedule::tabulate_samples(UniformTable const& table, int rows) cons
 
 UniformRows Schedule::tabulate_lengths(UniformTable const& table) const {
   return tabulate(table, lengths_.count(), [this](UniformLeaf const& leaf, int row) {
-    if (leaf.kind != LeafKind::equal_step) throw InternalError("what is computed before the first step reads data");
+    if (leaf.kind != LeafKind::step_length) throw InternalError("what is computed before the first step reads data");
     return lengths_.values[static_cast<std::size_t>(row)];
   });
 }

@@ -65,7 +65,7 @@ void SettlingLanes::run(ConstLanes parameters) {
   }
   int const settled = static_cast<int>(std::ranges::count_if(since_, [](int since) { return since >= 0; }));
   if (settled == 0) return;
-  double const instructions = work_per_sample(settled_.program(), settled_.schedule().solver()) * (end_ - begin_) * lanes();
+  double const instructions = work_per_sample(settled_.program(), settled_.schedule()) * (end_ - begin_) * lanes();
   Executor const executor = settled_.executor(lanes(), instructions, native::LoopKind::observe);
   for (int first = 0; first < lanes(); first += executor.width)
     run_settled(first, std::min(executor.width, lanes() - first), executor);

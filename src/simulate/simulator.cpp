@@ -27,6 +27,13 @@ constexpr int cache_bytes = 28 * 1024;
 /// Lane-instructions below which waking a thread costs more than it brings (about 20 us of work).
 constexpr double small_job = 1e5;
 
+/// Whether what steps take from their lengths is compiled with them: a few lengths are interpreted sooner.
+bool many_lengths(SimulationProgram const& program, Schedule const& schedule, int width) {
+  constexpr double batches = 1000;
+  double const seconds = interpretation_time(work_of_lengths(program, schedule), width, choose_executor(width));
+  return batches * seconds > length_compilation_time(program);
+}
+
 }  // namespace
 
 WrittenLanes::WrittenLanes(Lanes out)
@@ -92,7 +99,7 @@ Executor Simulator::executor(int width, double instructions, native::LoopKind lo
 void Simulator::expect(double lanes) const {
   constexpr int width = 16;  // of a batch as samplers make them
   if (options_.executor != ExecutorKind::automatic) return;
-  double const instructions = work_per_sample(*program_, schedule_.solver()) * schedule_.last_summed();
+  double const instructions = work_per_sample(*program_, schedule_) * schedule_.last_summed();
   program_->machine_code->expect(interpretation_time(instructions, width, interpreter(width, instructions * width)) * lanes /
                                  width);
 }
@@ -105,12 +112,20 @@ std::optional<Executor> Simulator::native(int width, double instructions, native
     widest = std::min(widest, std::max(least_lanes(solver), (width + pool_->threads() - 1) / pool_->threads()));
   Executor const chosen = choose_executor(std::min(width, widest), std::numeric_limits<int>::max(), ExecutorKind::native);
   if (options_.executor == ExecutorKind::automatic) {
-    double const seconds = interpretation_time(instructions / width, width, interpreter(width, instructions));
-    if (!program_->machine_code->pays(machine_loop_name(solver, chosen, loop), seconds, compilation_time(*program_, chosen)))
+    double const seconds = interpretation_time(instructions / width, width, interpreter(width, instructions)),
+                 of_lengths = many_lengths(*program_, schedule_, width) ? length_compilation_time(*program_) : 0;
+    if (!program_->machine_code->pays(machine_loop_name(solver, chosen, loop), seconds,
+                                      compilation_time(*program_, chosen) + of_lengths))
       return std::nullopt;
   }
   if (machine_loop(*program_, solver, chosen, loop) == nullptr) return std::nullopt;
+  compile_length_loop(width);
   return chosen;
+}
+
+void Simulator::compile_length_loop(int width) const {
+  if (schedule_.lengths().count() == 1) return;
+  if (options_.executor == ExecutorKind::native || many_lengths(*program_, schedule_, width)) length_loop(*program_);
 }
 
 Executor Simulator::interpreter(int width, double instructions) const {
@@ -127,7 +142,7 @@ Executor Simulator::interpreter(int width, double instructions) const {
 Work Simulator::blocks(int width, int samples, native::LoopKind loop, BlockWork const& work) const {
   Work result;
   if (width == 0) return result;
-  double const each = work_per_sample(*program_, schedule_.solver()) * samples;
+  double const each = work_per_sample(*program_, schedule_) * samples;
   result.width = width;
   result.given_up = given_up();
   result.instructions = each * width;

@@ -150,6 +150,7 @@ class Simulator {
   Work blocks(int width, int samples, native::LoopKind loop, BlockWork const& work) const;
   Executor interpreter(int width, double instructions) const;
   std::optional<Executor> native(int width, double instructions, native::LoopKind loop) const;
+  void compile_length_loop(int width) const;
   Work sums_to(int end, ConstLanes parameters, Lanes out, std::span<Outcome> outcome) const;
   void run_gradient(Block& block, Lanes out, Lanes slopes, std::span<Outcome> outcome) const;
   static void take_sums(Block& block, int end, Lanes out, std::span<Outcome> outcome);

@@ -45,9 +45,16 @@ std::unique_ptr<Stepper> make_stepper(LaneFile const& file) {
   throw InternalError("a solver without a strategy");
 }
 
-double work_per_sample(SimulationProgram const& program, SolverSettings const& solver) {
+double work_of_lengths(SimulationProgram const& program, Schedule const& schedule) {
+  int const lengths = schedule.lengths().count();
+  return lengths == 1 ? 0 : static_cast<double>(program.prologue.code.size() + program.reverse.values.code.size()) * lengths;
+}
+
+double work_per_sample(SimulationProgram const& program, Schedule const& schedule) {
+  SolverSettings const& solver = schedule.solver();
   if (solver.fixed_step())
-    return static_cast<double>(program.step.code.size() + program.reverse.step.code.size()) * solver.substeps;
+    return static_cast<double>(program.step.code.size() + program.reverse.step.code.size()) * solver.substeps +
+           work_of_lengths(program, schedule) / std::max(1, schedule.samples());
   if (solver.row().in_program) return 2 * static_cast<double>(program.step.code.size());  // attempts, roughly
   // Some twenty steps of two evaluations each, and what the solver does itself.
   EquationKernels const& equations = program.equations;

@@ -57,7 +57,9 @@ class Stepper {
 std::unique_ptr<Stepper> make_stepper(LaneFile const& file);
 
 /// Lane-instructions that one lane takes per sampling interval, roughly: to share the work out.
-double work_per_sample(SimulationProgram const& program, SolverSettings const& solver);
+double work_per_sample(SimulationProgram const& program, Schedule const& schedule);
+/// Those of one lane for what its steps take from their lengths, along a record whose steps differ; else 0.
+double work_of_lengths(SimulationProgram const& program, Schedule const& schedule);
 /// The narrowest block that is worth a thread of its own.
 int least_lanes(SolverSettings const& solver);
 /// Lanes that cost together hardly more than one of them.

@@ -202,7 +202,7 @@ Work wavefront_work(Simulator const& simulator, ConstLanes parameters, Wanted wa
   Work result;
   int const width = parameters.width();
   if (width == 0) return result;
-  double const each = work_per_sample(simulator.program(), simulator.schedule().solver()) * simulator.schedule().last_summed();
+  double const each = work_per_sample(simulator.program(), simulator.schedule()) * simulator.schedule().last_summed();
   result.width = width;
   result.given_up = simulator.given_up();
   result.instructions = each * width;

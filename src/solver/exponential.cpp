@@ -51,7 +51,7 @@ class Writer {
         doublings_(noisy ? doublings_of_noise : doublings),
         most_scaled_(noisy ? most_scaled_of_noise : most_scaled),
         states_(stages.states),
-        h_(graph_.leaf(LeafKind::equal_step)),
+        h_(graph_.leaf(LeafKind::step_length)),
         zero_(graph_.constant(0)) {
     if (find_nonlinear(graph_, stages.derivative)) throw InternalError("an exact step of equations that are not linear");
     std::vector<NodeId> const at_rest(states_.size(), zero_);
@@ -127,17 +127,18 @@ class Writer {
     Matrix whole = noisy ? phi_1 : matrices_.zeros(0, 0), noise = noisy ? least_noise(z, least) : matrices_.zeros(0, 0);
     phi_1 = Matrices::columns_of(phi_1, forced_, zero_);
     phi_2 = Matrices::columns_of(phi_2, forced_, zero_);
+    // After i doublings 2^i phi_1 and 4^i phi_2: powers of two are exact, and the matrix X need not be multiplied by them.
     for (int i = 0; i < doublings_; ++i) {
-      Matrix const quarter = matrices_.scaled(0.25, x);
-      phi_2 = matrices_.add_product(matrices_.add_scaled(matrices_.scaled(0.5, phi_2), 0.25, phi_1), quarter, phi_2);
-      phi_1 = matrices_.add_product(phi_1, matrices_.scaled(0.5, x), phi_1);
+      phi_2 = matrices_.add_product(matrices_.add_scaled(matrices_.scaled(2.0, phi_2), std::ldexp(1.0, i), phi_1), x, phi_2);
+      phi_1 = matrices_.add_product(matrices_.scaled(2.0, phi_1), x, phi_1);
       if (noisy) {
-        whole = matrices_.add_product(whole, matrices_.scaled(0.5, x), whole);
+        whole = matrices_.add_product(matrices_.scaled(2.0, whole), x, whole);
         noise = doubled(noise, x);
       }
       x = matrices_.add_product(matrices_.scaled(2.0, x), x, x);
     }
-    return {failing_beyond_reach(std::move(x), matrices_.product(z4, z4), a), std::move(phi_1), std::move(phi_2), std::move(whole),
+    return {failing_beyond_reach(std::move(x), matrices_.product(z4, z4), a), matrices_.scaled(std::ldexp(1.0, -doublings_), phi_1),
+            matrices_.scaled(std::ldexp(1.0, -2 * doublings_), phi_2), matrices_.scaled(std::ldexp(1.0, -doublings_), whole),
             std::move(noise)};
   }
 

@@ -68,7 +68,7 @@ std::vector<Culprit> culprits(Graph const& graph, std::span<NodeId const> roots,
 Kind by_states(Node const& leaf) {
   switch (leaf.leaf_kind) {
     case LeafKind::parameter:
-    case LeafKind::equal_step:
+    case LeafKind::step_length:
       return Kind::constant;
     case LeafKind::input:
     case LeafKind::input_rate:

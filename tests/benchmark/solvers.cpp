@@ -1,10 +1,14 @@
 // What a trajectory costs with each solver, relative to RK4 with one step per sample in one lane and in 64: thread CPU time in
-// turns, medians of the ratios. Then linear chains of masses with exact steps and with RK4, values and gradients.
+// turns, medians of the ratios. Then linear chains of masses with exact steps and with RK4, values and gradients; and the same
+// along records whose steps differ in length.
 #include <algorithm>
 #include <cstdio>
+#include <string_view>
+#include <utility>
 
 #include "cases.hpp"
 #include "processor_time.hpp"
+#include "simulate/experiments.hpp"
 
 using namespace benchmark_cases;
 
@@ -32,20 +36,33 @@ struct Contender {
   std::optional<Simulator> simulator;
 };
 
+std::vector<double> equal_steps(int samples) { return testing::uniform_times(samples, 0.01); }
+
+/// Every tenth interval is four times as long.
+std::vector<double> with_gaps(int samples) {
+  std::vector<double> time{0};
+  for (int i = 1; i < samples; ++i) time.push_back(time.back() + (i % 10 == 0 ? 0.04 : 0.01));
+  return time;
+}
+
+std::vector<double> all_different(int samples) {
+  Stream stream({.seed = 2, .purpose = Purpose::input, .index = 0, .step = 0});
+  std::vector<double> time{0};
+  for (int i = 1; i < samples; ++i) time.push_back(time.back() + 0.005 + 0.01 * stream.uniform());
+  return time;
+}
+
 /// Values, or values with their gradient by all parameters.
 struct Linear {
-  Linear(int masses, int samples, std::string const& method, bool gradient, ExecutorKind executor) {
+  Linear(int masses, std::vector<double> const& time, SolverSettings const& solver, bool gradient, ExecutorKind executor) {
     SimulationSource source = systems::linear_chain(masses);
-    source.integrator = method;
+    source.integrator = solver.method;
     source.records.clear();
     if (gradient)
       for (int p = 0; p < source.parameters; ++p) source.adjoint_by.push_back(p);
-    baseline::Record record{0.01, {}, {}};
     Stream stream({.seed = 1, .purpose = Purpose::input, .index = 0, .step = 0});
-    for (int i = 0; i < samples; ++i) {
-      record.input.push_back(10 * stream.normal());
-      record.measured.push_back(1e-5 * stream.normal());
-    }
+    Experiment const experiment =
+        testing::experiment(time, {[&](double) { return 10 * stream.normal(); }}, {[&](double) { return 1e-5 * stream.normal(); }});
     auto const program = std::make_shared<SimulationProgram const>(compile(source));
     parameters = LaneArray(source.parameters, width);
     for (int p = 0; p < source.parameters; ++p)
@@ -55,8 +72,7 @@ struct Linear {
       }
     sums = LaneArray(program->sum_count(), width);
     slopes = LaneArray(static_cast<int>(source.adjoint_by.size()), width);
-    simulator.emplace(program, Schedule(*program, experiment_of(record), {.method = method}),
-                      ExecutionOptions{.threads = 1, .executor = executor});
+    simulator.emplace(program, Schedule(*program, experiment, solver), ExecutionOptions{.threads = 1, .executor = executor});
   }
   double seconds() {
     double const begin = processor_time::seconds();
@@ -71,29 +87,56 @@ struct Linear {
   std::optional<Simulator> simulator;
 };
 
+/// Medians: of the seconds of one, and of their ratio to those of the other.
+std::pair<double, double> in_turns(Linear& one, Linear& other) {
+  std::vector<double> time, ratio;
+  for (int round = 0; round < 15; ++round) {
+    double const a = one.seconds(), b = other.seconds();
+    if (round < 4) continue;  // machine code is compiled
+    time.push_back(a), ratio.push_back(a / b);
+  }
+  return {processor_time::median(time), processor_time::median(ratio)};
+}
+
 void compare_linear() {
   for (ExecutorKind const executor : {ExecutorKind::lanes, ExecutorKind::native})
     for (bool const gradient : {false, true})
       for (int const masses : {1, 2, 4})
         for (int const samples : {500, 5000}) {
-          Linear exact(masses, samples, "exponential", gradient, executor), fixed(masses, samples, "rk4", gradient, executor);
-          std::vector<double> time, ratio;
-          for (int round = 0; round < 25; ++round) {
-            double const a = exact.seconds(), b = fixed.seconds();
-            if (round < 4) continue;  // machine code is compiled
-            time.push_back(a), ratio.push_back(a / b);
-          }
+          std::vector<double> const steps = equal_steps(samples);
+          Linear exact(masses, steps, {.method = "exponential"}, gradient, executor), fixed(masses, steps, {}, gradient, executor);
+          auto const [time, ratio] = in_turns(exact, fixed);
           std::printf("%d states, %4d samples, %-9s %-12s exponential %8.1f us, %5.2f x rk4(substeps = 1)\n", 2 * masses, samples,
                       gradient ? "gradient," : "value,",
-                      executor == ExecutorKind::lanes ? "interpreted:" : "machine code:", 1e6 * processor_time::median(time),
-                      processor_time::median(ratio));
+                      executor == ExecutorKind::lanes ? "interpreted:" : "machine code:", 1e6 * time, ratio);
         }
+}
+
+void compare_lengths() {
+  struct Spacing {
+    char const* name;
+    std::vector<double> (*times)(int samples);
+  };
+  for (bool const gradient : {false, true})
+    for (int const masses : {1, 2, 5})
+      for (Spacing const& spacing : {Spacing{"equal", &equal_steps}, {"gaps", &with_gaps}, {"all different", &all_different}}) {
+        std::vector<double> const steps = spacing.times(1000);
+        Linear exact(masses, steps, {.method = "exponential"}, gradient, ExecutorKind::native),
+            one(masses, steps, {}, gradient, ExecutorKind::native),
+            sixteen(masses, steps, {.substeps = 16}, gradient, ExecutorKind::native);
+        auto const [time, by_one] = in_turns(exact, one);
+        auto const [_, by_sixteen] = in_turns(exact, sixteen);
+        std::printf("%2d states, %-14s %-9s exponential %8.1f us, %7.2f x rk4(substeps = 1), %6.2f x rk4(substeps = 16)\n",
+                    2 * masses, spacing.name, gradient ? "gradient," : "value,", 1e6 * time, by_one, by_sixteen);
+        std::fflush(stdout);
+      }
 }
 
 }  // namespace
 
-int main(int count, char**) {
-  if (count > 1) return compare_linear(), 0;  // any argument: these alone
+int main(int count, char** arguments) {
+  if (count > 1 && std::string_view(arguments[1]) == "lengths") return compare_lengths(), 0;
+  if (count > 1) return compare_linear(), 0;  // any other argument: these alone
   for (Case const& each : {duffing(), bouc_wen()}) {
     Contender one(each, {}, 1), lanes(each, {}, 64);
     for (char const* method : {"cvode", "ida"})
@@ -110,4 +153,5 @@ int main(int count, char**) {
       }
   }
   compare_linear();
+  compare_lengths();
 }

@@ -72,6 +72,30 @@ TEST_CASE("the gradient of an exact filter is that of the joint normal density")
   }
 }
 
+// All steps of another length.
+TEST_CASE("the gradient of an exact filter along unequal steps is that of the joint normal density") {
+  std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
+  FilterRecord const of = record(60, 2, false);
+  ModelTarget const target(compile(oscillator_from(0), false, "exponential"), of.experiment, filter_options("exponential", 1));
+  LaneArray const theta = coordinates_of(target, values);
+  int const dimension = target.dimension();
+  LaneArray gradient(dimension, 1);
+  double value = 0;
+  Ledger ledger;
+  target.log_likelihood_gradient(theta, {&value, 1}, gradient, ledger);
+  for (int p = 0; p < dimension; ++p) {
+    double const h = 1e-3, by[] = {h, -h, 2 * h, -2 * h};
+    LaneArray around(dimension, 4), at(dimension, 4);
+    for (int w = 0; w < 4; ++w)
+      for (int i = 0; i < dimension; ++i) around(i, w) = theta(i, 0) + (i == p ? by[w] : 0);
+    target.constrain(around, at);
+    auto const density = [&](int w) {
+      return joint_density(oscillator_system(at(0, w), at(1, w), at(2, w), at(3, w), at(4, w)), of.experiment.time, of.u, of.y);
+    };
+    CHECK(gradient(p, 0) == doctest::Approx((8 * (density(0) - density(1)) - (density(2) - density(3))) / (12 * h)).epsilon(1e-7));
+  }
+}
+
 std::string const chain_text = R"(
 model chain {
   input x [N], w [N]

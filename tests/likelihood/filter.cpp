@@ -19,6 +19,11 @@ TEST_CASE("the likelihood of a linear model with a disturbance is the joint norm
     ModelTarget const target(compile(model, false, "exponential"), of.experiment, filter_options("exponential", 1));
     CHECK(value_at(target, values) == doctest::Approx(joint_density(system, of.experiment.time, of.u, of.y)).epsilon(1e-11));
   }
+  SUBCASE("exact steps, all of another length") {
+    FilterRecord const of = record(60, 2, false);
+    ModelTarget const target(compile(model, false, "exponential"), of.experiment, filter_options("exponential", 1));
+    CHECK(value_at(target, values) == doctest::Approx(joint_density(system, of.experiment.time, of.u, of.y)).epsilon(1e-11));
+  }
   SUBCASE("rk4, unequal steps") {
     FilterRecord const of = record(60, 2, false);
     ModelTarget const target(compile(model, false, "rk4"), of.experiment, filter_options("rk4", 40));

@@ -82,8 +82,8 @@ void ParticleTarget::run(ConstLanes theta, int particles, MakeNormals const& nor
     Simulator const& simulator = (*simulators_)[static_cast<std::size_t>(e)];
     Work of_experiment;
     of_experiment.given_up = simulator.given_up();
-    of_experiment.instructions = work_per_sample(simulator.program(), simulator.schedule().solver()) *
-                                 simulator.schedule().last_summed() * particles * theta.width();
+    of_experiment.instructions =
+        work_per_sample(simulator.program(), simulator.schedule()) * simulator.schedule().last_summed() * particles * theta.width();
     of_experiment.width = theta.width();
     of_experiment.written = {
         {reinterpret_cast<std::byte*>(outcomes.data() + e), simulators_->size() * sizeof(FilterOutcome), sizeof(FilterOutcome)}};

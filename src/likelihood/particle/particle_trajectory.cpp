@@ -110,7 +110,7 @@ ParticleTrajectory::Result ParticleTrajectory::run(ConstLanes parameters, Stream
   Work work;
   work.given_up = densities_.given_up();
   work.instructions =
-      work_per_sample(densities_.program(), densities_.schedule().solver()) * samples() * particles_ * parameters.width() * ahead;
+      work_per_sample(densities_.program(), densities_.schedule()) * samples() * particles_ * parameters.width() * ahead;
   work.width = parameters.width();
   work.blocks = [&](int first, int count) {
     Blocks blocks{{}, work.instructions / work.width * count};

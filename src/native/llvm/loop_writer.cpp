@@ -91,7 +91,7 @@ void LoopWriter::write_samples() {
 }
 
 void LoopWriter::write_look(llvm::Value* sample) {
-  if (loop_.kind == LoopKind::record) return write_record(sample);
+  if (writes_out()) return write_record(sample);
   for (std::size_t channel = 0; channel < loop_.samples.size(); ++channel)
     if (!loop_.samples[channel].code.empty()) write_channel(channel, sample);
 }
@@ -122,11 +122,11 @@ void LoopWriter::write_record(llvm::Value* sample) {
   SectionCode const& section = loop_.samples.front();
   write_section(section, row_at(rows, sample, section.row));
   int const width = loop_.vector_lanes * loop_.vectors;
-  llvm::Value* const place = row_at(out, builder_.CreateSub(sample, from), loop_.records * width);
-  for (int r = 0; r < loop_.records; ++r) {
-    Row const& values = row_of(static_cast<std::uint32_t>(loop_.first_record + r));
+  llvm::Value* const place = row_at(out, builder_.CreateSub(sample, from), static_cast<int>(loop_.outputs.size()) * width);
+  for (std::size_t r = 0; r < loop_.outputs.size(); ++r) {
+    Row const& values = row_of(loop_.outputs[r]);
     for (int v = 0; v < loop_.vectors; ++v) {
-      auto const lane = static_cast<std::uint64_t>(r * width + v * loop_.vector_lanes);
+      auto const lane = r * static_cast<std::size_t>(width) + static_cast<std::size_t>(v * loop_.vector_lanes);
       llvm::Value* const at = builder_.CreateConstInBoundsGEP1_64(double_, place, lane);
       builder_.CreateAlignedStore(values[static_cast<std::size_t>(v)], builder_.CreateBitCast(at, type_->getPointerTo()),
                                   llvm::Align(8));

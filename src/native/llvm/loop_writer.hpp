@@ -38,6 +38,7 @@ class LoopWriter {
   void write_look(llvm::Value* sample);
   void write_channel(std::size_t channel, llvm::Value* sample);
   void write_record(llvm::Value* sample);
+  bool writes_out() const { return loop_.kind == LoopKind::record || loop_.kind == LoopKind::values; }
   void write_steps(llvm::Value* sample);
   void write_substeps(llvm::Value* sample);
   void write_section(SectionCode const& section, llvm::Value* row);

@@ -27,7 +27,7 @@ void LoopWriter::write_section(SectionCode const& section, llvm::Value* row) {
       for (std::size_t k = i; k < end; ++k) write_instruction(section.code[k], row, v);
     i = end;
   }
-  if (loop_.kind != LoopKind::record) forget_temporaries();
+  if (!writes_out()) forget_temporaries();
 }
 
 void LoopWriter::write_instruction(Instruction const& instruction, llvm::Value* row, std::size_t vector) {

@@ -127,7 +127,7 @@ class MomentWriter {
 
   NodeId sampling_interval() {
     bool const exact = find_solver(source_.integrator)->exact;  // whose matrices are those of one step for all samples
-    return exact ? graph_.leaf(LeafKind::equal_step) : graph_.leaf(LeafKind::interval, static_cast<int>(IntervalData::length));
+    return exact ? graph_.leaf(LeafKind::step_length) : graph_.leaf(LeafKind::interval, static_cast<int>(IntervalData::length));
   }
 
   /// Means and covariances of an exact method are those of a map.
@@ -154,7 +154,7 @@ class MomentWriter {
     for (std::size_t d = 0; d < gains_.size(); ++d)
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < n; ++k) add_product(whole_gains_[d][i], exact.integral[i * n + k], gains_[d].rows[k]);
-    length_ = graph_.leaf(LeafKind::equal_step);
+    length_ = graph_.leaf(LeafKind::step_length);
   }
 
   /// P' = A P + P A' is cheaper for many states, and a covariance only to the order of the method: with steps that are too long it

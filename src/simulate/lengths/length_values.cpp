@@ -11,11 +11,17 @@ constexpr std::size_t most_rows = 2048;  // of a block of 64 lanes a megabyte, w
 
 }  // namespace
 
-LengthValues::LengthValues(SimulationProgram const& program, Executor executor, double* registers, int lengths, Run run)
-    : program_(program), executor_(executor), registers_(registers), run_(std::move(run)), lengths_(lengths) {
+LengthValues::LengthValues(SimulationProgram const& program, Executor executor, double* registers, int lengths, Run run,
+                           Machine machine)
+    : program_(program), executor_(executor), registers_(registers), run_(std::move(run)), lengths_(lengths), machine_(machine) {
   if (lengths_ == 1) return;
-  std::size_t const rows = program.length_values.size() + static_cast<std::size_t>(slopes());
-  kept_.resize(std::clamp<std::size_t>(most_rows / std::max<std::size_t>(1, rows), 1, static_cast<std::size_t>(lengths_)));
+  if (machine_.function != nullptr) {
+    auto const vector = static_cast<std::size_t>(machine_.lanes);
+    inputs_.resize(static_cast<std::size_t>(program.registers.parameters) * vector);
+    outputs_.resize(program.length_values.size() * vector);
+  }
+  std::size_t const of_a_length = program.length_values.size() + static_cast<std::size_t>(slopes());
+  kept_.resize(std::clamp<std::size_t>(most_rows / std::max<std::size_t>(1, of_a_length), 1, static_cast<std::size_t>(lengths_)));
 }
 
 int LengthValues::first_slope() const {
@@ -45,6 +51,34 @@ void LengthValues::compute(int length) {
   computed_ = length;
 }
 
+/// Parameters are read where they stand, so that it does not matter when they were put there.
+bool LengthValues::compute_by_machine(int length) {
+  if (machine_.function == nullptr) return false;
+  std::vector<int> const& values = program_.length_values;
+  int const vector = machine_.lanes;
+  for (int first = 0; first < executor_.width; first += vector) {
+    int const count = std::min(vector, executor_.width - first);
+    double* to = inputs_.data();
+    for (int p = 0; p < program_.registers.parameters; ++p, to += vector) {
+      std::copy_n(row(p) + first, count, to);
+      std::fill_n(to + count, vector - count, to[count - 1]);
+    }
+    native::Call call;
+    call.registers = inputs_.data();
+    call.rows = &machine_.rows;
+    call.out = outputs_.data();
+    call.from = call.look_from = length;
+    call.to = length + 1;
+    machine_.function(&call);
+    double const* from = outputs_.data();
+    for (int const each : values) {
+      std::copy_n(from, count, row(each) + first);
+      from += vector;
+    }
+  }
+  return true;
+}
+
 void LengthValues::take(int length) {
   if (length == current_) return;
   if (backwards_) put_away_slopes();
@@ -56,7 +90,7 @@ void LengthValues::take(int length) {
     computed_ = computed_ == length ? length : -1;
   } else {
     computed_ = -1;
-    compute(length);
+    if (!compute_by_machine(length)) compute(length);
     if (place != nullptr) {
       place->values.resize(std::max<std::size_t>(1, rows.size() * width));
       for (std::size_t r = 0; r < rows.size(); ++r) std::copy_n(row(rows[r]), executor_.width, place->values.data() + r * width);

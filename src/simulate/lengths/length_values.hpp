@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "native/loop.hpp"
 #include "program/interpreter/executor.hpp"
 #include "program/simulation_program.hpp"
 
@@ -15,8 +16,15 @@ class LengthValues {
   /// run: a section, with the uniforms of that length.
   using Run = std::function<void(Section const& section, int length)>;
 
-  /// registers: rows of executor.stride(), of the block. Outlives neither.
-  LengthValues(SimulationProgram const& program, Executor executor, double* registers, int lengths, Run run);
+  /// Machine code for the values of a length alone (native::LoopKind::values); a null function: the prologue is interpreted.
+  struct Machine {
+    native::Function function = nullptr;
+    int lanes = 1;                 // of its vector
+    double const* rows = nullptr;  // of the prologue, one per length
+  };
+
+  /// registers: rows of executor.stride(), of the block. Outlives none of them.
+  LengthValues(SimulationProgram const& program, Executor executor, double* registers, int lengths, Run run, Machine machine);
 
   /// The prologue has been run for new parameters, with the first length.
   void parameters_changed();
@@ -43,6 +51,7 @@ class LengthValues {
   double* row(int r) const { return registers_ + r * executor_.stride(); }
   Kept* kept(int length) { return length >= 0 && keeps(length) ? &kept_[static_cast<std::size_t>(length)] : nullptr; }
   void compute(int length);
+  bool compute_by_machine(int length);
   void put_away_slopes();
   void take_slopes(int length);
   void pass_on_slopes();
@@ -54,8 +63,10 @@ class LengthValues {
   double* registers_;
   Run run_;
   int lengths_;
-  int current_ = 0;   // whose values are in the registers; -1: not known
-  int computed_ = 0;  // by the prologue, the last time
+  Machine machine_;
+  std::vector<double> inputs_, outputs_;  // of the machine code
+  int current_ = 0;                       // whose values are in the registers; -1: not known
+  int computed_ = 0;                      // by the prologue, the last time
   bool backwards_ = false;
   std::vector<Kept> kept_;  // of the most frequent lengths
 };
