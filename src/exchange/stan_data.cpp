@@ -43,9 +43,12 @@ std::string declarations(StanFit const& fit, StanColumns const& columns, StanDat
   std::string text =
       fmt::format("  int<lower=1> {0};\n  matrix[{0}, {1}] {2};\n  matrix[{0}, {3}] {4};\n  matrix[{0}, {3}] {5};\n", names.count,
                   columns.count(), names.samples, fit.model().channels.size(), names.measured, names.scored);
-  if (fit.steps())
-    text += fmt::format("  matrix[({0} - 1) * substeps, {1}] {2};\n  vector[({0} - 1) * substeps] {3};\n", names.count,
-                        3 * columns.count(), names.stages, names.h);
+  if (fit.steps()) {
+    std::string const intervals = fmt::format("{} - 1", names.count);
+    text += fmt::format("  matrix[{0}, {1}] {2};\n  vector[{0}] {3};\n",
+                        fit.exact() ? intervals : fmt::format("({}) * substeps", intervals), 3 * columns.count(), names.stages,
+                        names.h);
+  }
   return text;
 }
 
@@ -73,10 +76,12 @@ void add_samples(Schedule const& schedule, StanColumns const& columns, Experimen
   values[names.scored] = scored;
 }
 
-void add_steps(Schedule const& schedule, StanColumns const& columns, int substeps, StanDataNames const& names, Json& values) {
+void add_steps(Schedule const& schedule, StanColumns const& columns, StanFit const& fit, StanDataNames const& names, Json& values) {
+  // Of exact steps those that pass for equal are, so that the program computes what hangs on their length once.
+  LeafKind const length = fit.exact() ? LeafKind::step_length : LeafKind::step_size;
   Json stages = Json::array(), h = Json::array();
   for (int i = 0; i + 1 < schedule.last_summed(); ++i)
-    for (int k = 0; k < substeps; ++k) {
+    for (int k = 0; k < fit.substeps(); ++k) {
       Json row = Json::array();
       for (Stage const stage : {Stage::begin, Stage::middle, Stage::end})
         for (UniformLeaf leaf : columns.leaves()) {
@@ -85,7 +90,7 @@ void add_steps(Schedule const& schedule, StanColumns const& columns, int substep
           row.push_back(leaf.kind == LeafKind::measured || leaf.lag > 0 ? 0.0 : schedule.at_step(leaf, i, k));
         }
       stages.push_back(row);
-      h.push_back(schedule.at_step({LeafKind::step_size, 0, Stage::begin, 0}, i, k));
+      h.push_back(schedule.at_step({length, 0, Stage::begin, 0}, i, k));
     }
   values[names.stages] = stages;
   values[names.h] = h;
@@ -95,7 +100,7 @@ void add_steps(Schedule const& schedule, StanColumns const& columns, int substep
 
 StanData stan_data(StanFit const& fit, StanColumns const& columns, std::vector<std::string>& taken) {
   StanData data{fmt::format("data {{\n  // columns: {}\n", column_names(fit.model(), columns)), Json::object(), {}};
-  if (fit.steps()) {
+  if (fit.steps() && !fit.exact()) {
     data.block += "  int<lower=1> substeps;\n";
     data.values["substeps"] = fit.substeps();
   }
@@ -104,7 +109,7 @@ StanData stan_data(StanFit const& fit, StanColumns const& columns, std::vector<s
     Schedule const schedule(*fit.compiled->likelihood, each.experiment, fit.steps() ? fit.solver : SolverSettings{});
     data.block += declarations(fit, columns, names);
     add_samples(schedule, columns, each.experiment, names, data.values);
-    if (fit.steps()) add_steps(schedule, columns, fit.substeps(), names, data.values);
+    if (fit.steps()) add_steps(schedule, columns, fit, names, data.values);
     data.names.push_back(names);
   }
   data.block += "}\n";

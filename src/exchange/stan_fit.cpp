@@ -8,7 +8,7 @@
 namespace sysid {
 namespace {
 
-/// The solver whose step a Stan program contains (stan_functions.cpp).
+/// The solver whose step a Stan program contains (stan_functions.cpp), beside the exact one.
 constexpr std::string_view written_solver = "rk4";
 
 void require_carried(Task const& task, FitTask const& what, Model const& model, SolverSettings const& solver) {
@@ -19,7 +19,7 @@ void require_carried(Task const& task, FitTask const& what, Model const& model, 
     throw not_carried(task, "its start is estimated inside the likelihood", "state `start = record` or `start = rest`");
   if (model.implicit)
     throw not_carried(task, "its equations are implicit in the highest derivatives", "write it without implicit equations");
-  if (model.integrated() && solver.method != written_solver)
+  if (model.integrated() && solver.method != written_solver && !solver.row().exact)
     throw not_carried(task, fmt::format("it is integrated by {}", solver.method),
                       fmt::format("use `solver = {}`, with as many substeps as needed", written_solver));
 }

@@ -22,6 +22,8 @@ struct StanFit {
   int states() const { return static_cast<int>(model().states.size()); }
   /// Whether its states are integrated; those of discrete time go from sample to sample.
   bool steps() const { return model().integrated(); }
+  /// Whether these steps are exact ones, one per interval.
+  bool exact() const { return steps() && solver.row().exact; }
   int substeps() const { return steps() ? solver.substeps : 1; }
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "exchange/stan_text.hpp"
+#include "model/state_jacobian.hpp"
 
 namespace sysid {
 namespace {
@@ -20,7 +21,10 @@ class Functions {
     std::string text = fmt::format("functions {{\n{}", stan_own_functions());
     text += equations();
     for (std::size_t c = 0; c < model_.channels.size(); ++c) text += channel_density(c);
-    if (fit_.steps()) text += runge_kutta();
+    if (fit_.exact())
+      text += exact_steps();
+    else if (fit_.steps())
+      text += runge_kutta();
     return text + prior() + likelihood() + "}\n";
   }
 
@@ -103,6 +107,43 @@ class Functions {
                        fit_.states(), k, k + 1, 2 * k + 1);
   }
 
+  // The derivatives of all states by all states, which are of parameters alone.
+  std::string state_matrix() {
+    int const n = fit_.states();
+    std::vector<NodeId> const entries = state_jacobian(graph_, model_);
+    StanExpressions const written = of_model(entries);
+    std::string text = fmt::format(
+        "  // The coefficients of the states in their time derivatives.\n  matrix state_matrix(vector p) {{\n{0}"
+        "    matrix[{1}, {1}] result = rep_matrix(0, {1}, {1});\n",
+        written.declarations, n);
+    for (int i = 0; i < n * n; ++i)
+      if (!graph_.is_constant(entries[static_cast<std::size_t>(i)], 0))
+        text += fmt::format("    result[{}, {}] = {};\n", i / n + 1, i % n + 1, written.texts[static_cast<std::size_t>(i)]);
+    return text + "    return result;\n  }\n";
+  }
+
+  // Van Loan 1978: the functions of h A are blocks of one exponential.
+  std::string exact_steps() {
+    int const k = columns_.count();
+    return state_matrix() + fmt::format(R"(  // exp(h A), phi_1(h A) and phi_2(h A) side by side, A the matrix of the states.
+  matrix step_functions(real h, vector p) {{
+    matrix[{1}, {1}] m = rep_matrix(0, {1}, {1});
+    m[1:{0}, 1:{0}] = h * state_matrix(p);
+    for (i in 1:{2}) m[i, {0} + i] = 1;
+    return block(matrix_exp(m), 1, 1, {0}, {1});
+  }}
+  // One step without an error; d: what is read at its begin, middle and end, of which a straight line is followed.
+  vector exact_step(vector y, row_vector d, real h, matrix functions_of_h, vector p) {{
+    vector[{0}] at_begin = derivative(rep_vector(0, {0}), segment(d, 1, {3}), p);
+    vector[{0}] at_end = derivative(rep_vector(0, {0}), segment(d, {4}, {3}), p);
+    return block(functions_of_h, 1, 1, {0}, {0}) * y
+           + h * (block(functions_of_h, 1, {5}, {0}, {0}) * at_begin + block(functions_of_h, 1, {6}, {0}, {0}) * (at_end - at_begin));
+  }}
+)",
+                                        fit_.states(), 3 * fit_.states(), 2 * fit_.states(), k, 2 * k + 1, fit_.states() + 1,
+                                        2 * fit_.states() + 1);
+  }
+
   // Density of a sampled parameter in its declared unit. Leaves are rows of the space: those that every experiment has for itself
   // differ.
   NodeId prior_density(Graph& graph, int r) const {
@@ -143,14 +184,20 @@ class Functions {
   std::string likelihood() const {
     bool const states = fit_.states() > 0;
     std::string text = "  real log_likelihood(matrix samples, matrix measured, matrix scored, ";
-    if (fit_.steps()) text += "matrix stages, vector h, int substeps, ";
+    if (fit_.steps()) text += fmt::format("matrix stages, vector h, {}", fit_.exact() ? "" : "int substeps, ");
     text += "vector p) {\n    real total = 0;\n";
+    if (fit_.exact()) text += fmt::format("    matrix[{}, {}] functions_of_h;\n", fit_.states(), 3 * fit_.states());
     if (states) text += fmt::format("    vector[{}] y = initial(samples[1], p);\n", fit_.states());
     text += "    for (i in 1:rows(samples)) {\n";
     for (std::size_t c = 1; c <= model_.channels.size(); ++c)
       text += fmt::format("      if (scored[i, {0}] > 0) total += log_density_{0}(measured[i, {0}]{1}, samples[i], p);\n", c,
                           states ? ", y" : "");
-    if (fit_.steps())
+    if (fit_.exact())
+      text +=
+          "      if (i < rows(samples)) {\n"
+          "        if (i == 1 || h[i] != h[i - 1]) functions_of_h = step_functions(h[i], p);\n"
+          "        y = exact_step(y, stages[i], h[i], functions_of_h, p);\n      }\n";
+    else if (fit_.steps())
       text +=
           "      if (i < rows(samples))\n        for (k in 1:substeps)\n"
           "          y = rk4(y, stages[(i - 1) * substeps + k], h[(i - 1) * substeps + k], p);\n";
@@ -170,8 +217,20 @@ class Functions {
 std::string stan_functions_block(StanFit const& fit, StanColumns& columns) { return Functions(fit, columns)(); }
 
 std::vector<std::string> stan_function_names(StanFit const& fit) {
-  std::vector<std::string> names = {"si",      "p",          "absolute_value", "sign_of",        "derivative", "rk4",
-                                    "initial", "next_state", "log_prior",      "log_likelihood", "substeps"};
+  std::vector<std::string> names = {"si",
+                                    "p",
+                                    "absolute_value",
+                                    "sign_of",
+                                    "derivative",
+                                    "rk4",
+                                    "initial",
+                                    "next_state",
+                                    "log_prior",
+                                    "log_likelihood",
+                                    "substeps",
+                                    "state_matrix",
+                                    "step_functions",
+                                    "exact_step"};
   for (std::size_t c = 0; c < fit.model().channels.size(); ++c) names.push_back(fmt::format("log_density_{}", c + 1));
   return names;
 }

@@ -60,7 +60,7 @@ std::string model_block(StanFit const& fit, std::vector<StanDataNames> const& al
     for (std::size_t p = 0; p < parameters; ++p)
       text += fmt::format("    p[{}] = si[{}];\n", p + 1, fit.space->row(static_cast<int>(e), static_cast<int>(p)) + 1);
     text += fmt::format("    target += log_likelihood({}, {}, {}, {}p);\n  }}\n", names.samples, names.measured, names.scored,
-                        fit.steps() ? fmt::format("{}, {}, substeps, ", names.stages, names.h) : "");
+                        fit.steps() ? fmt::format("{}, {}, {}", names.stages, names.h, fit.exact() ? "" : "substeps, ") : "");
   }
   return text + "}\n";
 }

@@ -45,8 +45,15 @@ class Opened {
   std::optional<Session> session_;
 };
 
+/// What stands before a comma is a shipped model.
+std::filesystem::path path_of(std::string const& name) {
+  std::string const model = name.substr(0, name.find(','));
+  return models / model / (model + ".sysid");
+}
+
 std::string text_of(std::string const& name) {
-  std::string const text = read_file(models / name / (name + ".sysid"));
+  std::string const text = read_file(path_of(name));
+  if (name == "fleet, exact") return with(text, "thin = 10), seed = 1", "thin = 10), seed = 1, solver = exponential");
   return name == "silverbox" ? with(text, "start = estimated(rows = 50)", "start = rest") : text;
 }
 
@@ -83,10 +90,10 @@ std::string_view without_head(std::string_view program) {
 
 TEST_CASE("Stan gives exported programs the log density that we do") {
   json const record = json::parse(read_file(scripts / "fixtures/stan.json"));
-  CHECK(record.size() == 7);
+  CHECK(record.size() == 8);
   for (auto const& [name, recorded] : record.items()) {
     CAPTURE(name);
-    Opened opened(models / name / (name + ".sysid"), text_of(name));
+    Opened opened(path_of(name), text_of(name));
     Task const& task = opened.task(recorded.at("task"));
     FitTask const& fit = std::get<FitTask>(task.what);
     StanProgram const program = stan_program(opened.session(), task, fit.solver);
@@ -103,8 +110,10 @@ TEST_CASE("Stan gives exported programs the log density that we do") {
       double const ours = log_density(*target, point.at("values")), stan = point.at("log_density").get<double>();
       CAPTURE(ours);
       CAPTURE(stan);
-      // Sums of thousands of terms in two orders, through thousands of steps.
-      CHECK(std::fabs(ours - stan) <= 1e-12 * std::fabs(stan));
+      // Sums of thousands of terms in two orders, through thousands of steps; of exact ones two ways to the exponential of a matrix,
+      // whose last digits add up in the phase.
+      double const rounding = name.ends_with(", exact") ? 1e-11 : 1e-12;
+      CHECK(std::fabs(ours - stan) <= rounding * std::fabs(stan));
     }
   }
 }
