@@ -60,9 +60,10 @@ class InputSignal {
   InputSignal view(int first, int count) const;
   /// The same samples under another rule; nothing where that needs equal steps and these are not.
   std::optional<InputSignal> under(InputRule rule) const;
-  /// The signal `samples` sampling steps later (negative: earlier), as samples under the same rule: what the input would be had it
-  /// been recorded that much out of step. New sample i is the old curve at t_i - samples (t_i - t_(i-1)). A zero_order curve is
-  /// replaced by its average over the shifted step, read as the line between neighbours: half a sample gives the mean of two.
+  /// The signal `samples` rows later (negative: earlier), as samples under the same rule: what the input would be had its column
+  /// been recorded that much out of step. New sample i is the old curve at row i - samples, a part of a row being that part of the
+  /// interval there, however long it is. A zero_order curve is replaced by its average over the shifted step, read as the line
+  /// between neighbours: half a sample gives the mean of two.
   /// Beyond its ends the record holds its end samples.
   InputSignal shifted(double samples) const;
 

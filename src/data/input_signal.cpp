@@ -99,24 +99,22 @@ std::optional<InputSignal> InputSignal::under(InputRule rule) const {
 }
 
 InputSignal InputSignal::shifted(double samples) const {
-  std::vector<double> const& time = record_->time;
   std::vector<double> const& old = record_->samples;
   std::size_t const n = old.size();
+  bool const held = row_of(record_->rule).jumps;
   InputSignal whole = *this;
   whole.first_ = 0;
   std::vector<double> moved(n);
   for (std::size_t i = 0; i < n; ++i) {
-    double const t = time[i] - samples * (i == 0 ? time[1] - time[0] : time[i] - time[i - 1]);
-    auto const after = static_cast<std::size_t>(std::upper_bound(time.begin(), time.end(), t) - time.begin());
-    if (after == 0 || after == n) {
-      moved[i] = after == 0 ? old.front() : old.back();
-      continue;
-    }
-    double const s = (t - time[after - 1]) / (time[after] - time[after - 1]);
-    bool const held = row_of(record_->rule).jumps;
-    moved[i] = held ? old[after - 1] + s * (old[after] - old[after - 1]) : whole.value(static_cast<int>(after) - 1, s);
+    double const place = std::clamp(static_cast<double>(i) - samples, 0.0, static_cast<double>(n - 1));
+    auto const before = std::min(static_cast<std::size_t>(place), n - 2);
+    double const s = place - static_cast<double>(before);
+    moved[i] = s == 0   ? old[before]
+               : s == 1 ? old[before + 1]
+               : held   ? old[before] + s * (old[before + 1] - old[before])
+                        : whole.value(static_cast<int>(before), s);
   }
-  return InputSignal(record_->rule, time, std::move(moved)).view(first_, rows_);
+  return InputSignal(record_->rule, record_->time, std::move(moved)).view(first_, rows_);
 }
 
 }  // namespace sysid

@@ -240,6 +240,21 @@ TEST_CASE("half a sample of delay is the mean of neighbours under the held and t
   }
 }
 
+TEST_CASE("a shift counts rows, however far apart they are") {
+  std::vector<double> const time = {0, 1, 1.5, 6, 7, 7.25};  // a gap
+  for (InputRule const rule : {InputRule::zero_order, InputRule::linear, InputRule::cubic}) {
+    InputSignal const signal(rule, time, {1, 2, 4, 8, 16, 32});
+    for (int const rows : {1, 2, 3, -1, -2}) {
+      InputSignal const moved = signal.shifted(rows);
+      for (int i = 0; i < 6; ++i) CHECK(moved.sample(i) == signal.sample(std::clamp(i - rows, 0, 5)));
+    }
+  }
+  InputSignal const late = InputSignal(InputRule::linear, time, {1, 2, 4, 8, 16, 32}).shifted(0.5);
+  CHECK(late.sample(3) == 6);
+  CHECK(late.sample(4) == 12);
+  CHECK(InputSignal(InputRule::linear, time, {1, 2, 4, 8, 16, 32}).shifted(-0.5).sample(2) == 6);
+}
+
 TEST_CASE("a shift by a fraction delays a band-limited and a cubic signal") {
   Multisine const f{{0.02, 0.3}}, slow{{0.02}};
   std::vector<double> const time = grid(200, 1);
