@@ -10,6 +10,7 @@
 
 #include "data/input_rule.hpp"
 #include "data/input_spectrum.hpp"
+#include "diagnostics/inputs/input_leaves.hpp"
 #include "diagnostics/inputs/input_words.hpp"
 #include "diagnostics/inputs/steady_gain.hpp"
 #include "search/descent.hpp"
@@ -47,6 +48,28 @@ bool changes_at_once(InputSignal const& input) {
     if (i > 0) product += from_mean * (input.sample(i - 1) - mean);
   }
   return product < 0.5 * square;
+}
+
+/// Whether the samples come again later: an error of the model then comes again, too, and the parts of the record are no
+/// repetitions of an experiment with other errors.
+bool repeats(InputSignal const& input) {
+  constexpr int most_rows = 4096;
+  constexpr double apart = 0.5, again = 0.9;  // correlations
+  int const n = std::min(input.rows(), most_rows);
+  double mean = 0;
+  for (int i = 0; i < n; ++i) mean += input.sample(i) / n;
+  bool was_apart = false;
+  for (int lag = 1; lag <= n / 2; ++lag) {
+    double product = 0, early = 0, late = 0;
+    for (int i = 0; i + lag < n; ++i) {
+      double const one = input.sample(i) - mean, other = input.sample(i + lag) - mean;
+      product += one * other, early += one * one, late += other * other;
+    }
+    double const scale = std::sqrt(early * late);
+    if (was_apart && product > again * scale) return true;
+    was_apart = was_apart || product < apart * scale;
+  }
+  return false;
 }
 
 bool changes(InputSignal const& input) {
@@ -207,15 +230,8 @@ class InputCheck {
   }
 
   bool reads_rate(int input) const {
-    auto const is_rate = [&](Node const& node) {
-      return node.operation == Operation::leaf && node.leaf_kind == LeafKind::input_rate && node.index == input;
-    };
-    std::vector<NodeId> roots = model_.residuals;
-    for (State const& state : model_.states) roots.push_back(state.derivative);
-    for (Channel const& channel : model_.channels)
-      roots.insert(roots.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
-    std::vector<NodeId> const read = model_.graph.reachable(roots);
-    return std::any_of(read.begin(), read.end(), [&](NodeId node) { return is_rate(model_.graph[node]); });
+    std::vector<Node> const leaves = leaves_of_input(model_, input);
+    return std::ranges::any_of(leaves, [](Node const& leaf) { return leaf.leaf_kind == LeafKind::input_rate; });
   }
 
   void weigh(Alternative& other, std::size_t e, std::size_t i, int scored) {
@@ -252,10 +268,11 @@ class InputCheck {
       for (ParameterInfo const& each : target->parameters()) parameters_.push_back(each.name);
   }
 
-  // Whether the gain comes from all parts of these experiments.
+  // Whether the gain comes from all parts of these experiments, and not with an error of the model that an input repeats.
   bool everywhere(std::vector<std::size_t> const& of, std::size_t i, std::vector<Experiment> const& before,
                   std::vector<double> const& declared_before, std::vector<Experiment> const& after,
                   std::vector<double> const& declared_after) const {
+    if (std::ranges::any_of(of, [&](std::size_t e) { return left_[e].coloured && repeats(before[e].inputs[i]); })) return false;
     std::vector<std::vector<double>> const old = fit_.log_densities(before, declared_before),
                                            now = fit_.log_densities(after, declared_after);
     if (old.empty()) return false;

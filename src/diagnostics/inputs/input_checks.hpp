@@ -52,8 +52,9 @@ struct LeftByFit {
 /// an input in all experiments, or one in each of them.
 ///
 /// Steady (steady_gain): the gain of the log likelihood comes from all parts of the record, those where the inputs differ little
-/// counting as less. A gain that is chance, however correlated the residuals are in time, comes from few parts of it. mode: the
-/// best one of the density that `objective_kind` names. left: of each experiment.
+/// counting as less. A gain that is chance, however correlated the residuals are in time, comes from few parts of it. Where an
+/// input repeats itself and the residuals are coloured no gain counts as steady, since an error of the model repeats itself with
+/// it. mode: the best one of the density that `objective_kind` names. left: of each experiment.
 Findings check_inputs(FitOfExperiments const& fit, Model const& model, std::vector<Experiment> const& experiments,
                       ObjectiveKind objective_kind, Mode const& mode, std::vector<LeftByFit> left, std::uint64_t seed,
                       Ledger& ledger);

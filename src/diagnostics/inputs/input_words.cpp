@@ -1,3 +1,4 @@
+// The cure of a delay is a column that is moved in the file, or another lag in an equation in discrete time.
 #include "diagnostics/inputs/input_words.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "core/text/words.hpp"
+#include "diagnostics/inputs/input_leaves.hpp"
 
 namespace sysid {
 namespace {
@@ -25,17 +27,9 @@ std::string move_column(std::string const& what, bool down, int count) {
 
 /// Samples back that the equations read of an input, each once.
 std::set<int> lags_of(InputOf const& input) {
-  Model const& model = input.model;
-  std::vector<NodeId> roots = model.residuals;
-  for (State const& state : model.states) roots.push_back(state.derivative);
-  for (Channel const& channel : model.channels)
-    roots.insert(roots.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
   std::set<int> lags;
-  for (NodeId const each : model.graph.reachable(roots)) {
-    Node const& node = model.graph[each];
-    if (node.operation == Operation::leaf && node.leaf_kind == LeafKind::input && node.index == static_cast<int>(input.index))
-      lags.insert(node.lag);
-  }
+  for (Node const& leaf : leaves_of_input(input.model, static_cast<int>(input.index)))
+    if (leaf.leaf_kind == LeafKind::input) lags.insert(leaf.lag);
   return lags;
 }
 

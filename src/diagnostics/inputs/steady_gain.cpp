@@ -1,3 +1,4 @@
+// Successive parts of a record as repetitions of one experiment: a ratio of sums over them, with Student's test.
 #include "diagnostics/inputs/steady_gain.hpp"
 
 #include <cmath>

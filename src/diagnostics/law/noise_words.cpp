@@ -1,3 +1,4 @@
+// The user's own statement, changed, where it is known; else what to write in its place.
 #include "diagnostics/law/noise_words.hpp"
 
 #include <fmt/format.h>
