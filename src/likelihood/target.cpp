@@ -52,6 +52,13 @@ double central_slope(double ahead, double at, double behind, double step) {
   return ((up ? ahead : at) - (down ? behind : at)) / ((up ? step : 0) + (down ? step : 0));
 }
 
+LaneArray coordinates_of(Target const& target, std::span<double const> declared) {
+  LaneArray values(target.dimension(), 1), theta(target.dimension(), 1);
+  for (int p = 0; p < target.dimension(); ++p) values(p, 0) = declared[static_cast<std::size_t>(p)];
+  target.unconstrain(values, theta);
+  return theta;
+}
+
 double difference_width(Target const& target) { return std::clamp(0.1 * std::sqrt(target.roughness()), 1e-5, 1e-3); }
 
 std::vector<double> const& Target::prior_widths() const {

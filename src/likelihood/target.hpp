@@ -86,6 +86,9 @@ class Target {
   Lazily<std::vector<double>> prior_widths_;
 };
 
+/// theta [P x 1] of declared values, of which those beyond the first P are not read.
+LaneArray coordinates_of(Target const& target, std::span<double const> declared);
+
 /// Of a prior width: values bend over widths, rounding sits at 1e-11 of them. Steps that are chosen by their error leave a
 /// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
 double difference_width(Target const& target);

@@ -13,6 +13,14 @@ std::vector<double> Draws::column(std::size_t name) const {
   return out;
 }
 
+Draws::Best Draws::best() const {
+  Best best;
+  for (Chain const& chain : chains)
+    for (std::size_t d = 0; d < chain.values.size(); ++d)
+      if (best.values == nullptr || chain.log_density[d] > best.log_density) best = {&chain.values[d], chain.log_density[d]};
+  return best;
+}
+
 LaneArray spread(Draws const& draws, int count) {
   return spread_with_repeats(draws, std::min<int>(count, static_cast<int>(draws.total())));
 }

@@ -1,5 +1,6 @@
 // Posterior draws as every reader sees them: per chain, a table of declared values beside what the sampler recorded.
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,13 @@ struct Draws {
   }
   /// Of one name, chain after chain.
   std::vector<double> column(std::size_t name) const;
+
+  struct Best {
+    std::vector<double> const* values = nullptr;  // all columns; null: there is no draw
+    double log_density = -std::numeric_limits<double>::infinity();
+  };
+  /// The first of highest log density.
+  Best best() const;
 };
 
 /// Up to `count` draws spread evenly over all chains, never random: parameters only, as columns [parameter_count x <= count].

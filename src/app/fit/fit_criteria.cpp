@@ -33,10 +33,9 @@ Deviance deviance_of(FinishedFit& fit) {
   std::vector<double> deviances, log_likelihood(1);
   for (Chain const& chain : draws.chains)
     for (double const each : chain.log_likelihood) deviances.push_back(-2 * each);
-  LaneArray declared(fit.target.dimension(), 1), theta(fit.target.dimension(), 1);
-  for (int p = 0; p < declared.rows(); ++p) declared(p, 0) = mean(draws.column(static_cast<std::size_t>(p)));
-  fit.target.unconstrain(declared, theta);
-  fit.target.log_likelihood(theta, log_likelihood, fit.extra);
+  std::vector<double> means;
+  for (int p = 0; p < fit.target.dimension(); ++p) means.push_back(mean(draws.column(static_cast<std::size_t>(p))));
+  fit.target.log_likelihood(coordinates_of(fit.target, means), log_likelihood, fit.extra);
   Deviance out{corrected_mean(deviances), corrected_variance(deviances), {}};
   if (std::isfinite(log_likelihood.front())) out.at_mean = -2 * log_likelihood.front();
   return out;

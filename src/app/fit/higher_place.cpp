@@ -29,15 +29,9 @@ std::vector<double> place_above_modes(FitResult const& result, Target const& tar
   if (modes.empty() || hierarchical) return {};
   if (!result.higher_place.empty()) return result.higher_place;
   if (objective_kind != ObjectiveKind::posterior || target.is_estimated()) return {};
-  double most = highest(modes) + higher;
-  std::vector<double> const* best = nullptr;
-  for (Chain const& chain : result.draws.chains)
-    for (std::size_t d = 0; d < chain.log_density.size(); ++d)
-      if (chain.log_density[d] > most) most = chain.log_density[d], best = &chain.values[d];
-  if (best == nullptr) return {};
-  LaneArray declared(target.dimension(), 1), theta(target.dimension(), 1);
-  for (int p = 0; p < target.dimension(); ++p) declared(p, 0) = (*best)[static_cast<std::size_t>(p)];
-  target.unconstrain(declared, theta);
+  Draws::Best const best = result.draws.best();
+  if (best.values == nullptr || !(best.log_density > highest(modes) + higher)) return {};
+  LaneArray const theta = coordinates_of(target, *best.values);
   std::vector<double> place;
   for (int p = 0; p < theta.rows(); ++p) place.push_back(theta(p, 0));
   return place;

@@ -65,11 +65,7 @@ Summary of_column(Draws const& draws, std::size_t column) {
 }
 
 std::vector<double> best_draw(Draws const& draws) {
-  std::vector<double> const* best = nullptr;
-  double highest = -std::numeric_limits<double>::infinity();
-  for (Chain const& chain : draws.chains)
-    for (std::size_t d = 0; d < chain.values.size(); ++d)
-      if (best == nullptr || chain.log_density[d] > highest) best = &chain.values[d], highest = chain.log_density[d];
+  std::vector<double> const* const best = draws.best().values;
   return best == nullptr ? std::vector<double>{} : *best;
 }
 
