@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "core/text/diagnostic.hpp"
@@ -105,16 +104,6 @@ std::optional<std::string> rewritten(Source const& source, Channel const& channe
 }
 
 }  // namespace
-
-bool mentions(Source const& source, std::string_view name) {
-  std::string_view const text = source.text();
-  auto const belongs = [&](std::size_t at) {
-    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
-  };
-  for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1))
-    if (!(at > 0 && belongs(at - 1)) && !belongs(at + name.size())) return true;
-  return false;
-}
 
 std::optional<std::string> noise_statement_with(Source const& source, Channel const& channel, std::string const& parameter) {
   Diagnostics ignored;

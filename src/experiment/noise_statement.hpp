@@ -2,15 +2,11 @@
 #pragma once
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "core/text/source.hpp"
 #include "model/model.hpp"
 
 namespace sysid {
-
-/// Whether the name stands anywhere in the text, comments included.
-bool mentions(Source const& source, std::string_view name);
 
 /// `observe displacement ~ normal(y + displacement_offset, sd = sigma)`: the statement of `channel` with `parameter` added to what
 /// the noise lies about. Nothing where it is not in the text itself, but in a module.

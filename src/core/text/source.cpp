@@ -2,6 +2,7 @@
 #include "core/text/source.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/text/utf8.hpp"
 
@@ -55,6 +56,16 @@ std::string_view Source::line(int number, int file) const {
   std::string_view line = rest.substr(0, rest.find('\n'));
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
+}
+
+bool mentions(Source const& source, std::string_view name) {
+  std::string_view const text = source.text();
+  auto const belongs = [&](std::size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+  };
+  for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1))
+    if (!(at > 0 && belongs(at - 1)) && !belongs(at + name.size())) return true;
+  return false;
 }
 
 }  // namespace sysid

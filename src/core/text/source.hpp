@@ -56,4 +56,7 @@ class Source {
   std::vector<File> files_;
 };
 
+/// Whether the name stands anywhere in the text itself, comments included.
+bool mentions(Source const& source, std::string_view name);
+
 }  // namespace sysid
