@@ -10,7 +10,7 @@
 namespace sysid {
 namespace {
 
-// OperatorBinding strength; an operand weaker than its place asks for stands in parentheses. A minus sign binds like a sum, so that
+// Binding strength; an operand weaker than its place asks for stands in parentheses. A minus sign binds like a sum, so that
 // no two operators stand side by side: (-a)*b, a + (-b).
 enum Strength { conditional, alternative, conjunctive, negated, comparison, sum, product, exponent, atom };
 

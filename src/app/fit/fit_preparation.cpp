@@ -85,7 +85,9 @@ bool FitPreparation::run(RunContext& context, Preparation& preparation) {
     checkpoint_.drop();
     throw UserError(no_result(task_, *found.failure));
   }
-  SolverSettings const from = coarsest_solver(record, found, preparation.solver);
+  SearchedWith const with = searched_with(record, found, preparation.solver);
+  SolverSettings const& from = with.coarsest;
+  preparation.solver = with.solver;
   if (!follow_members(found, context, preparation)) return false;
   if (!require_proper(found, preparation, context)) return false;
   preparation.modes = std::move(found.modes);

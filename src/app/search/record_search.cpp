@@ -17,6 +17,15 @@ SolverSettings refined(SolverSettings solver, int times) {
   return solver;
 }
 
+bool reads_time(Model const& model) {
+  std::vector<NodeId> all;
+  for (Channel const& channel : model.channels)
+    all.insert(all.end(), channel.noise.arguments.begin(), channel.noise.arguments.end());
+  std::vector<NodeId> const read = model.graph.reachable(all);
+  return std::ranges::any_of(
+      read, [&](NodeId id) { return model.graph[id].operation == Operation::leaf && model.graph[id].leaf_kind == LeafKind::time; });
+}
+
 }  // namespace
 
 std::optional<SearchSolver> choose_search_solver(SearchableRecord const& record, RunContext const& context) {
@@ -41,16 +50,16 @@ ShorterRecords shorter_records(SearchableRecord const& record, SolverSettings co
                 FirstRows part = first_rows(whole, share, least);
                 return FirstPart{record.make(std::move(part.experiments), refined(solver, finer)), part.share};
               },
-          .has_states = !record.model.states.empty()};
+          .ordered = !record.model.states.empty() || reads_time(record.model)};
 }
 
-SolverSettings coarsest_solver(SearchableRecord const& record, SearchResult const& found, SolverSettings& of_search) {
-  if (found.finer == 0) return record.what.solver;
-  SolverSettings const finer = refined(of_search, found.finer);
+SearchedWith searched_with(SearchableRecord const& record, SearchResult const& found, SolverSettings const& began_with) {
+  if (found.finer == 0) return {began_with, record.what.solver};
+  SolverSettings const finer = refined(began_with, found.finer);
   record.session.notices << fmt::format(
       "{}: the search uses {}, because with {} it found no parameters that fit the whole record as well\n", record.name,
-      accuracy(finer), accuracy(of_search));
-  return of_search = finer;
+      accuracy(finer), accuracy(began_with));
+  return {finer, finer};
 }
 
 }  // namespace sysid

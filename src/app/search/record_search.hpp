@@ -12,7 +12,7 @@
 
 namespace sysid {
 
-/// What outlives its search.
+/// References: all outlive the search, and the shorter records that are made of it.
 struct SearchableRecord {
   Session& session;
   std::string const& name;  // of the task or the candidate, in notices
@@ -33,8 +33,11 @@ std::optional<SearchSolver> choose_search_solver(SearchableRecord const& record,
 /// What a search of a long record begins with. solver: that of the search.
 ShorterRecords shorter_records(SearchableRecord const& record, SolverSettings const& solver);
 
-/// The coarsest solver to be tried on what a search has found, which may have followed the record with a finer one than it began
-/// with: then that is the solver of the search, and a notice says so.
-SolverSettings coarsest_solver(SearchableRecord const& record, SearchResult const& found, SolverSettings& of_search);
+/// Of what a search has found that began with `began_with`: the solver of its modes, and the coarsest one that is to be tried on
+/// them. Where the search has followed the record with a finer one than it began with, both are that one, and a notice says so.
+struct SearchedWith {
+  SolverSettings solver, coarsest;
+};
+SearchedWith searched_with(SearchableRecord const& record, SearchResult const& found, SolverSettings const& began_with);
 
 }  // namespace sysid

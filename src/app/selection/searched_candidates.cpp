@@ -16,9 +16,6 @@
 namespace sysid {
 namespace {
 
-/// By so many sds a stated solver may put a candidate's modes off.
-constexpr double tolerable_error = 0.5;
-
 class CandidateSearch {
  public:
   CandidateSearch(Session& session, Candidate const& candidate, std::uint64_t seed, Journal& journal, Findings& findings)
@@ -50,7 +47,8 @@ class CandidateSearch {
       found.excluded = search.failure->message;
       return found;
     }
-    SolverSettings const coarsest = coarsest_solver(record, search, found.solver);
+    SearchedWith const with = searched_with(record, search, found.solver);
+    found.solver = with.solver;
     found.modes = std::move(search.modes);
     if (followed)
       for (Finding& each : stiff_prior(*followed, allow_exact_steps(candidate_.data, candidate_.compiled->model))) {
@@ -58,10 +56,7 @@ class CandidateSearch {
         each.message = fmt::format("`{}`: {}", name(), each.message);
         findings_.push_back(std::move(each));
       }
-    if (record.refines())
-      refine(found, coarsest);
-    else if (candidate_.compiled->model.integrated() && !found.solver.row().exact)
-      ask(found);
+    if (record.refines()) refine(found, with.coarsest);
     if (session_.interrupted()) return std::nullopt;
     return found;
   }
@@ -83,40 +78,27 @@ class CandidateSearch {
             }};
   }
 
-  /// stated: the coarsest that is tried.
-  void refine(SearchedCandidate& found, SolverSettings const& stated) {
+  /// from: the coarsest that is tried.
+  void refine(SearchedCandidate& found, SolverSettings const& from) {
     // Modes may need fewer steps than far corners of the prior.
-    if (found.solver != stated)
-      found.modes = refit(*target(stated), ObjectiveKind::posterior, found.modes, context_.seed, ledger_, context_.interrupted,
+    if (found.solver != from)
+      found.modes = refit(*target(from), ObjectiveKind::posterior, found.modes, context_.seed, ledger_, context_.interrupted,
                           nullptr, context_.journal);
     RefinedSolver refined = find_converged_solver([this](SolverSettings const& solver) { return target(solver); },
-                                                  ObjectiveKind::posterior, stated, std::move(found.modes), context_);
+                                                  ObjectiveKind::posterior, from, std::move(found.modes), context_);
     found.solver = refined.solver;
     found.modes = std::move(refined.modes);
     rank(ObjectiveKind::posterior, found.modes);
-    if (found.solver != stated)
+    if (found.solver != from)
       session_.notices << fmt::format("the likelihood of `{}` is computed with {}, because {} would be too coarse\n", name(),
-                                      found.solver.text(), stated.text());
-    if (found.modes.empty()) found.excluded = fmt::format("no mode is left with a solver finer than {}", stated.text());
+                                      found.solver.text(), from.text());
+    if (found.modes.empty()) found.excluded = fmt::format("no mode is left with a solver finer than {}", from.text());
     if (!refined.converged)
       findings_.push_back({FindingCode::step_not_settled,
                            Severity::warning,
                            {name()},
                            fmt::format("the likelihood of `{}` has not converged even with {}", name(), found.solver.text()),
                            settling_advice(found.solver)});
-  }
-
-  void ask(SearchedCandidate const& found) {
-    double const move = move_to_finer(*target(found.solver.finer()), ObjectiveKind::posterior, {found.modes.front()}, context_.seed,
-                                      ledger_, context_.interrupted, context_.journal);
-    if (!(move > tolerable_error)) return;
-    findings_.push_back({FindingCode::integration_step,
-                         found.solver.as_model ? Severity::note : Severity::warning,
-                         {name()},
-                         fmt::format("the error of {} moves parameters of `{}` by {}", found.solver.text(), name(),
-                                     move > 5 ? "more than 5 sds" : fmt::format("{:.2g} sd", move)),
-                         found.solver.as_model ? "nothing, if the solver is meant to be part of the model"
-                                               : fmt::format("select again with `{}`", found.solver.finer().option())});
   }
 
   Session& session_;

@@ -270,7 +270,8 @@ class Select {
     for (auto const& [name, value] : selection.result.settings.all()) report.settings.emplace_back(name, value);
     report.settings.emplace_back("distance", selection.distance);
     report.settings.emplace_back("start_state", start_text(first.fit.start));
-    if (first.compiled->model.integrated()) add_solver(first.fit.solver, report.settings);
+    Candidate const& leading = candidates_[static_cast<std::size_t>(selection.leader())];
+    if (leading.compiled->model.integrated()) add_solver(leading.fit.solver, report.settings);
     report.resolved_text = resolved_select(session_, task_, what_, seed_);
   }
 

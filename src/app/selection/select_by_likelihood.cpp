@@ -158,8 +158,8 @@ class SelectByLikelihood {
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
       SelectedModel const& model = selection.result.models[k];
       if (model.probability < weight_of_interest || model.weight.empty()) continue;
-      for (Finding& each :
-           check_solver(session_, candidates_[k], resampled_draws(model, seed_), searched_[k].modes, searched_[k].solver, seed_))
+      for (Finding& each : check_solver(session_, candidates_[k], resampled_draws(model, seed_), searched_[k].modes,
+                                        searched_[k].solver, seed_, k == lead))
         report.findings.push_back(std::move(each));
     }
     if (!selection.result.models[lead].weight.empty()) add_predictions(lead, selection, report);

@@ -22,6 +22,9 @@ namespace {
 /// A finer solver may move the median distance by this part of the threshold.
 constexpr double tolerable_shift = 0.05;
 
+/// By so many sds a solver may put parameters of a candidate off.
+constexpr double tolerable_move_of_candidate = 0.5;
+
 void name_candidate(Candidate const& candidate, Findings& findings) {
   for (Finding& finding : findings) {
     finding.names.insert(finding.names.begin(), candidate.what->name);
@@ -143,14 +146,24 @@ FitCheck check_candidate(Session& session, Candidate const& candidate, Candidate
 }
 
 Findings check_solver(Session& session, Candidate const& candidate, Draws const& draws, std::vector<Mode> const& modes,
-                      SolverSettings const& solver, std::uint64_t seed) {
+                      SolverSettings const& solver, std::uint64_t seed, bool leads) {
   if (!candidate.compiled->model.integrated() || solver.row().exact || draws.total() < 2) return {};
   Ledger untold;
   auto const target = [&](SolverSettings const& by) { return likelihood_target(session, candidate, by, session.abandonable()); };
   SolverCheck const check = check_draws(*target(solver), *target(solver.finer()), draws, modes, seed, untold);
-  Findings found = tolerance_findings(check, solver, candidate.fit.refine_solver);
-  name_candidate(candidate, found);
-  return found;
+  bool const fails = check.outcome == SolverCheck::Outcome::fails;
+  double const move = fails ? std::numeric_limits<double>::infinity() : check.largest();
+  if (check.holds() || !(move > tolerable_move_of_candidate)) return {};
+  return {{FindingCode::integration_step,
+           solver.as_model ? Severity::note
+           : leads         ? Severity::error
+                           : Severity::warning,
+           {candidate.what->name},
+           fails ? fmt::format("with {}, draws of `{}` cannot be simulated", solver.finer_words(), candidate.what->name)
+                 : fmt::format("the error of {} moves parameters of `{}` by {}", solver.text(), candidate.what->name,
+                               move > 5 ? "more than 5 sds" : fmt::format("{:.2g} sd", move)),
+           solver.as_model ? "nothing, if the solver is meant to be part of the model"
+                           : fmt::format("select again with `{}`", solver.finer().option())}};
 }
 
 Findings check_distances(SelectionTarget const& finer, int model, SelectionResult const& result, SolverSettings const& solver) {

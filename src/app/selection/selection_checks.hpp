@@ -28,10 +28,11 @@ Findings check_threshold(SelectionReport const& selection);
 /// the model. Nothing where the likelihood has no mode there.
 FitCheck check_candidate(Session& session, Candidate const& candidate, CandidatePosterior const& posterior);
 
-/// Draws of a candidate's posterior once more with the next finer solver than `solver`, by which they and `modes` are: do they
-/// move? Findings name the candidate. Nothing where no solver is refined, or there are no draws.
+/// Draws of a candidate's posterior once more with the next finer solver than `solver`, by which they and `modes` are: does any
+/// parameter move by more than half an sd? leads: it is the most probable one, of which this is an error. Nothing where the solver
+/// is exact or nothing is solved, and where there are no draws.
 Findings check_solver(Session& session, Candidate const& candidate, Draws const& draws, std::vector<Mode> const& modes,
-                      SolverSettings const& solver, std::uint64_t seed);
+                      SolverSettings const& solver, std::uint64_t seed, bool leads);
 
 /// Particles of a model once more with the next finer solver: their distances must not be those of the integrator. An error where
 /// they change by as much as the threshold.

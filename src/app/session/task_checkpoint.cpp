@@ -20,7 +20,7 @@ namespace {
 using json = nlohmann::json;
 
 // Of the file itself. A file of an older form is refused as damaged: nothing of it can be taken up.
-constexpr int form = 6;
+constexpr int form = 7;
 
 UserError refused(char const* code, std::filesystem::path const& path, char const* what, char const* help) {
   return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});

@@ -130,7 +130,7 @@ std::optional<Unit> ModelChecker::location_unit(ast::Call const& noise, Scope& q
   if (location == nullptr) return std::nullopt;
   auto const value = quiet.expression(*location);
   if (!value || value->kind != Typed::Kind::known) return std::nullopt;
-  return with_own_unit(*value).unit;
+  return named_or_coherent(with_own_unit(*value).unit);
 }
 
 void ModelChecker::derived() {
@@ -145,7 +145,7 @@ void ModelChecker::derived() {
     }
     Derived quantity;
     quantity.name = definition.name.name.text;
-    quantity.unit = value->kind == Typed::Kind::known ? std::optional(value->unit) : std::nullopt;
+    quantity.unit = value->kind == Typed::Kind::known ? std::optional(named_or_coherent(value->unit)) : std::nullopt;
     quantity.span = definition.name.name.span;
     quantity.value = solved(value->node);
     quantity.per_sample = !moving.empty();

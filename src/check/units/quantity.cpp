@@ -55,7 +55,7 @@ Typed unless_wrong(Typed result, Typed const& a, Typed const& b) {
 
 NodeId adapt(Graph& graph, Typed const& typed, std::optional<Unit> const& unit) {
   if (!unit) return typed.node;
-  if (typed.kind == Kind::literal) return graph.multiply(graph.constant(unit->scale), typed.node);
+  if (typed.kind == Kind::literal) return graph.multiply(graph.constant(named_or_coherent(*unit).scale), typed.node);
   if (typed.kind == Kind::known && typed.unit.offset != unit->offset && typed.unit.dimension == unit->dimension)
     return graph.add(typed.node, graph.constant(typed.unit.offset - unit->offset));
   return typed.node;
@@ -90,8 +90,9 @@ int powers_of_pi(Graph const& graph, Typed const& factor) {
   if (!value || *value == 0) return 0;
   // As people write it who do not know `pi`: 3.1416, 6.28, 39.48.
   constexpr double two_pi = 2 * std::numbers::pi, rounded = 1e-3;
-  for (auto const& [number, power] : {std::pair{two_pi / 2, 1}, {two_pi, 1}, {two_pi * two_pi, 2}, {1 / two_pi, -1}})
-    if (std::fabs(*value / number - 1) < rounded) return power;
+  for (auto const& [number, power] :
+       {std::pair{two_pi / 2, 1}, {two_pi, 1}, {2 * two_pi, 1}, {two_pi * two_pi, 2}, {1 / two_pi, -1}})
+    if (std::fabs(std::fabs(*value) / number - 1) < rounded) return power;
   double rest = *value;
   for (int const power : {1, 2}) {
     rest /= std::numbers::pi;
@@ -136,9 +137,15 @@ int turns_of(Graph const& graph, Typed const& factor) {
 
 // The root of 1/s^2, as in sqrt(k/m), is an angular frequency.
 Unit root(Unit const& unit) {
-  Unit result = named_or_coherent(power(unit, {1, 2}));
+  Unit result = power(unit, {1, 2});
   if (is_rate(result) && result.hertz.numerator == 0 && result.radian.numerator == 0) result.radian = {1, 1};
   return result;
+}
+
+// A ratio of like quantities is a pure number, whatever the scales they were declared in.
+Unit pure(Unit unit) {
+  if (unit.dimensionless() && unit.text.empty()) unit.scale = 1;
+  return unit;
 }
 
 // The kind of a result whose operands share one unit.
@@ -156,7 +163,7 @@ Typed shared(NodeId node, std::span<Typed const> operands, std::optional<Unit> c
 }  // namespace
 
 Typed with_own_unit(Typed typed) {
-  if (typed.kind == Kind::known) typed.unit = named_or_coherent(turned(std::move(typed.unit), typed.turns));
+  if (typed.kind == Kind::known) typed.unit = turned(std::move(typed.unit), typed.turns);
   typed.turns = 0;
   return typed;
 }
@@ -184,9 +191,7 @@ Typed multiply(Graph& graph, Typed const& a, Typed const& b) {
     result.kind = Kind::literal;
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
     result.kind = Kind::known;
-    result.unit = a.kind == Kind::literal   ? b.unit
-                  : b.kind == Kind::literal ? a.unit
-                                            : named_or_coherent(sysid::multiply(a.unit, b.unit));
+    result.unit = a.kind == Kind::literal ? b.unit : b.kind == Kind::literal ? a.unit : pure(sysid::multiply(a.unit, b.unit));
     result.turns = turns_of(graph, a) + turns_of(graph, b);
   }
   return unless_wrong(std::move(result), a, b);
@@ -199,7 +204,7 @@ Typed divide(Graph& graph, Typed const& a, Typed const& b) {
   } else if (a.kind != Kind::unknown && b.kind != Kind::unknown) {
     result.kind = Kind::known;
     Unit const one;
-    result.unit = named_or_coherent(sysid::divide(a.kind == Kind::literal ? one : a.unit, b.kind == Kind::literal ? one : b.unit));
+    result.unit = pure(sysid::divide(a.kind == Kind::literal ? one : a.unit, b.kind == Kind::literal ? one : b.unit));
     result.turns = turns_of(graph, a) - turns_of(graph, b);
   }
   return unless_wrong(std::move(result), a, b);
@@ -218,7 +223,7 @@ Typed power(Graph& graph, Typed const& a, Typed const& b) {
       result.kind = Kind::known;
     } else if (rational) {
       result.kind = Kind::known;
-      result.unit = *rational == Rational{1, 2} ? root(a.unit) : named_or_coherent(sysid::power(a.unit, *rational));
+      result.unit = *rational == Rational{1, 2} ? root(a.unit) : pure(sysid::power(a.unit, *rational));
       result.turns = a.turns * rational->numerator / rational->denominator;
     }
   }

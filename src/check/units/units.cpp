@@ -119,7 +119,8 @@ Unit difference(Unit unit) {
   if (unit.offset == 0) return unit;
   unit.offset = 0;
   unit.text = "delta_" + unit.text;
-  if (!unit_atom(unit.text)) unit.text.clear();
+  if (!unit_atom(unit.text)) unit.text = unit.scale == 1 ? "K" : "delta_degF";
+  if (auto const named = unit_atom(unit.text); !named || named->scale != unit.scale) unit.text.clear();
   return unit;
 }
 

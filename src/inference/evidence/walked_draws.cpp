@@ -111,6 +111,24 @@ LaneArray resampled(LaneArray const& draws, std::vector<double> const& weights, 
   return out;
 }
 
+/// A walker that has strayed into a place of next to no mass may stay there, and be one of them all: the mixture that was fitted to
+/// it has far too many draws there, as their weights show. It goes to a weighted draw. Where the mixture has too few, walkers stay.
+void gather(Objective const& objective, WalkedDraws const& draws, std::vector<double> const& weights,
+            std::vector<Mixture> const& mixtures, LaneArray& walkers, Ledger& ledger) {
+  constexpr double far_too_many = 100;
+  double sum = 0;
+  for (double const each : weights) sum += each;
+  double const mean = *std::max_element(draws.log_weights.begin(), draws.log_weights.end()) +
+                      elementary::log(sum / static_cast<double>(weights.size()));
+  std::vector<double> const density = log_density_in_blocks(objective, walkers, ledger), mixed = log_mixed(mixtures, walkers);
+  LaneArray const home = resampled(draws.theta, weights, walkers.width());
+  for (int w = 0; w < walkers.width(); ++w) {
+    auto const at = static_cast<std::size_t>(w);
+    if (density[at] - mixed[at] > mean - elementary::log(far_too_many)) continue;
+    for (int i = 0; i < walkers.rows(); ++i) walkers(i, w) = home(i, w);
+  }
+}
+
 LaneArray last_of(LaneArray const& states, int count) {
   LaneArray out(states.rows(), count);
   ConstLanes const last = states.view().columns(states.width() - count, count);
@@ -150,9 +168,8 @@ WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uin
     for (std::size_t d = 0; d < mixed.size(); ++d)
       found.log_weights[d] = std::isfinite(mixed[d]) ? found.log_weights[d] - mixed[d] : -infinity;
     found.walked = std::move(states);
-    // A walker that has strayed into a place of next to no mass may stay there: weights know how little it is.
     std::vector<double> const weights = judge(objective.target, found, sds);
-    if (!weights.empty()) walkers = resampled(found.theta, weights, walkers.width());
+    if (!weights.empty() && !found.confirmed && !stopped()) gather(objective, found, weights, mixtures, walkers, ledger);
   }
   return found;
 }

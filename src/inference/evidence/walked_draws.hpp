@@ -23,8 +23,8 @@ struct WalkedDraws {
 
 /// Rounds, until the weights are confirmed or `most` densities are used up: `walkers` [P x W] walk, a mixture of normal and
 /// Student's t distributions is fitted to where they have been, and draws of it are weighted by the density over the mixture of all
-/// rounds. Weights of draws that have not reached a tail look healthy: only walkers, which go wherever the density is, find it. They
-/// begin each round where the one before has left them or, where its weights are healthy, at the weighted draws.
+/// rounds. Weights of draws that have not reached a tail look healthy: only walkers, which go wherever the density is, find it. One
+/// that has strayed to where healthy weights are a hundredth of their mean begins the next round at a weighted draw.
 ///
 /// Empty where not even one round was possible.
 WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uint64_t most, StreamKey key, Ledger& ledger,

@@ -23,7 +23,7 @@ struct ShorterRecords {
   int finest = 0;  // how often the solver may be refined
   /// null: the record is not to be cut. finer: how often the solver is refined.
   std::function<FirstPart(double share, int finer)> make = {};
-  bool has_states = true;  // what is simulated at a row depends on the rows before
+  bool ordered = true;  // what is simulated at a row depends on time, or on the rows before
 };
 
 /// Whether a record is so long, and its parameters so many, that a search begins with a part of it: the Jacobian of its residuals

@@ -48,7 +48,7 @@ bool leaves_motion(Target const& target, Mode const& mode) {
 std::optional<GrownModes> second_look(Target const& target, ObjectiveKind objective_kind, ShorterRecords const& records,
                                       RunContext& context, std::vector<Mode> const& modes) {
   auto const stop = [&] { return context.stop_requested(); };
-  if (modes.empty() || target.is_estimated() || !records.has_states || !can_grow(target, records)) return {};
+  if (modes.empty() || target.is_estimated() || !records.ordered || !can_grow(target, records)) return {};
   if (!kept_answer(context.journal, stop, [&] { return leaves_motion(target, modes.front()); }) || stop()) return {};
   GrownModes grown = search_growing(target, objective_kind, records, context, finer_at_second_look);
   if (stop() || grown.modes.empty()) return {};

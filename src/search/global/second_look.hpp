@@ -18,7 +18,7 @@ bool leaves_motion(Target const& target, Mode const& mode);
 /// The modes of a search on growing records with a solver that is refined twice, where `modes` of a search of the whole record
 /// leave motion in it and the best of the new ones is 3 nats higher than the best of these with the finer solver. They are those
 /// of `target` where the finer solver leads from these to the same place, else of the finer one. Nothing where no other mode is
-/// found, the record is not to be cut, its rows do not depend on each other, or the context asks to stop.
+/// found, the record is not to be cut or has no order in time, or the context asks to stop.
 std::optional<GrownModes> second_look(Target const& target, ObjectiveKind objective_kind, ShorterRecords const& records,
                                       RunContext& context, std::vector<Mode> const& modes);
 

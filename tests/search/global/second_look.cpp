@@ -33,9 +33,9 @@ Mode mode_near(MadeRecord const& record, std::vector<double> const& declared, st
   return refit(RowsSeen(record, record.rows), ObjectiveKind::posterior, {from}, seed, bench.ledger).front();
 }
 
-std::optional<GrownModes> look(MadeRecord const& record, Mode const& known, Bench& bench, bool has_states = true) {
+std::optional<GrownModes> look(MadeRecord const& record, Mode const& known, Bench& bench, bool ordered = true) {
   ShorterRecords parts = parts_of(record);
-  parts.has_states = has_states;
+  parts.ordered = ordered;
   return second_look(RowsSeen(record, record.rows), ObjectiveKind::posterior, parts, bench.context, {known});
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("where the best mode is known, no other one is reported") {
   CHECK(bench.ledger.solves() > 0);
 }
 
-TEST_CASE("rows that do not depend on each other, or are few, have no period to be missed") {
+TEST_CASE("rows without an order, or few of them, have no period to be missed") {
   MadeRecord record = make_record(short_record(), 4);
   Bench bench(4);
   CHECK_FALSE(look(record, mode_near(record, wrong_period, 4), bench, false));
