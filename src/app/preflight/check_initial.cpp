@@ -9,8 +9,8 @@
 #include "app/preflight/preflight.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "core/text/source.hpp"
 #include "core/text/words.hpp"
-#include "experiment/noise_statement.hpp"
 
 namespace sysid {
 namespace {
