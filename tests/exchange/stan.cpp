@@ -110,8 +110,8 @@ TEST_CASE("Stan gives exported programs the log density that we do") {
       double const ours = log_density(*target, point.at("values")), stan = point.at("log_density").get<double>();
       CAPTURE(ours);
       CAPTURE(stan);
-      // Sums of thousands of terms in two orders, through thousands of steps; of exact ones two ways to the exponential of a matrix,
-      // whose last digits add up in the phase.
+      // Sums of thousands of terms in two orders, through thousands of steps; of exact ones two ways to the exponential of a
+      // matrix, whose last digits add up in the phase.
       double const rounding = name.ends_with(", exact") ? 1e-11 : 1e-12;
       CHECK(std::fabs(ours - stan) <= rounding * std::fabs(stan));
     }
