@@ -72,13 +72,26 @@ class Failure {
     return {wanted_,
             at_end_ || found_ == tokens_.size() ? nullptr : &found(),
             {tokens_.data() + first_, last - first_},
-            found_ - first_};
+            found_ - first_,
+            wanted_ == wanted::operator_between ? declared_names() : std::vector<std::string_view>()};
+  }
+
+  /// Words behind a keyword that declares, and those in the list that it begins; of all models of the file.
+  std::vector<std::string_view> declared_names() const {
+    std::vector<std::string_view> names;
+    for (std::size_t i = 0; i + 1 < tokens_.size(); ++i) {
+      bool const begins = i == 0 || tokens_[i - 1].statement != tokens_[i].statement;
+      if (!begins || !words::contains(words::model_statements, tokens_[i].text)) continue;
+      for (std::size_t at = i + 1; at < tokens_.size() && tokens_[at].statement == tokens_[i].statement; ++at)
+        if (is_word(tokens_[at]) && (at == i + 1 || tokens_[at - 1].is(","))) names.push_back(tokens_[at].text);
+    }
+    return names;
   }
 
   /// At a word that begins an item: the name behind it is what is missing.
   Gap name_missing() const {
     Gap gap = this->gap();
-    return {wanted::name, next(), gap.statement, gap.at + 1};
+    return {wanted::name, next(), gap.statement, gap.at + 1, {}};
   }
 
   Span span() const {
@@ -191,6 +204,7 @@ class Failure {
     Diagnostic diagnostic = errors::unknown_statement(word, "a model", words::model_statements);
     bool const typed = words::translated(words::foreign_model_statements(), word.text) == "let";
     if (typed && has("~")) diagnostic.help = "did you mean `parameter`?";
+    if (typed && !has("~") && !has("=")) diagnostic.help = "did you mean `state`, or `parameter` for what is to be estimated?";
     return diagnostic;
   }
 
@@ -300,7 +314,13 @@ class Failure {
       if (!settings.empty()) missing.help = settings;
       return missing;
     }
-    return errors::no_operator_between(word, found(), instead_of_product(gap()));
+    Gap const here = gap();
+    std::string const instead = instead_of_product(here);
+    Diagnostic missing = errors::no_operator_between(word, found(), instead);
+    // A factor that the file does not declare would be refused next.
+    bool const no_factor = word.kind == TokenKind::number && is_word(found()) && !here.declares(found().text);
+    if (no_factor && !instead.empty()) missing.help = instead;
+    return missing;
   }
 
   /// `mh(samples = 100) seed = 1`, `normal(y sd = 1)`: named things in a list, which begins in brackets or behind `with`.

@@ -192,6 +192,24 @@ std::string repaired_statement(Gap const& gap) {
   return {};
 }
 
+/// `[m/s^2]` of `9.81 m/s^2/L` in an equation: up to the last word that the file does not declare, or that is a second below a
+/// fraction line, though a noise is often named so. Empty where all words are declared.
+std::string unit_of_no_names(Gap const& gap) {
+  std::size_t const most = end_of_unit(gap.statement, gap.at);
+  std::size_t end = gap.at;
+  bool all_declared = true;
+  for (std::size_t i = gap.at; i < most; ++i) {
+    if (gap.statement[i].kind != TokenKind::word) continue;
+    bool const declared = gap.declares(gap.statement[i].text);
+    bool const second = gap.statement[i].is("s") && i > gap.at && gap.statement[i - 1].is("/");
+    all_declared = all_declared && declared;
+    if (declared && !second) continue;
+    end = i + 1;
+    if (end + 1 < most && gap.statement[end].is("^")) end += 2;
+  }
+  return all_declared ? std::string() : fmt::format("[{}]", gap.text(gap.at, end));
+}
+
 }  // namespace
 
 std::string_view written(Token const& first, Token const& last) {
@@ -262,8 +280,8 @@ std::string instead_of_product(Gap const& gap) {
   // In an equation a number stands before a name more often than before a unit.
   bool const declaration = words::contains(words::model_statements, gap.statement[0].text) ||
                            words::contains(words::data_statements, gap.statement[0].text) || begins_with_verb(gap);
-  if (left->kind == TokenKind::number && declaration)
-    if (std::string const unit = unit_without_brackets(gap); !unit.empty())
+  if (left->kind == TokenKind::number)
+    if (std::string const unit = declaration ? unit_without_brackets(gap) : unit_of_no_names(gap); !unit.empty())
       return fmt::format("a unit is written in brackets: `{} {}`", left->text, unit);
   if (left->kind == TokenKind::word && depth > 0 && begins_argument && gap.found->kind != TokenKind::symbol)
     return fmt::format("a named argument is written `{} = {}`", left->text, gap.found->text);

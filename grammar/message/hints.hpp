@@ -1,7 +1,9 @@
 // What to do about a construct of another language or of paper, told from the tokens around the place where the rules gave up.
 #pragma once
+#include <algorithm>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "grammar/message/scan.hpp"
 
@@ -14,12 +16,14 @@ struct Gap {
   Token const* found = nullptr;
   std::span<Token const> statement;
   std::size_t at = 0;
+  std::vector<std::string_view> names = {};  // that the file declares; given where an operator is missing
 
   Token const* before(std::size_t steps = 1) const {
     return at >= steps && at - steps < statement.size() ? &statement[at - steps] : nullptr;
   }
   bool begins_with(std::string_view word) const { return !statement.empty() && statement[0].is(word); }
   bool found_is(std::string_view text) const { return found != nullptr && found->is(text); }
+  bool declares(std::string_view name) const { return std::find(names.begin(), names.end(), name) != names.end(); }
   bool found_word() const { return found != nullptr && found->kind == TokenKind::word; }
   Token const* next(std::size_t steps = 1) const {
     return found != nullptr && at + steps < statement.size() ? &statement[at + steps] : nullptr;
@@ -28,7 +32,7 @@ struct Gap {
   std::size_t find(std::string_view symbol, std::size_t from = 0) const;
   /// What the user wrote from one token up to another, exclusively; empty where there is nothing.
   std::string_view text(std::size_t from, std::size_t end) const;
-  std::string_view rest() const { return text(at, statement.size()); }
+  std::string_view rest() const { return text(at, statement.size() - (!statement.empty() && statement.back().is(";") ? 1 : 0)); }
   /// The bracket that closes the one at `opener`, or the size of the statement.
   std::size_t closing(std::size_t opener) const;
 };

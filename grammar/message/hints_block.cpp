@@ -32,6 +32,10 @@ std::string in_head(Gap const& gap) {
                          gap.text(1, close + 1));
     return fmt::format("name the column before its unit: `{} t {}`", gap.statement[0].text, gap.text(1, close + 1));
   }
+  constexpr std::array<std::string_view, 6> starts{"start", "from", "begin", "after", "since", "skip"};
+  if (gap.wanted == wanted::end_of_statement && gap.at > 1 && words::contains(starts, gap.found->text))
+    return fmt::format("remove `{}`; to use a part of the record, name its rows, `split part = rows 101..500`, and use `DATA.part`",
+                       gap.rest());
   if (gap.begins_with("time") && gap.at == 1 && is_number(gap.found))
     return fmt::format("name the column; put it in quotes if it is not a single word: `time \"{}\"`", gap.found->text);
   return {};
@@ -100,19 +104,21 @@ std::string in_column(Gap const& gap) {
   }
   if (equals >= gap.at) return {};
   constexpr std::array<std::string_view, 4> operators{"*", "/", "+", "-"};
-  bool const computed =
-      gap.wanted == wanted::column ? !gap.found->is("[") : gap.at == equals + 2 && words::contains(operators, gap.found->text);
+  bool const operates = words::contains(operators, gap.found->text), behind_unit = operates && gap.before()->is("]");
+  bool const computed = gap.wanted == wanted::column ? !gap.found->is("[") : operates && (gap.at == equals + 2 || behind_unit);
   if (computed) {
-    std::string_view column;
+    std::string_view column = behind_unit ? gap.text(equals + 1, gap.at) : std::string_view();
     for (std::size_t i = equals + 1; i < gap.statement.size() && column.empty(); ++i)
       if (gap.statement[i].kind == TokenKind::word && !gap.statement[i].is("hold")) column = gap.statement[i].text;
-    return fmt::format(
-        "a column is used as it is: write `{} {} = {}` with the unit of its numbers, and any factor or offset in "
-        "the model",
-        word, name, column.empty() ? "COLUMN" : column);
+    return fmt::format("a column is used as it is: write `{} {} = {}`{}, and any factor or offset in the model", word, name,
+                       column.empty() ? "COLUMN" : column, behind_unit ? "" : " with the unit of its numbers");
   }
   if (gap.wanted != wanted::end_of_statement && !(input && gap.wanted == wanted::name)) return {};
   bool const again = gap.found->is(",") && gap.next(2) != nullptr && is_word(gap.next()) && gap.next(2)->is("=");
+  if (again && is_number(gap.next(3)))
+    return input ? fmt::format("the error of an input is a distribution around its samples: `{} error normal(sd = {})`",
+                               gap.text(0, gap.at), gap.text(gap.at + 3, gap.statement.size()))
+                 : fmt::format("the noise is written in the model, after `observe {} ~`: remove `{}`", name, gap.rest());
   if (again) return fmt::format("begin a new statement: `{} {}`", word, gap.text(gap.at + 1, gap.statement.size()));
   if (gap.found->is("in") && is_word(gap.next()) && end_of_unit(gap.statement, gap.at + 1) > gap.at + 1)
     return fmt::format("a unit is written in brackets: `{} [{}]`", gap.before()->text,
@@ -227,6 +233,17 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
   return {};
 }
 
+/// `with map with mh`, `with map with seed = 1`.
+std::string second_with(Gap const& gap, std::size_t first) {
+  Token const* const sign = gap.next(2);
+  if (sign != nullptr && sign->is("="))
+    return fmt::format("`with` stands once, and options are separated by commas: `{}, {}`", gap.text(first, gap.at),
+                       gap.text(gap.at + 1, gap.statement.size()));
+  std::size_t const behind = sign != nullptr && sign->is("(") ? gap.closing(gap.at + 2) + 1 : gap.at + 2;
+  return fmt::format("a task has one back end: write `{}{}` or `with {}`", gap.text(first, gap.at),
+                     gap.text(behind, gap.statement.size()), gap.text(gap.at + 1, gap.statement.size()));
+}
+
 /// Among the options of a task.
 std::string in_options(Gap const& gap) {
   std::size_t const with = gap.find("with");
@@ -246,6 +263,7 @@ std::string in_options(Gap const& gap) {
     return fmt::format("settings of a back end stand in its parentheses, separated by commas: `{}({})`", gap.before()->text,
                        gap.text(gap.at, last));
   }
+  if (found.is("with") && is_word(gap.next())) return second_with(gap, with);
   if (side_by_side && is_word(gap.before()) && is_word(gap.found) && gap.before(2) != nullptr &&
       (gap.before(2)->is(",") || gap.before(2)->is("with")))
     return fmt::format("an option is written `{} = {}`", gap.before()->text, gap.rest());
