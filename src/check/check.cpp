@@ -10,6 +10,7 @@
 #include "check/data/data.hpp"
 #include "check/dictionary/dictionary.hpp"
 #include "check/message/errors.hpp"
+#include "check/model/letter_units.hpp"
 #include "check/model/model.hpp"
 #include "check/model/unit_blame.hpp"
 #include "check/model/unused.hpp"
@@ -109,7 +110,10 @@ class FileChecker {
                                                           [&](std::string const& each) { return unsound_.contains(each); });
     std::size_t const before = diagnostics_.all().size();
     auto checked = sound ? check_model(model, functions_, diagnostics_) : std::nullopt;
-    if (sound && !checked) blame_declaration(model, functions_, before, diagnostics_);
+    if (sound && !checked) {
+      blame_letters(model, functions_, before, diagnostics_);
+      blame_declaration(model, functions_, before, diagnostics_);
+    }
     if (!checked) unsound_.insert(name);
     if (checked && lineage_.only_checked.contains(name)) return;
     names_.models[name] = keep(std::move(checked), file_.models);

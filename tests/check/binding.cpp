@@ -88,6 +88,14 @@ TEST_CASE("an input that no model has is refused where it stands, and the input 
   CHECK(beside.find("`v` is not declared") != std::string::npos);
 }
 
+TEST_CASE("an input of a model without inputs is declared there, in the unit of its column") {
+  std::string const still = "model n {\nparameter k [N] ~ normal(1, sd = 1)\nobserve displacement [N] ~ normal(k, sd = 1)\n}\n";
+  std::string const shown =
+      messages(still + block("time t\ninput x = x [N] hold linear\nmeasure displacement = y") + "fit n to d with mh\n");
+  CHECK(errors_in(shown) == 1);
+  CHECK(shown.find("help: declare it in the model, `input x [N]`, and use it in an equation") != std::string::npos);
+}
+
 TEST_CASE("what nothing reads is warned of, once the file has no errors") {
   auto const unread = [](std::string const& statements) {
     std::string const shown = messages(

@@ -267,3 +267,18 @@ TEST_CASE("products, quotients, powers and roots of quantities count in SI, what
   CHECK(model.channels[1].unit_text() == "mm");
   CHECK(at(model, model.channels[1].noise.arguments[0], {{"x", 2e-3}}) == near(7e-3));
 }
+
+TEST_CASE("a temperature without an initial value is given a parameter, other quantities 0") {
+  auto const said = [](std::string const& unit, std::string const& more = "") {
+    return messages("model m {\nstate T [" + unit + "]\nparameter k [1/s] ~ log_uniform(1, 2)\nparameter Ta [" + unit +
+                    "] ~ normal(20, sd = 5)\n" + more + "T' = -k*(T - Ta)\nobserve d ~ normal(T, sd = 1)\n}\n");
+  };
+  CHECK(said("degC").find("write `initial T = T_start` and `parameter T_start [degC] ~ normal(20, sd = 20)`\n") !=
+        std::string::npos);
+  CHECK(said("degF").find("`parameter T_start [degF] ~ normal(68, sd = 36)`\n") != std::string::npos);
+  CHECK(said("K").find("`parameter T_start [K] ~ normal(300, sd = 30)`; or, of a difference of temperatures, `initial T = 0`") !=
+        std::string::npos);
+  CHECK(said("degC", "parameter T_start [s] ~ log_uniform(1, 2)\nderive u [s] = T_start\n").find("`initial T = T_start2`") !=
+        std::string::npos);
+  CHECK(said("m").find("write `initial T = 0`\n") != std::string::npos);
+}

@@ -138,3 +138,37 @@ TEST_CASE("a decimal comma among arguments is named, a list of whole numbers is 
   CHECK(said("uniform(0,5)") == "");
   CHECK(said("uniform(0, 5, 200)").find("decimal point") == std::string::npos);
 }
+
+TEST_CASE("degrees of freedom before the location are told by what cannot count them") {
+  std::string const mean = "parameter mu [m] ~ normal(0, sd = 1)\n", count = "parameter nu ~ log_uniform(1, 100)\n";
+  for (auto const& [prior, whole] : {std::pair("a ~ student_t(3, 0, scale = 10)", "`student_t(0, 3, scale = 10)`"),
+                                     {"a ~ student_t(3, -1, 10)", "`student_t(-1, 3, scale = 10)`"},
+                                     {"a [m] ~ student_t(3, mu, sd = 2)", "`student_t(mu, 3, sd = 2)`"}}) {
+    CAPTURE(prior);
+    std::string const said = refused_parameters(mean + "parameter " + prior);
+    CHECK(errors_in(said) == 1);
+    CHECK(said.find("error[E2106]: the location of `student_t` comes first") != std::string::npos);
+    CHECK(said.find(std::string("help: write ") + whole) != std::string::npos);
+  }
+  for (char const* prior : {"student_t(0, 3, scale = 10)", "student_t(4, 20, scale = 5)", "student_t(0, nu, scale = 1)",
+                            "student_t(2, nu, scale = 1)", "student_t(nu, 4, scale = 1)"})
+    CHECK(errors_in(refused_parameters(count + "parameter a ~ " + prior)) == 0);
+}
+
+TEST_CASE("a location of a distribution that begins at 0 is too many, and what is left is written out") {
+  std::string const said = refused_parameters("parameter a ~ half_cauchy(0, 5, upper = 9)");
+  CHECK(errors_in(said) == 1);
+  CHECK(said.find("error[E2107]: `half_cauchy` begins at 0 and takes no location") != std::string::npos);
+  CHECK(said.find("`half_cauchy(5, upper = 9)`") != std::string::npos);
+  CHECK(errors_in(refused_parameters("parameter a ~ half_cauchy(5, upper = 9)")) == 0);
+}
+
+TEST_CASE("a log-normal distribution of other languages is offered with its first number as a median too") {
+  auto const help = [](std::string const& call) { return refused_parameters("parameter a ~ " + call); };
+  std::string const large = help("lognormal(300, 0.5)"), small = help("lognormal(5.8, 0.5)"), below = help("lognormal(-2, 0.5)");
+  CHECK(large.find("median = 300") < large.find("log_mean = 300"));
+  CHECK(small.find("log_mean = 5.8") < small.find("median = 5.8"));
+  CHECK(small.find("median = 5.8") != std::string::npos);
+  CHECK(below.find("median") == std::string::npos);
+  CHECK(help("lognormal(mu = 5.8, sigma = 0.5)").find("median =") == std::string::npos);
+}

@@ -61,3 +61,37 @@ TEST_CASE("a unit with several slips is told once, as it should be written whole
     CHECK(said.find("`" + std::string(whole) + "`\n") != std::string::npos);
   }
 }
+
+namespace {
+
+std::string heater(std::string const& state, std::string const& capacity, std::string const& ambient = "degC") {
+  return test::messages("model m {\ninput P [W]\nstate T [" + state + "]\ninitial T = Ta\nparameter Ta [" + ambient +
+                        "] ~ normal(20, sd = 5)\n" + "parameter C [" + capacity +
+                        "] ~ log_uniform(1, 2)\nparameter h [W/K] ~ log_uniform(1, 2)\n" +
+                        "C*T' = P - h*(T - Ta)\nobserve temp ~ normal(T, sd = 1)\n}\n");
+}
+
+}  // namespace
+
+TEST_CASE("letters of temperatures that are other units here are told once, where they conflict") {
+  std::string const said = heater("C", "J/K");
+  CHECK(said.find("error[") == said.rfind("error["));
+  CHECK(said.find("`[C]` is the coulomb: a temperature in degrees Celsius is in `[degC]`") != std::string::npos);
+  CHECK(heater("degC", "J/C").find("as in `[J/K]`") != std::string::npos);
+  CHECK(heater("F", "J/K", "degF").find("`[degF]`") != std::string::npos);
+  CHECK(heater("degC", "J/K").empty());
+  // A charge is one where no temperature would agree better.
+  std::string const charge =
+      test::messages("model m {\ninput q [C]\nparameter c [F] ~ log_uniform(1, 2)\nobserve u [V] ~ normal(q*c, sd = 1)\n}\n");
+  CHECK(charge.find("E2205") != std::string::npos);
+  CHECK(charge.find("deg") == std::string::npos);
+}
+
+TEST_CASE("revolutions in other words are `rev`") {
+  for (char const* const unit : {"r/min", "rot/min"}) {
+    CAPTURE(unit);
+    CHECK(test::messages("model m {\nparameter c [" + std::string(unit) + "] = 1\nobserve d ~ normal(c, sd = 1)\n}\n")
+              .find("did you mean `rev`?") != std::string::npos);
+  }
+  CHECK(test::messages("model m {\nparameter c [rev/min] = 1\nobserve d ~ normal(c, sd = 1)\n}\n").empty());
+}

@@ -342,3 +342,23 @@ TEST_CASE("an option that has one number takes it once") {
                          "hold = linear, hold = cubic)\n")
             .find("error[E4104]: `hold` is given twice") != std::string::npos);
 }
+
+TEST_CASE("a coefficient on the wrong side of the fraction line is said so, with the unit that it would else have") {
+  auto const decay = [](std::string const& unit, std::string const& rate) {
+    return said_of("model a {\nstate y [m]\ninitial y = 1\nparameter k [" + unit + "] ~ log_uniform(1, 2)\ny' = " + rate +
+                   "\nobserve d ~ normal(y, sd = 1e-3)\n}\n");
+  };
+  CHECK(decay("1/h", "-y/k").help == "multiply by `k` instead of dividing by it, or declare `k` in [h]");
+  CHECK(decay("min", "-k*y").help == "divide by `k` instead of multiplying by it, or declare `k` in [1/min]");
+  CHECK(decay("1/h", "-k*y").count == 0);
+  CHECK(decay("h", "-y/k").count == 0);
+  // Another power of it, or none, would do.
+  CHECK(decay("1/h^2", "-k*y").help.find("instead of multiplying") == std::string::npos);
+  CHECK(decay("1/s^3", "-y/k").help == "declare `k` in [s]");
+}
+
+TEST_CASE("what a wrong argument gives is not compared with the other terms") {
+  Said const said = with_equation("m*y'' + c*y' + k*exp(y) = x");
+  CHECK(said.code == "E2206");
+  CHECK(said.count == 1);
+}

@@ -65,7 +65,7 @@ TEST_CASE("a message is about the names that it is given, whatever the words of 
         errors::wrong_shape({}, about, Shape{}, Shape{}),
         errors::input_not_bound({}, "x", about, "bench"),
         errors::no_channel_bound({}, about, "bench", {}),
-        errors::unknown_input({}, "x", about, {}),
+        errors::unknown_input({}, "x", "", about, {}),
         errors::unknown_channel({}, "y", about, {}),
         errors::unknown_member(name, about, "part", {}),
         errors::option_kind({}, "draws", about, "draws(200)"),

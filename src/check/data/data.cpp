@@ -307,7 +307,7 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
   for (DataInputUse const& bound : block.inputs) {
     if (!declared.all || declared.inputs.contains(bound.input)) continue;
     misnamed = true;
-    diagnostics.add_once(errors::unknown_input(bound.input_span, bound.input, owner, inputs));
+    diagnostics.add_once(errors::unknown_input(bound.input_span, bound.input, bound.unit ? bound.unit->text : "", owner, inputs));
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     Quantity const& input = model.inputs[i];

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/expression/leaves.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_numbers.hpp"
 #include "check/message/unit_words.hpp"
@@ -41,7 +42,7 @@ std::string mean_of_logarithm(Scope& scope, ast::Expression const& value, Quanti
 
 /// `lognormal(log(x), sigma)` of Stan, R, NumPy and PyMC, where both arguments are of the logarithm: how it is written here. Empty
 /// where it is written as here but for the name.
-std::string log_normal_of_others(Scope& scope, ast::Call const& call, Quantity const& variate) {
+errors::LogNormalOfOthers log_normal_of_others(Scope& scope, ast::Call const& call, Quantity const& variate) {
   constexpr std::string_view means[] = {"mu", "meanlog"}, widths[] = {"sigma", "sdlog"};
   auto const is_one_of = [](ast::Argument const& argument, std::span<std::string_view const> names) {
     return argument.name && std::find(names.begin(), names.end(), argument.name->text) != names.end();
@@ -51,7 +52,25 @@ std::string log_normal_of_others(Scope& scope, ast::Call const& call, Quantity c
   ast::Argument const &place = call.arguments[0], &width = call.arguments[1];
   if ((place.name && !is_one_of(place, means)) || (width.name && !is_one_of(width, widths))) return {};
   std::string const location = mean_of_logarithm(scope, place.value, variate);
-  return fmt::format("log_normal({}, {} = {})", location, location.starts_with("median") ? "sd" : "log_sd", unparse(width.value));
+  bool const as_median = location.starts_with("median");
+  std::string const of_logarithm =
+      fmt::format("log_normal({}, {} = {})", location, as_median ? "sd" : "log_sd", unparse(width.value));
+  auto const* number = std::get_if<ast::Number>(&place.value.node);
+  errors::LogNormalOfOthers written;
+  written.of_logarithm = of_logarithm;
+  if (as_median || place.name || number == nullptr || !(number->value > 0)) return written;
+  constexpr double most_log_mean = 30;  // 1e13
+  written.of_median = fmt::format("log_normal(median = {}, log_sd = {})", unparse(place.value), unparse(width.value));
+  written.median_first = number->value > most_log_mean;
+  return written;
+}
+
+/// `log_uniform(10..1e4)`: a range among the arguments.
+ast::Argument const* range_argument(ast::Call const& call) {
+  for (ast::Argument const& each : call.arguments)
+    if (auto const* range = std::get_if<ast::Box<ast::Binary>>(&each.value.node); range != nullptr && (*range)->symbol == "..")
+      return &each;
+  return nullptr;
 }
 
 struct Given {
@@ -84,6 +103,10 @@ class DistributionChecker {
 
   std::optional<Distribution> run() {
     use_.row = &row_;
+    if (auto foreign = written_as_elsewhere()) {
+      diagnostics_.add(*std::move(foreign));
+      return std::nullopt;
+    }
     for (ast::Argument const& argument : call_.arguments) argument.name ? take_named(argument) : take_positional(argument);
     evaluate_arguments();
     use_.lower = bound(lower_, "lower");
@@ -97,6 +120,35 @@ class DistributionChecker {
   void fail(Diagnostic diagnostic) {
     diagnostics_.add(std::move(diagnostic));
     good_ = false;
+  }
+
+  /// A call whose arguments are in another order, or not as arguments are written; its single mistakes would mislead.
+  std::optional<Diagnostic> written_as_elsewhere() {
+    if (ast::Argument const* const range = range_argument(call_)) {
+      bool const bounds = signature_ == std::vector<std::string>{"lower", "upper"};
+      return errors::range_in_distribution(call_, range->value, bounds, row_.cumulative != nullptr && !bounds);
+    }
+    if (call_.arguments.size() < 2 || call_.arguments[0].name) return std::nullopt;
+    ast::Argument const &first = call_.arguments[0], &second = call_.arguments[1];
+    auto const* number = std::get_if<ast::Number>(&first.value.node);
+    if (number == nullptr) return std::nullopt;
+    bool const has_place = signature_.front() == "location" || signature_.front() == "mean" || signature_.front() == "median";
+    std::span<Spelling const> const only = row_.arguments.front().spellings;
+    bool const zero_place = number->value == 0 && !has_place && row_.arguments.size() == 1 && only.front().unit_power == 1;
+    if (zero_place) return errors::place_of_half(call_, std::string(only.front().name));
+    bool const of_t = signature_.size() > 1 && signature_[1] == "degrees_of_freedom";
+    if (of_t && !second.name && !number->unit && number->value > 0 && cannot_count(second.value))
+      return errors::degrees_of_freedom_first(call_);
+    return std::nullopt;
+  }
+
+  /// What moves, has a unit or is not positive: no number of degrees of freedom.
+  bool cannot_count(ast::Expression const& value) const {
+    Diagnostics unsaid;
+    auto const typed = scope_.with(unsaid).expression(value);
+    if (!typed) return false;
+    if (auto const constant = graph_.constant_value(typed->node)) return !(*constant > 0);
+    return (typed->kind == Typed::Kind::known && !typed->unit.dimensionless()) || !moving_part(graph_, typed->node).empty();
   }
 
   void take(Given& place, Spelling const* spelling, ast::Argument const& argument, std::string const& spelt) {

@@ -19,6 +19,34 @@ constexpr std::size_t most_messages = 100;
 
 bool is_sum(ast::Binary const& binary) { return binary.symbol == "+" || binary.symbol == "-"; }
 
+/// `dy/dt`, `d2y/dt^2`, `d2y/dt2`: the two names, that of `y`, and how often it is differentiated.
+struct DifferentialQuotient {
+  ast::Reference const* above;
+  ast::Reference const* below;
+  std::string name;
+  int primes;
+};
+
+std::optional<DifferentialQuotient> differential_quotient(ast::Binary const& binary) {
+  if (binary.symbol != "/") return std::nullopt;
+  ast::Expression const* last = &*binary.left;  // of the factors before it
+  if (auto const* product = std::get_if<ast::Box<ast::Binary>>(&last->node); product != nullptr && (*product)->symbol == "*")
+    last = &*(*product)->right;
+  ast::Expression const* base = &*binary.right;
+  auto const* power = std::get_if<ast::Box<ast::Binary>>(&base->node);
+  auto const* exponent = power == nullptr ? nullptr : std::get_if<ast::Number>(&(*power)->right->node);
+  bool const squared = exponent != nullptr && (*power)->symbol == "^" && exponent->value == 2 && !exponent->unit;
+  if (squared) base = &*(*power)->left;
+  auto const *above = std::get_if<ast::Reference>(&last->node), *below = std::get_if<ast::Reference>(&base->node);
+  if (above == nullptr || below == nullptr) return std::nullopt;
+  std::string const &over = above->name.text, &under = below->name.text;
+  bool const twice = over.starts_with("d2") || over.starts_with("dd");
+  if (under != "dt" && under != "dt2") return std::nullopt;
+  if (twice && (squared || under == "dt2")) return DifferentialQuotient{above, below, over.substr(2), 2};
+  if (!over.starts_with("d") || squared || under != "dt") return std::nullopt;
+  return DifferentialQuotient{above, below, over.substr(1), 1};
+}
+
 }  // namespace
 
 std::optional<Typed> Scope::sum(ast::Expression const& tree, std::vector<UnitOperand>& terms, int side) {
@@ -108,6 +136,13 @@ std::optional<Typed> Scope::binary(ast::Binary const& binary) {
     if (is_sum(**inner) || (*inner)->symbol == "..") break;
     spine.push_back(&**inner);
   }
+  for (ast::Binary const* each : spine)
+    if (auto const quotient = differential_quotient(*each); quotient && find(quotient->above->name.text) == nullptr)
+      if (find(quotient->name) != nullptr && find(quotient->below->name.text) == nullptr) {
+        Span const span = cover(quotient->above->span, each->right->span);
+        diagnostics_.add(errors::quotient_as_derivative(span, *quotient->above, quotient->name, quotient->primes));
+        return std::nullopt;
+      }
   auto value = expression(*spine.back()->left);
   for (; !spine.empty(); spine.pop_back()) {
     auto const right = expression(*spine.back()->right);
@@ -260,7 +295,8 @@ Typed Scope::built_in(FunctionRow const& row, std::span<UnitOperand const> argum
       break;
     case UnitRule::dimensionless:
     case UnitRule::angle:
-      for (UnitOperand const& argument : arguments) units_.pure(name, argument, row.unit_rule == UnitRule::angle);
+      for (UnitOperand const& argument : arguments)
+        agreed = units_.pure(name, argument, row.unit_rule == UnitRule::angle) && agreed;
       break;
     case UnitRule::branches: {  // condition, value, condition, value, ..., otherwise
       std::vector<UnitOperand> branches;

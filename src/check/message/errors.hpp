@@ -16,6 +16,8 @@ namespace sysid::errors {
 
 // names, functions, units (E20)
 Diagnostic unknown_name(ast::Name const& name, Names const& known);
+/// `dy/dt` of a `y` that there is, whose derivative has this many primes.
+Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::string const& name, int primes);
 Diagnostic duplicate_name(ast::Name const& name, Span first);
 Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity);
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most);
@@ -37,8 +39,13 @@ Diagnostic number_of_other_kind(Span span, Subject const& what, Unit const& give
 Diagnostic number_in_cycles(Span span, Subject const& what, Unit const& given, Unit const& wanted);
 
 // distributions (E21)
-/// written: the whole call as it is written here, where that is known.
-Diagnostic unknown_distribution(ast::Name const& name, Names const& known, std::string const& written = {});
+/// A log-normal distribution with the arguments of other languages, as it is written here.
+struct LogNormalOfOthers {
+  std::string of_logarithm;   // its arguments are of the logarithm; empty: it is none
+  std::string of_median;      // if the first is the median; empty: it cannot be
+  bool median_first = false;  // which is the likelier
+};
+Diagnostic unknown_distribution(ast::Name const& name, Names const& known, LogNormalOfOthers const& written = {});
 Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known);
 Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other);
 Diagnostic argument_missing(ast::Call const& call, Names const& spellings);
@@ -50,6 +57,12 @@ Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, N
 Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const& written, std::string const& distribution);
 Diagnostic logarithm_of_shifted(Span span, std::string const& spelling, std::string const& distribution);
 Diagnostic too_many_arguments(ast::Call const& call, ast::Argument const& argument, Names const& signature);
+/// bounds: the arguments are a lower and an upper one; truncates: other bounds can be given.
+Diagnostic range_in_distribution(ast::Call const& call, ast::Expression const& range, bool bounds, bool truncates);
+/// `half_normal(0, sd = 1)`.
+Diagnostic place_of_half(ast::Call const& call, std::string const& width);
+/// `student_t(4, y, scale = s)`.
+Diagnostic degrees_of_freedom_first(ast::Call const& call);
 Diagnostic not_a_noise(ast::Call const& call, Names const& known);
 Diagnostic truncated_noise(ast::Call const& call);
 Diagnostic cannot_truncate(Span span, std::string const& distribution);
@@ -84,7 +97,13 @@ Diagnostic estimated_start_of_constraint(Span start, Span equation);
 Diagnostic undetermined(Span declaration, std::string const& unknown);
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order);
 /// values: of each component, what it may be given.
-Diagnostic initial_missing(Span declaration, Names const& components, Names const& values);
+/// What stands behind `initial y =`.
+struct StartValue {
+  std::string value;
+  std::string declaration = {};  // of the value, where it is not declared
+  bool may_be_zero = false;      // as a difference
+};
+Diagnostic initial_missing(Span declaration, Names const& components, std::vector<StartValue> const& values);
 Diagnostic initial_twice(Span second, Span first, std::string const& component);
 Diagnostic initial_moves(Span span);
 Diagnostic not_a_state(ast::Name const& name, Names const& states);
@@ -139,7 +158,8 @@ Diagnostic bad_rows(Span span);
 // owner: named("model", "duffing") or named("dictionary", "restoring")
 Diagnostic input_not_bound(Span span, std::string const& input, Subject const& owner, std::string const& data);
 Diagnostic no_channel_bound(Span span, Subject const& owner, std::string const& data, Names const& channels);
-Diagnostic unknown_input(Span span, std::string const& input, Subject const& owner, Names const& inputs);
+/// unit: of its column; may be empty.
+Diagnostic unknown_input(Span span, std::string const& input, std::string const& unit, Subject const& owner, Names const& inputs);
 Diagnostic unknown_channel(Span span, std::string const& channel, Subject const& owner, Names const& channels);
 /// rules: those under which the derivative exists.
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules);

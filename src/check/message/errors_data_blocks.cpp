@@ -13,8 +13,19 @@ std::string choice_of_rules(Names rules) {
   return quoted(rules, "or");
 }
 
-/// Loggers of accelerations write g and mg, which are masses here.
-std::string unit_help(std::string const& column_unit) {
+bool measures_temperature(std::string const& unit) {
+  auto const atom = unit_atom(unit), kelvin = unit_atom("K");
+  return atom && kelvin && atom->dimension == kelvin->dimension;
+}
+
+/// Loggers of accelerations write g and mg, which are masses here, and those of temperatures C and F.
+std::string unit_help(std::string const& column_unit, std::string const& declared_unit) {
+  for (auto const& [written, charge] : {std::pair("C", "coulomb"), std::pair("F", "farad")}) {
+    bool const of_column = column_unit == written && measures_temperature(declared_unit);
+    if (of_column || (declared_unit == written && measures_temperature(column_unit)))
+      return fmt::format("`[{0}]` is the {1}: {2} a temperature in `[deg{0}]`", written, charge,
+                         of_column ? "write" : "declare in the model");
+  }
   if (column_unit == "g") return "`[g]` is the gram; the acceleration of gravity is `[g_n]`";
   if (column_unit == "mg") return "`[mg]` is the milligram; a thousandth of the acceleration of gravity is `[mg_n]`";
   if (column_unit == "ug") return "`[ug]` is the microgram; a millionth of the acceleration of gravity is `[ug_n]`";
@@ -100,9 +111,12 @@ Diagnostic no_channel_bound(Span span, Subject const& owner, std::string const& 
                                                     channels.empty() ? "CHANNEL" : channels.front()))));
 }
 
-Diagnostic unknown_input(Span span, std::string const& input, Subject const& owner, Names const& inputs) {
-  return also_about(owner.names, about({input}, error("E4115", span, fmt::format("{} has no input `{}`", owner.words, input),
-                                                      guess_or(input, inputs, choose(inputs, "input")))));
+Diagnostic unknown_input(Span span, std::string const& input, std::string const& unit, Subject const& owner, Names const& inputs) {
+  std::string const declared =
+      fmt::format("declare it in the model, `input {}{}`, and use it in an equation", input, unit.empty() ? "" : " [" + unit + "]");
+  return also_about(owner.names,
+                    about({input}, error("E4115", span, fmt::format("{} has no input `{}`", owner.words, input),
+                                         inputs.empty() ? declared : guess_or(input, inputs, choose(inputs, "input")))));
 }
 
 Diagnostic unknown_channel(Span span, std::string const& channel, Subject const& owner, Names const& channels) {
@@ -120,7 +134,7 @@ Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, 
 Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& column_unit, std::string const& declared_unit) {
   return about(what.names,
                error("E4113", span, fmt::format("{} is in [{}], but [{}] is needed", what.words, column_unit, declared_unit),
-                     unit_help(column_unit)));
+                     unit_help(column_unit, declared_unit)));
 }
 
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known) {

@@ -35,7 +35,9 @@ constexpr Synonym distribution_synonyms[] = {
 };
 
 constexpr Synonym argument_synonyms[] = {
+    {"sigma", "scale"},  // of Student's t, whose sd is larger
     {"sigma", "sd"},
+    {"mu", "location"},
     {"meanlog", "log_mean"},
     {"logmean", "log_mean"},
     {"mean_log", "log_mean"},
@@ -86,6 +88,30 @@ std::string decimal_comma(ast::Call const& call, ast::Argument const& last) {
   return {};
 }
 
+std::string written_here(LogNormalOfOthers const& written) {
+  std::string const of_logarithm =
+      fmt::format("write `{}`, if its arguments are the mean and the sd of the logarithm", written.of_logarithm);
+  if (written.of_median.empty()) return of_logarithm;
+  std::string const of_median = fmt::format("write `{}`, if the first is the median", written.of_median);
+  return written.median_first ? of_median + "; " + of_logarithm : of_logarithm + "; " + of_median;
+}
+
+/// `exponential(0.01)` of Stan, where the argument is a rate and here a mean could be meant.
+std::string or_rate(Names const& spellings, std::string const& value) {
+  bool const has_rate = std::find(spellings.begin() + 1, spellings.end(), "rate") != spellings.end();
+  return has_rate ? fmt::format(", or `rate = {}` if it is a rate, as in Stan", value) : std::string();
+}
+
+/// The call with its arguments in another order.
+std::string with_arguments(ast::Call const& call, std::vector<std::size_t> const& order) {
+  std::string text = call.function.text + "(";
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    ast::Argument const& argument = call.arguments[order[i]];
+    text += (i == 0 ? "" : ", ") + (argument.name ? argument.name->text + " = " : "") + unparse(argument.value);
+  }
+  return text + ")";
+}
+
 std::string lower_case(std::string text) {
   for (char& c : text)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -98,12 +124,11 @@ constexpr std::array<std::string_view, 6> truncations{"truncated", "truncate",  
 
 }  // namespace
 
-Diagnostic unknown_distribution(ast::Name const& name, Names const& known, std::string const& written) {
+Diagnostic unknown_distribution(ast::Name const& name, Names const& known, LogNormalOfOthers const& written) {
   std::string const small = lower_case(name.text);
-  if (!written.empty())
+  if (!written.of_logarithm.empty())
     return about({name.text},
-                 error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
-                       fmt::format("write `{}`, if its arguments are the mean and the sd of the logarithm", written)),
+                 error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text), written_here(written)),
                  "distribution");
   if (std::find(truncations.begin(), truncations.end(), small) != truncations.end())
     return about({name.text},
@@ -156,8 +181,41 @@ Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, N
       spellings,
       about({call.function.text},
             error("E2106", argument.span, fmt::format("the name of this argument is missing: {}", quoted(spellings, "or")),
-                  fmt::format("{}write `{} = {}`{}", point.empty() ? "" : point + "; if the comma separates arguments, ",
-                              spellings.front(), unparse(argument.value), first.empty() ? "" : "; " + first))));
+                  fmt::format("{}write `{} = {}`{}{}", point.empty() ? "" : point + "; if the comma separates arguments, ",
+                              spellings.front(), unparse(argument.value), or_rate(spellings, unparse(argument.value)),
+                              first.empty() ? "" : "; " + first))));
+}
+
+Diagnostic range_in_distribution(ast::Call const& call, ast::Expression const& range, bool bounds, bool truncates) {
+  ast::Binary const& ends = *std::get<ast::Box<ast::Binary>>(range.node);
+  std::string const lower = unparse(*ends.left), upper = unparse(*ends.right);
+  return about({call.function.text},
+               error("E3112", range.span, "a range is not allowed here",
+                     bounds      ? fmt::format("write the bounds as two arguments: `{}({}, {})`", call.function.text, lower, upper)
+                     : truncates ? fmt::format("write the bounds as two arguments: `lower = {}, upper = {}`", lower, upper)
+                                 : fmt::format("a prior between two bounds is written `uniform({}, {})`", lower, upper)));
+}
+
+Diagnostic place_of_half(ast::Call const& call, std::string const& width) {
+  std::vector<std::size_t> rest;
+  for (std::size_t i = 1; i < call.arguments.size(); ++i) rest.push_back(i);
+  return about({call.function.text},
+               error("E2107", call.arguments.front().span,
+                     fmt::format("`{}` begins at 0 and takes no location: its argument is `{}`", call.function.text, width),
+                     fmt::format("write `{}`", with_arguments(call, rest))));
+}
+
+Diagnostic degrees_of_freedom_first(ast::Call const& call) {
+  std::vector<std::size_t> order{1, 0};
+  for (std::size_t i = 2; i < call.arguments.size(); ++i) order.push_back(i);
+  ast::Call named = call;
+  // A third argument has its name.
+  if (named.arguments.size() > 2 && !named.arguments[2].name) named.arguments[2].name = ast::Name{call.span, "scale"};
+  return also_about({"degrees_of_freedom", "location"},
+                    about({call.function.text},
+                          error("E2106", call.arguments.front().span,
+                                fmt::format("the location of `{}` comes first, then the degrees of freedom", call.function.text),
+                                fmt::format("write `{}`", with_arguments(named, order)))));
 }
 
 Diagnostic logarithm_or_number(ast::Argument const& argument, std::string const& written, std::string const& distribution) {

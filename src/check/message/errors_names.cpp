@@ -15,8 +15,8 @@ constexpr Synonym function_synonyms[] = {
     {"heaviside", "step"}, {"ln", "log"},   {"sgn", "sign"},    {"signum", "sign"}, {"squareroot", "sqrt"},
 };
 
-constexpr Synonym unit_synonyms[] = {
-    {"gn", "g_n"}, {"gee", "g_n"}, {"gravity", "g_n"}, {"decc", "degC"}, {"strain", "microstrain"}};
+constexpr Synonym unit_synonyms[] = {{"gn", "g_n"}, {"gee", "g_n"}, {"gravity", "g_n"}, {"decc", "degC"}, {"strain", "microstrain"},
+                                     {"r", "rev"},  {"rot", "rev"}, {"turn", "rev"},    {"turns", "rev"}, {"revs", "rev"}};
 
 constexpr char const* declared_in_stan =
     "a parameter is declared with its prior, in one statement: write `parameter NAME ~ normal(0, sd = 1, lower = 0)` in place of "
@@ -112,6 +112,13 @@ Diagnostic unknown_name(ast::Name const& name, Names const& known) {
                          guess_or(plain, known, "declare it as state, input, parameter, constant or local definition (let)")));
   result.suggested = nearest(name.text, known);
   return result;
+}
+
+Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::string const& name, int primes) {
+  std::string const& text = above.name.text;
+  return about(
+      {text}, error("E2001", span, fmt::format("`{}` is not declared in this model", text),
+                    fmt::format("a derivative is written with primes: write `{}` in place of the quotient", primed(name, primes))));
 }
 
 Diagnostic duplicate_name(ast::Name const& name, Span first) {

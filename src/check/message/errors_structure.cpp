@@ -1,6 +1,8 @@
 // The checker's wording about equations, initial values, channels, and names given twice.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "check/message/error_words.hpp"
 
 namespace sysid::errors {
@@ -44,16 +46,27 @@ Diagnostic initial_of_highest(ast::Reference const& reference, std::string const
             fmt::format("`{}` is of order {}: give the initial values of {}", state, order, quoted(components))));
 }
 
-Diagnostic initial_missing(Span declaration, Names const& components, Names const& values) {
+Diagnostic initial_missing(Span declaration, Names const& components, std::vector<StartValue> const& values) {
   bool const one = components.size() == 1;
-  std::string written;
-  for (std::size_t i = 0; i < components.size(); ++i)
-    written += fmt::format("{}{} = {}", i == 0 ? "" : ", ", components[i], values[i]);
-  return also_about(components,
-                    about({components.front().substr(0, components.front().find('\''))},
-                          error("E3007", declaration,
-                                fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"),
-                                fmt::format("write `initial {}`", written))));
+  std::string written, as_zero;
+  Names declarations;
+  bool may_be_zero = false;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    written += fmt::format("{}{} = {}", i == 0 ? "" : ", ", components[i], values[i].value);
+    as_zero += fmt::format("{}{} = {}", i == 0 ? "" : ", ", components[i], values[i].may_be_zero ? "0" : values[i].value);
+    may_be_zero = may_be_zero || values[i].may_be_zero;
+    std::string const& declaration = values[i].declaration;
+    if (!declaration.empty() && std::find(declarations.begin(), declarations.end(), declaration) == declarations.end())
+      declarations.push_back(declaration);
+  }
+  std::string help = fmt::format("write `initial {}`", written);
+  if (!declarations.empty()) help += fmt::format(" and {}", quoted(declarations));
+  if (may_be_zero) help += fmt::format("; or, of a difference of temperatures, `initial {}`", as_zero);
+  return also_about(
+      components,
+      about({components.front().substr(0, components.front().find('\''))},
+            error("E3007", declaration,
+                  fmt::format("{} {} no initial value{}", quoted(components), one ? "has" : "have", one ? "" : "s"), help)));
 }
 
 Diagnostic initial_twice(Span second, Span first, std::string const& component) {

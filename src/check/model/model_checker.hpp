@@ -12,6 +12,7 @@
 #include "check/expression/leaves.hpp"
 #include "check/expression/scope.hpp"
 #include "check/expression/value_range.hpp"
+#include "check/message/errors.hpp"
 #include "core/text/diagnostic.hpp"
 #include "model/disturbance_law.hpp"
 #include "model/model.hpp"
@@ -98,7 +99,9 @@ class ModelChecker {
   void initial_lags();
   void initial_values();
   /// Of components without an initial value: a parameter of their unit that nothing reads, where one is meant, or 0.
-  std::vector<std::string> values_to_give(std::vector<std::size_t> const& components) const;
+  std::vector<errors::StartValue> values_to_give(std::vector<std::size_t> const& components) const;
+  /// A new parameter, since a temperature begins at 0 in its unit almost never; read: names that are taken; 0 for other quantities.
+  errors::StartValue start_of_temperature(State const& state, std::set<std::string> const& read) const;
   // Where the search for an unknown's first value begins.
   void guess(ast::InitialValue const& initial, Unknown& unknown);
   // Equations that were differentiated must hold at the start.

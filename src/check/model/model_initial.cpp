@@ -1,6 +1,8 @@
 // Initial values: of states, of the past in discrete time, of the search for unknowns; and whether constraints hold there.
 #include "check/model/model_checker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -76,7 +78,23 @@ void ModelChecker::initial_lags() {
   });
 }
 
-std::vector<std::string> ModelChecker::values_to_give(std::vector<std::size_t> const& components) const {
+errors::StartValue ModelChecker::start_of_temperature(State const& state, std::set<std::string> const& read) const {
+  Unit kelvin;
+  kelvin.dimension[4] = {1, 1};
+  Unit const unit = state.unit.value_or(Unit{});
+  bool const counts_from_zero_point = unit.offset != 0;
+  if (unit.dimension != kelvin.dimension || (!counts_from_zero_point && unit.text != "K")) return {"0"};
+  std::string const bare = state.name.substr(0, state.name.find_first_of("[."));
+  std::string name = bare + "_start";
+  for (int number = 2; read.contains(name) || scope_.find(name) != nullptr; ++number)
+    name = fmt::format("{}_start{}", bare, number);
+  double const typical = counts_from_zero_point ? convert(293.15, kelvin, unit) : 300;
+  double const spread = (counts_from_zero_point ? 20 : 30) / unit.scale;
+  return {name, fmt::format("parameter {} [{}] ~ normal({:.3g}, sd = {:.3g})", name, unit.text, typical, spread),
+          !counts_from_zero_point};
+}
+
+std::vector<errors::StartValue> ModelChecker::values_to_give(std::vector<std::size_t> const& components) const {
   std::set<std::string> read;
   for (ast::ModelStatement const& statement : tree_.statements)
     tree::each_reference(statement, [&](ast::Reference const& reference) { read.insert(reference.name.text); });
@@ -84,7 +102,7 @@ std::vector<std::string> ModelChecker::values_to_give(std::vector<std::size_t> c
     Unit const left = a.value_or(Unit{}), right = b.value_or(Unit{});
     return left.dimension == right.dimension && left.offset == right.offset;
   };
-  std::vector<std::string> values;
+  std::vector<errors::StartValue> values;
   for (std::size_t const component : components) {
     State const& state = model_.states[component];
     std::vector<std::string> unused, alike;
@@ -94,8 +112,10 @@ std::vector<std::string> ModelChecker::values_to_give(std::vector<std::size_t> c
       if (each.name.starts_with(state.name)) alike.push_back(each.name);
     }
     if (alike.size() == 1) unused = alike;
-    bool const taken = unused.size() == 1 && std::find(values.begin(), values.end(), unused.front()) != values.end();
-    values.push_back(unused.size() == 1 && !taken ? unused.front() : "0");
+    bool const taken = unused.size() == 1 && std::any_of(values.begin(), values.end(), [&](errors::StartValue const& each) {
+                         return each.value == unused.front();
+                       });
+    values.push_back(unused.size() == 1 && !taken ? errors::StartValue{unused.front()} : start_of_temperature(state, read));
   }
   return values;
 }

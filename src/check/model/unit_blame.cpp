@@ -6,49 +6,33 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <tuple>
 #include <utility>
 
+#include "check/model/mistakes.hpp"
 #include "check/model/model_checker.hpp"
 #include "check/units/unit_errors.hpp"
 #include "check/units/units.hpp"
 
 namespace sysid {
-namespace {
 
-constexpr std::size_t most_statements = 200;
-// A conflict of which a declaration is to blame says by which factor, up to the power with which the name enters.
-constexpr Rational powers[] = {{1, 1}, {-1, 1}, {1, 2}, {-1, 2}, {1, 3}, {-1, 3}};
-constexpr std::size_t most_factors = 4;
-
-template <class Visit>
-void each_declared(ast::Model& model, Visit const& visit) {
-  for (ast::ModelStatement& statement : model.statements) {
-    if (auto* inputs = std::get_if<ast::InputDeclaration>(&statement))
-      for (ast::Declared& input : inputs->names) visit(input);
-    if (auto* states = std::get_if<ast::StateDeclaration>(&statement))
-      for (ast::Declared& state : states->names) visit(state);
-    if (auto* disturbance = std::get_if<ast::DisturbanceDeclaration>(&statement)) visit(disturbance->name);
-    if (auto* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) visit(parameter->name);
-    if (auto* definition = std::get_if<ast::Definition>(&statement)) visit(definition->name);
-    if (auto* observation = std::get_if<ast::Observation>(&statement)) visit(observation->channel);
-  }
-}
-
-// What tells errors apart; the units of those that remain may change.
-using Mistake = std::tuple<std::string, std::uint32_t, std::uint32_t>;
-Mistake place_of(Diagnostic const& each) {
+Mistake mistake_of(Diagnostic const& each) {
   return {each.code, each.primary ? each.primary->span.begin : 0, each.primary ? each.primary->span.end : 0};
 }
-// About names, numbers and units: what may follow from a unit. Mistakes of structure come to light when those before are gone.
-std::set<Mistake> errors_from(std::size_t first, Diagnostics const& diagnostics) {
+
+std::set<Mistake> mistakes_from(std::size_t first, Diagnostics const& diagnostics) {
   std::set<Mistake> places;
   for (std::size_t i = first; i < diagnostics.all().size(); ++i) {
     Diagnostic const& each = diagnostics.all()[i];
-    if (each.severity == Severity::error && each.code.starts_with("E2")) places.insert(place_of(each));
+    if (each.severity == Severity::error && each.code.starts_with("E2")) places.insert(mistake_of(each));
   }
   return places;
 }
+
+namespace {
+
+// A conflict of which a declaration is to blame says by which factor, up to the power with which the name enters.
+constexpr Rational powers[] = {{1, 1}, {-1, 1}, {1, 2}, {-1, 2}, {1, 3}, {-1, 3}};
+constexpr std::size_t most_factors = 4;
 
 ast::UnitExpression written(Dimension const& dimension, Span span) {
   constexpr char const* bases[] = {"kg", "m", "s", "A", "K", "mol", "cd"};
@@ -136,7 +120,7 @@ class Search {
     });
     Diagnostics said;
     ModelChecker(changed, shared_, said).run();
-    std::set<Mistake> const after = errors_from(0, said);
+    std::set<Mistake> const after = mistakes_from(0, said);
     std::set<Mistake> resolved;
     if (!std::includes(before_.begin(), before_.end(), after.begin(), after.end())) return resolved;
     std::set_difference(before_.begin(), before_.end(), after.begin(), after.end(), std::inserter(resolved, resolved.end()));
@@ -152,16 +136,16 @@ class Search {
 
 void blame_declaration(ast::Model const& model, std::vector<ast::FunctionDefinition const*> const& shared, std::size_t first,
                        Diagnostics& diagnostics) {
-  std::set<Mistake> const before = errors_from(first, diagnostics);
+  std::set<Mistake> const before = mistakes_from(first, diagnostics);
   std::set<Mistake> conflicts;
   for (std::size_t i = first; i < diagnostics.all().size(); ++i)
-    if (errors::is_unit_conflict(diagnostics.all()[i])) conflicts.insert(place_of(diagnostics.all()[i]));
+    if (errors::is_unit_conflict(diagnostics.all()[i])) conflicts.insert(mistake_of(diagnostics.all()[i]));
   if (conflicts.size() < 2 || model.statements.size() > most_statements) return;
   auto const blame = Search(model, shared, before).run();
   if (!blame) return;
   std::vector<Diagnostic> kept = diagnostics.all(), resolved;
   std::erase_if(kept, [&](Diagnostic const& each) {
-    bool const gone = static_cast<std::size_t>(&each - kept.data()) >= first && blame->resolved.contains(place_of(each));
+    bool const gone = static_cast<std::size_t>(&each - kept.data()) >= first && blame->resolved.contains(mistake_of(each));
     if (gone) resolved.push_back(each);
     return gone;
   });

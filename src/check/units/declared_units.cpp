@@ -62,6 +62,14 @@ std::optional<DeclaredUnit> only_coefficient(ast::Expression const& tree, std::v
   return found;
 }
 
+// "h" of "1/h" and "1/h" of "h"; empty for all else.
+std::string inverse_text(std::string const& unit) {
+  bool const below = unit.starts_with("1/");
+  std::string const name = below ? unit.substr(2) : unit;
+  if (!unit_atom(name)) return {};
+  return below ? name : "1/" + name;
+}
+
 // How often a name is a factor of a product, -1 below the fraction line; nothing where it stands elsewhere as well, as in a sum.
 std::optional<int> factor_power(ast::Expression const& tree, std::string const& name) {
   std::vector<std::string> const used = names_in(tree);
@@ -145,18 +153,22 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
     unit.dimension = missing;
     if (number != nullptr && !coefficient && !used.empty()) return errors::tag_the_number(unparse(*number), words(unit));
   }
+  if (odd != nullptr && !pure)
+    if (std::string inverse_meant = by_inverse(*odd, missing); !inverse_meant.empty()) return inverse_meant;
   // A prime too few or too many is likelier than a missing rate or time, whatever there is by that unit.
   ast::Reference const* moving = odd == nullptr || pure ? nullptr : named_factor(*odd, declared_);
   for (int const primes : {1, 2}) {
     Dimension time{};
     time[2] = {primes, 1};
     if (moving != nullptr && (missing == inverse(time) || (missing == time && moving->primes >= primes))) {
-      Unit factor;
-      factor.dimension = missing;
       auto const coefficient = only_coefficient(*odd, declared_);
-      std::string const other = coefficient ? words(multiply(plain(coefficient->unit), factor)) : "";
+      auto const power = coefficient ? factor_power(*odd, coefficient->name) : std::nullopt;
+      bool const may_differ = power && std::abs(*power) == 1;
+      Unit factor;
+      factor.dimension = power == -1 ? inverse(missing) : missing;
+      std::string const other = may_differ ? words(multiply(plain(coefficient->unit), factor)) : "";
       return errors::primes_wrong(moving->name.text, moving->primes, moving->primes + (missing == time ? -primes : primes),
-                                  coefficient ? coefficient->name : "", other);
+                                  may_differ ? coefficient->name : "", other);
     }
   }
   std::string cure = factor_cure(wanted, odd != nullptr, but);
@@ -166,6 +178,21 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
       return is_term && is_power_of_moving(*odd, missing) ? errors::or_else(other, cure) : other;
     }
   return cure;
+}
+
+// `c/k` of a rate k, `c*tau` of a time: on the other side of the fraction line the coefficient would fit.
+std::string DeclaredUnits::by_inverse(ast::Expression const& odd, Dimension const& missing) const {
+  auto const coefficient = only_coefficient(odd, declared_);
+  auto const power = coefficient ? factor_power(odd, coefficient->name) : std::nullopt;
+  if (!power || std::abs(*power) != 1) return {};
+  Dimension const& own = coefficient->unit.dimension;
+  Dimension twice;
+  for (std::size_t i = 0; i < own.size(); ++i) twice[i] = own[i] + own[i];
+  if (missing != (*power == 1 ? inverse(twice) : twice)) return {};
+  Unit meant;
+  meant.dimension = inverse(own);
+  std::string const turned = inverse_text(coefficient->unit.text);
+  return errors::inverse_meant(coefficient->name, *power == 1, turned.empty() ? words(meant) : turned);
 }
 
 // The term as it is declared, with another factor.

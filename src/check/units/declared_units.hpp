@@ -63,6 +63,7 @@ class DeclaredUnits {
   std::string frequency_in(ast::Expression const& tree) const;
 
  private:
+  std::string by_inverse(ast::Expression const& odd, Dimension const& missing) const;
   // The term as it is declared, with another factor; in_text: it is an expression, no declaration; but: names that it must not be.
   std::string factor_cure(Wanted const& wanted, bool in_text, std::vector<std::string> const& but) const;
   // The one coefficient of a term, in the unit that it should have been declared in; nothing where something else is likelier.

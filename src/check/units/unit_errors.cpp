@@ -163,6 +163,13 @@ Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string co
   return conflict;
 }
 
+Diagnostic letter_taken_for_temperature(Diagnostic conflict, Span written, LetterUnit const& letter) {
+  conflict.secondary.push_back({written, fmt::format("the {}", letter.name)});
+  conflict.help = fmt::format("`[{}]` is the {}: a temperature in {} is in `[{}]`, and a factor of a unit is `{}`, as in `[J/{}]`",
+                              letter.letter, letter.name, letter.scale, letter.temperature, letter.difference, letter.difference);
+  return conflict;
+}
+
 void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function) {
   diagnostic.function = function;
   diagnostic = also_about({function}, std::move(diagnostic));
@@ -189,6 +196,10 @@ std::string should_be_in(std::string const& unit) {
 }
 std::string tag_the_number(std::string const& number, std::string const& unit) {
   return fmt::format("a number as a factor has no unit: write `{} [{}]`", number, unit);
+}
+std::string inverse_meant(std::string const& name, bool multiplies, std::string const& unit) {
+  return multiplies ? fmt::format("divide by `{0}` instead of multiplying by it, or {1}", name, declare_in(name, unit))
+                    : fmt::format("multiply by `{0}` instead of dividing by it, or {1}", name, declare_in(name, unit));
 }
 std::string primes_wrong(std::string const& name, int primes, int wanted, std::string const& coefficient, std::string const& unit) {
   auto const primed = [&](int count) { return name + std::string(static_cast<std::size_t>(count), '\''); };

@@ -47,6 +47,19 @@ bool is_unit_conflict(Diagnostic const& diagnostic);
 Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string const& unit, int places);
 
 /// A mistake in the body of a function, told at the call.
+/// A letter that is a unit of temperature on paper; difference: in products, where only intervals count.
+struct LetterUnit {
+  char const* letter;
+  char const* name;  // of what it is here
+  char const* temperature;
+  char const* scale;
+  char const* difference;
+};
+inline constexpr LetterUnit letter_units[] = {{"C", "coulomb", "degC", "degrees Celsius", "K"},
+                                              {"F", "farad", "degF", "degrees Fahrenheit", "delta_degF"}};
+/// written: where the letter stands first.
+Diagnostic letter_taken_for_temperature(Diagnostic conflict, Span written, LetterUnit const& letter);
+
 void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function);
 
 // What to do, for `help`. names: declared quantities that would do ("`y` or `l`"), or empty.
@@ -58,6 +71,8 @@ std::string or_else(std::string const& declaration, std::string const& factor);
 std::string declare_in(std::string const& name, std::string const& unit);
 std::string should_be_in(std::string const& unit);
 std::string tag_the_number(std::string const& number, std::string const& unit);
+/// multiplies: as the text has it; unit: the one that it should have been declared in otherwise.
+std::string inverse_meant(std::string const& name, bool multiplies, std::string const& unit);
 /// coefficient: the name whose unit may be wrong in place of the primes, and what it would be in; or empty.
 std::string primes_wrong(std::string const& name, int primes, int wanted, std::string const& coefficient, std::string const& unit);
 
