@@ -92,7 +92,10 @@ Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int
   return error(
       "E4005", mention,
       fmt::format("{} has {}, but the header names {}", place(file, row, line), counted(cells, "cell"), counted(columns, "column")),
-      "a missing value is an empty cell between separators; numbers with a decimal comma need a separator other than the comma");
+      cells > columns
+          ? "remove the cell that is too many; numbers with a decimal comma need a separator other than the comma: export "
+            "the file again with `;`"
+          : "a missing value is an empty cell between separators");
 }
 
 Diagnostic broken_table(std::string const& file, int line, Mention mention) {

@@ -105,6 +105,14 @@ std::string left_out(Proposal const& proposal, ProposalRequest const& request) {
   return fmt::format("; {} below line {} {} then left out", counted(below, "line"), last, below == 1 ? "is" : "are");
 }
 
+/// More cells in its rows than in the line of the names, and of digits alone: halves of numbers with a decimal comma.
+bool may_have_decimal_commas(Layout const& layout) {
+  auto const whole = [](std::string const& cell) { return cell.find('.') == std::string::npos; };
+  return layout.separator == ',' && layout.names == 0 &&
+         std::all_of(layout.rows.begin(), layout.rows.end(),
+                     [&](std::vector<std::string> const& row) { return std::all_of(row.begin(), row.end(), whole); });
+}
+
 }  // namespace
 
 int lines_below(std::string const& utf8, int last) {
@@ -122,6 +130,8 @@ std::string proposed_help(ProposalRequest const& request) {
   auto proposal = propose(request.bytes, request.rules, request.needs);
   if (!proposal) return {};
   std::vector<std::string> const& names = proposal->layout.columns;
+  // Names for the halves of its numbers would make a record that reads, with wrong values.
+  if (request.code == "E4005" && may_have_decimal_commas(proposal->layout)) return {};
   if (request.code == "E4009" || (request.code == "E4008" && request.column.empty())) {
     for (ReadingRules& rules : proposal->rules) rules.columns = distinct_names(names);
   } else if (request.code == "E4008") {

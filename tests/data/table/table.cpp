@@ -219,6 +219,13 @@ TEST_CASE("a ragged row is an error") {
   CHECK(empty.message.find("row 2 (line 3)") != std::string::npos);
 }
 
+TEST_CASE("halves of numbers with a decimal comma get no names of their own") {
+  CHECK(error_of("t,P,T\n0,0,21,528\n10,0,21,497\n20,0,21,537\n").help.find("columns") == std::string::npos);
+  CHECK(error_of("t,P,T\n0,0,21,528\n10,0,21,497\n20,0,21,537\n").help.find("export the file again with `;`") != std::string::npos);
+  CHECK(error_of("t,P,T\n0,0,2.5,5\n10,0,2.1,4\n20,0,2.1,7\n").help.find("columns = ") != std::string::npos);
+  CHECK(error_of("a,b,c\n1,2,3\n1,2\n").help.find("decimal") == std::string::npos);
+}
+
 TEST_CASE("a comment among the rows is an error") { CHECK(error_of("a,b\n1,2\n# changed the gain\n3,4\n").code == "E4006"); }
 
 TEST_CASE("a missing column lists the columns there are and guesses") {
