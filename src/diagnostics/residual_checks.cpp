@@ -167,8 +167,8 @@ Limits limits_of(std::vector<Tested> const& all) {
 
 constexpr char const* offset_first = "the misfit is mostly a constant: add the offset first (`residual_offset`)";
 
-// coloured: what the fit leaves is more than noise.
-void check_share(ScoredChannel const& of, Tested const& tested, bool coloured, Findings& findings) {
+// pattern: of the residuals, where what the fit leaves is more than noise; else null.
+void check_share(ScoredChannel const& of, Tested const& tested, char const* pattern, Findings& findings) {
   char const* look = "check units, signs and columns, then the initial values and the priors, then the model";
   if (tested.offset_cures())
     look = offset_first;
@@ -179,12 +179,13 @@ void check_share(ScoredChannel const& of, Tested const& tested, bool coloured, F
         "and the priors, then the model";
   double const left = tested.unexplained;
   if (left > as_bad_as_the_mean(of.observed.size()))
-    findings.push_back(worse_than_the_mean(left > useless_nmse || coloured ? Severity::error : Severity::warning, of.names(),
-                                           of.name(), left, fmt::format("the fit explains nothing of this channel: {}", look)));
-  else if (coloured && left > little)
+    findings.push_back(worse_than_the_mean(left > useless_nmse || pattern != nullptr ? Severity::error : Severity::warning,
+                                           of.names(), of.name(), left,
+                                           fmt::format("the fit explains nothing of this channel: {}", look)));
+  else if (pattern != nullptr && left > little)
     findings.push_back({FindingCode::explains_little, left > less_than_half ? Severity::error : Severity::warning, of.names(),
-                        fmt::format("the fit explains {:.2g} % of the variance of {}, and its residuals are correlated in time",
-                                    std::max(0.0, 100 - left), of.name()),
+                        fmt::format("the fit explains {:.2g} % of the variance of {}, and its residuals {}",
+                                    std::max(0.0, 100 - left), of.name(), pattern),
                         look});
 }
 
@@ -216,8 +217,9 @@ void check_offset(ScoredChannel const& of, Tested const& tested, UserText const&
 }
 
 std::string size_help(ScoredChannel const& of, Tested const& tested, bool larger, bool coloured, UserText const& text) {
-  if (!tested.far.empty()) return "a few outlying samples make the noise appear larger: check these first";
-  if (tested.offset_cures()) return offset_first;
+  // An offset or an outlier makes residuals larger: it does not explain that they are small.
+  if (larger && !tested.far.empty()) return "a few outlying samples make the noise appear larger: check these first";
+  if (larger && tested.offset_cures()) return offset_first;
   if (of.noise_is_estimated())
     return "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: check the residuals";
   Channel const& channel = of.described();
@@ -315,8 +317,10 @@ FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits cons
   check_outliers(of, tested.far, text, shape);
   if (tested.white) check_memory(of, tested, limits, line, shape);
   // Deviances of small counts are neither centred nor alike.
-  bool const coloured = tested.white && tested.white->fires(limits.white) && !of.described().noise.row->discrete;
-  check_share(of, tested, coloured, findings);
+  bool const ordered = tested.white && !of.described().noise.row->discrete;
+  bool const coloured = ordered && tested.white->fires(limits.white);
+  bool const drifts = ordered && tested.unexplained > less_than_half && trend_p_value(of.residuals) < rare / limits.channels;
+  check_share(of, tested, coloured ? "are correlated in time" : drifts ? "have a trend in time" : nullptr, findings);
   if (shape.empty()) check_law(of, tested, limits.channels, text, shape);
   findings.insert(findings.end(), shape.begin(), shape.end());
   return line;

@@ -62,6 +62,20 @@ double limit_together(std::span<double const> p_values) {
   return k > 1 && boost::math::ibeta(k, n - k + 1, rare) < rare ? rare : rare / n;
 }
 
+double trend_p_value(std::span<double const> residuals) {
+  constexpr std::size_t least = 5, most = 200;
+  std::vector<double> there;
+  for (double const each : residuals)
+    if (!std::isnan(each)) there.push_back(each);
+  if (there.size() < least || there.size() > most) return 1;
+  double rising = 0;
+  for (std::size_t j = 0; j < there.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i) rising += there[j] > there[i] ? 1 : there[j] < there[i] ? -1 : 0;
+  auto const n = static_cast<double>(there.size());
+  double const z = (std::fabs(rising) - 1) / std::sqrt(n * (n - 1) * (2 * n + 5) / 18);
+  return z > 0 ? boost::math::gamma_q(0.5, z * z / 2) : 1;
+}
+
 CorrelationTest whiteness(std::span<double const> residuals, int lags) {
   CorrelationTest test;
   test.first_lag = 1;

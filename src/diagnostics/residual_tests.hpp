@@ -40,6 +40,14 @@ struct CorrelationTest {
 /// its skewness sqrt(8/L) (1 + 8 L/n); the two terms in L/n are fitted to simulations of 8 to 1000 samples.
 CorrelationTest whiteness(std::span<double const> residuals, int lags = 25);
 
+/// The chance that as many pairs of independent residuals rise, or fall, with time as these do: Kendall's rank correlation. It sees
+/// a trend of few samples, where the lags of `whiteness` are few.
+///
+///   S = sum sign(e_j - e_i), i < j;   z = (|S| - 1) / sqrt(n (n - 1) (2 n + 5) / 18) ~ N(0, 1)                    Kendall 1975
+///
+/// Two-sided; 1 for fewer than 5 samples and for more than 200, where `whiteness` sees a trend.
+double trend_p_value(std::span<double const> residuals);
+
 /// Whether past input (lags 0 .. lags) still shows in the residuals; both without their means.
 ///
 ///   z_k = sum (e_(t+k) - e)(u_t - u) / sqrt(n_k P) / (sd e sd u) ~ N(0, 1),   P = 1 + 2 sum r_e(k) r_u(k)          Ljung 1999,

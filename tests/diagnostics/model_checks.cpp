@@ -80,6 +80,20 @@ TEST_CASE("noise with heavy tails is of the size that it states, and of half of 
   CHECK(has(findings_of(mean + "observe y ~ student_t(a*x, 3, scale = 2)", outlying), "noise_size"));
 }
 
+TEST_CASE("an offset explains residuals that are too large, not those that are too small") {
+  auto const help = [](double size) {
+    int row = 0;
+    json const findings =
+        findings_of("parameter a [-] ~ normal(0, sd = 1e3)\n observe y ~ normal(a*x, sd = 10)",
+                    [&](Stream& stream) { return size * (0.5 + (row++ % 2 == 0 ? -2 : 2) + 0.1 * stream.normal()); });
+    for (json const& finding : findings)
+      if (finding.at("code") == "noise_size") return finding.at("help").get<std::string>();
+    return std::string();
+  };
+  CHECK(help(1) == "the stated noise is too large: estimate it");
+  CHECK(help(100).find("add the offset first") != std::string::npos);
+}
+
 TEST_CASE("chains that do not mix are told of their population, unless its members are sampled relative to it") {
   Model const model = test::model_of(
       "input x [-]\n parameter mu [-] ~ normal(0, sd = 1)\n parameter tau [-] ~ half_normal(1)\n"

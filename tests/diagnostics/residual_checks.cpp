@@ -123,6 +123,33 @@ TEST_CASE("noise larger than the response is no fault of the fit") {
   CHECK(find(findings, "samples_far_off") == nullptr);
 }
 
+TEST_CASE("eleven samples of a decay that the priors exclude are a trend, those of noise are none") {
+  auto const found = [](auto const& value) {
+    TemporaryFolder folder;
+    Stream stream({1, Purpose::test, 0, 0});
+    std::string table = "t,y\n";
+    for (int row = 0; row < 11; ++row) table += fmt::format("{},{}\n", row, value(row, stream));
+    write_file(folder.path() / "record.csv", table);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    run_text(folder.path() / "m.sysid",
+             "model m {\n state c [mg/l]\n parameter c0 [mg/l] ~ log_uniform(0.1, 100)\n initial c = c0\n"
+             " parameter k [1/h] ~ log_uniform(0.001, 10)\n parameter s ~ log_uniform(0.001, 1)\n c' = k*c\n"
+             " observe z ~ log_normal(median = c, sd = s)\n}\n"
+             "data record { file \"record.csv\"; time t [h]; measure z = y [mg/l] }\n"
+             "posterior = fit m to record with map, seed = 1\n",
+             options);
+    return json::parse(read_file(options.output / "posterior/summary.json")).at("findings");
+  };
+  json const missed = found([](int row, Stream& stream) { return 10 * std::exp(-0.4 * row + 0.1 * stream.normal()); });
+  json const* const finding = find(missed, "explains_little");
+  REQUIRE(finding != nullptr);
+  CHECK(finding->at("severity") == "error");
+  CHECK(finding->at("message").get<std::string>().find("have a trend in time") != std::string::npos);
+  json const still = found([](int, Stream& stream) { return 10 * std::exp(0.5 * stream.normal()); });
+  CHECK(find(still, "explains_little") == nullptr);
+}
+
 TEST_CASE("samples far off are named by their rows in the file") {
   auto const value = [](int row, Stream& stream) {
     return row == 250 ? 999 : 2 * std::exp(-0.05 * (row - 101)) + 0.01 * stream.normal();

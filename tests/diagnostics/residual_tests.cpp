@@ -92,6 +92,20 @@ TEST_CASE("future input, which no cause can read, is not tested for") {
   CHECK_FALSE(input_correlation(e, u).fires());
 }
 
+TEST_CASE("a trend of few samples is seen where their lags are too few") {
+  std::vector<double> falling;
+  for (int i = 0; i < 11; ++i) falling.push_back(5 - i);
+  CHECK_FALSE(whiteness(falling).fires());
+  CHECK(trend_p_value(falling) == doctest::Approx(2.66e-5).epsilon(0.01));  // S = -55, z = 54/sqrt(165)
+  falling[4] = missing;
+  CHECK(trend_p_value(falling) < 1e-3);
+  int fired = 0;
+  for (std::uint64_t key = 1; key <= 2000; ++key) fired += trend_p_value(noise(11, key)) < 0.01 ? 1 : 0;
+  CHECK(fired < 40);
+  CHECK(trend_p_value(std::vector<double>{1, 2, 3, 4}) == 1);
+  CHECK(trend_p_value(std::vector<double>(50, 0.0)) == 1);
+}
+
 TEST_CASE("records too short or constant are not judged") {
   CHECK_FALSE(whiteness({}).fires());
   CHECK_FALSE(whiteness(std::vector<double>{1, 1, 1}).fires());

@@ -89,13 +89,13 @@ Finding other_timing(InputOf const& input, double shift, double gain, int scored
   std::string const by =
       unequal_step(time) == 0 ? fmt::format("{} ({:.4g} s)", of_samples(count), count * mean_step(time)) : of_samples(count);
   std::string const help =
-      later ? fmt::format(
-                  "the response begins {} after the input: if the recording causes this, {}; otherwise the model lacks a dead time "
-                  "or a slow "
-                  "actuator of about this size",
-                  by, move_column("the column of " + name_of(input), true, count))
-            : fmt::format("the column of {} is {} late against the response: {}, or correct the delay of the recording",
-                          name_of(input), by, move_column("it", false, count));
+      later
+          ? fmt::format(
+                "the response begins {} after the input: if the recording causes this, {}; otherwise the model lacks a dead time, "
+                "a slow actuator or a slow sensor of about this size (`tau*z' = y - z`, with `observe` of `z`)",
+                by, move_column("the column of " + name_of(input), true, count))
+          : fmt::format("the column of {} is {} late against the response: {}, or correct the delay of the recording",
+                        name_of(input), by, move_column("it", false, count));
   return {FindingCode::input_timing, Severity::warning, names, better_shifted(input, later, by, gain, scored), help};
 }
 
