@@ -31,6 +31,10 @@ ExitCode run_or_stop(Session& session, int index, Task const& task) {
     else
       session.notices << fmt::format("{}: interrupted; {} starts it again\n", task.name, to_resume(session.options.surface));
     return ExitCode::interrupted;
+  } catch (IoError const& error) {  // a full disk leaves the last checkpoint whole
+    if (files_are_left() || !std::filesystem::exists(checkpoint_path(session.result_folder(task)))) throw;
+    throw IoError(error.what(), fmt::format("{}{}the last checkpoint is kept: {} continues from there", error.help(),
+                                            error.help().empty() ? "" : "; ", to_resume(session.options.surface)));
   }
 }
 

@@ -2,6 +2,7 @@
 #include "app/session/task_checkpoint.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -22,8 +23,21 @@ using json = nlohmann::json;
 // Of the file itself. A file of an older form is refused as damaged: nothing of it can be taken up.
 constexpr int form = 7;
 
-UserError refused(char const* code, std::filesystem::path const& path, char const* what, char const* help) {
+UserError refused(char const* code, std::filesystem::path const& path, std::string const& what, char const* help) {
   return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});
+}
+
+// What differs between two runs, in words.
+std::string other_than(json const& stored, json const& now) {
+  constexpr std::pair<char const*, char const*> parts[] = {{"model", "another text of the file"},
+                                                           {"data", "other data"},
+                                                           {"task", "another task"},
+                                                           {"seed", "another seed"},
+                                                           {"verb", "another command"}};
+  std::vector<std::string> differing;
+  for (auto const& [key, words] : parts)
+    if (!stored.is_object() || stored.value(key, json()) != now.value(key, json())) differing.emplace_back(words);
+  return fmt::format("{}", fmt::join(differing, ", "));
 }
 
 UserError damaged(std::filesystem::path const& path) { return refused("E6207", path, "is damaged", "start again with --force"); }
@@ -86,8 +100,8 @@ std::shared_ptr<json const> TaskCheckpoint::stored() const {
   auto const stored = read(path_);
   if (!stored) return nullptr;
   if (stored->at("who") != who())
-    throw refused("E6208", path_, "belongs to a run with another text of the file, other data, another seed or another command",
-                  "restore the files of that run, or start again with --force");
+    throw refused("E6208", path_, "belongs to a run with " + other_than(stored->at("who"), who()),
+                  "restore what differs, or start again with --force; every character of the file counts, comments and blanks too");
   return std::make_shared<json const>(stored->at("content"));
 }
 
@@ -119,7 +133,7 @@ bool TaskCheckpoint::keep_steps(json const* stored, std::function<json(json cons
 }
 
 UserError TaskCheckpoint::does_not_fit(std::string const& why) const {
-  return refused("E6207", path_, ("is damaged: " + why).c_str(), "start again with --force");
+  return refused("E6207", path_, "is damaged: " + why, "start again with --force");
 }
 
 void TaskCheckpoint::drop() {

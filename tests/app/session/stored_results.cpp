@@ -158,8 +158,11 @@ TEST_CASE("a damaged checkpoint and one of another text are told apart") {
   options.resume = true;
   Answer const other = run("rate", output.path(), {}, options);
   CHECK(other.exit == ExitCode::user_error);
-  CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` belongs to a run with another text of the file, other "
-                            "data, another seed or another command") != std::string::npos);
+  CHECK(other.messages.find("error[E6208]: `OUT/posterior/checkpoint.cbor` belongs to a run with another text of the file\n") !=
+        std::string::npos);
+  options.seed = 77;
+  CHECK(run("k", output.path(), {}, options).messages.find("belongs to a run with another seed\n") != std::string::npos);
+  options.seed.reset();
   for (std::size_t const at : {checkpoint.size() / 4, checkpoint.size() / 2, checkpoint.size() - 1}) {
     std::string flipped = checkpoint;
     flipped[at] = static_cast<char>(flipped[at] ^ 4);
@@ -283,6 +286,25 @@ TEST_CASE("a disk that takes no byte is found before any work, and nothing half-
         "sysid: error: cannot write `OUT/posterior/claim`: file too large\n"
         "help: check that the folder is writable and the disk has free space\n");
   CHECK_FALSE(std::filesystem::exists(output.path() / "posterior"));
+}
+
+TEST_CASE("a disk that is full after a checkpoint leaves it, and says how to go on") {
+  TemporaryFolder const output;
+  REQUIRE_FALSE(checkpoint_of_an_interrupted_run(output.path()).empty());
+  RunOptions options;
+  options.resume = true;
+  auto const before_signal = ::signal(SIGXFSZ, SIG_IGN);
+  rlimit before = {};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  rlimit little = before;
+  little.rlim_cur = 10;
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &little) == 0);
+  Answer const shown = run("k", output.path(), {}, options);
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+  ::signal(SIGXFSZ, before_signal);
+  CHECK(shown.exit == ExitCode::io);
+  CHECK(shown.messages.find("; the last checkpoint is kept: --resume continues from there\n") != std::string::npos);
+  CHECK(run("k", output.path(), {}, options).exit <= ExitCode::doubtful);
 }
 
 TEST_CASE("draws that are not all there are neither predicted with nor kept by --resume") {
