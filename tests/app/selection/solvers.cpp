@@ -113,3 +113,29 @@ TEST_CASE("predictions of a selection are integrated as its particles were") {
   CHECK(steps > 1);
   CHECK(run.summary("again").at("settings").at("substeps").get<int>() == steps);
 }
+
+TEST_CASE("draws of candidates that a finer solver moves are reported, of the most probable one as an error") {
+  std::string rows = "t,y\n";
+  Stream stream({.seed = 5, .purpose = Purpose::test, .index = 0, .step = 0});
+  for (int i = 0; i < 40; ++i) rows += fmt::format("{},{:.9g}\n", 0.2 * i, std::cos(4.0 * 0.2 * i) + 0.02 * stream.normal());
+  auto const selected = [&](std::string const& steps) {
+    CaseRun const run(
+        "model hard {\n  state y\n  initial y = 1, y' = 0\n  parameter w [1/s] ~ normal(4, sd = 0.5)\n  y'' + w^2*(y + 0.01*y^3) = "
+        "0\n"
+        "  observe place ~ normal(y, sd = 0.02)\n}\n"
+        "model still {\n  state y\n  initial y = 1\n  parameter a [1/s] ~ normal(0, sd = 1)\n  y' = -a*y + 0.001*y^2*a\n"
+        "  observe place ~ normal(y, sd = 0.02)\n}\n"
+        "data bench { file \"swing.csv\"; time t [s]; measure place = y }\ncandidates swings { hard; still }\n"
+        "selection = select swings to bench with reversible_jump(samples = 600, burn_in = 200, pilot = 300), solver = rk4(substeps "
+        "= " +
+            steps + "), seed = 1\n",
+        {{"swing.csv", rows}});
+    std::vector<std::string> severities;
+    json const summary = run.summary("selection");
+    for (json const& each : summary.at("findings"))
+      if (each.at("code") == "integration_step") severities.push_back(each.at("severity"));
+    return severities;
+  };
+  CHECK(selected("1") == std::vector<std::string>{"error"});
+  CHECK(selected("32").empty());
+}

@@ -70,6 +70,15 @@ TEST_CASE("modes are weighed by the mass below them, not by their height") {
   CHECK(result.findings[0].message.find("x = 10") != std::string::npos);
 }
 
+TEST_CASE("several further modes are one finding, which describes the largest of them") {
+  Bench bench;
+  SearchResult const result = search(mixture({0.5, 0.2, 0.3}, {0, -20, 20}, {1, 1, 1}), ObjectiveKind::posterior, bench.context);
+  REQUIRE(result.modes.size() == 3);
+  REQUIRE(result.findings.size() == 1);
+  std::string const& message = result.findings[0].message;
+  CHECK(message.starts_with("2 further modes have about 27, 18 % of the posterior mass, the largest at x = 2"));
+}
+
 TEST_CASE("one mode alone raises no warning") {
   TestTarget const target = mixture({1}, {3}, {0.5});
   Bench bench;
