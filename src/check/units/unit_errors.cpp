@@ -164,7 +164,11 @@ Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string co
 }
 
 Diagnostic letter_taken_for_temperature(Diagnostic conflict, Span written, LetterUnit const& letter) {
-  conflict.secondary.push_back({written, fmt::format("the {}", letter.name)});
+  constexpr std::uint32_t blank_and_bracket = 2;
+  bool const beside = std::any_of(conflict.secondary.begin(), conflict.secondary.end(), [&](Label const& each) {
+    return each.span.end <= written.begin && written.begin - each.span.end <= blank_and_bracket;
+  });
+  if (!beside) conflict.secondary.push_back({written, fmt::format("the {}", letter.name)});
   conflict.help = fmt::format("`[{}]` is the {}: a temperature in {} is in `[{}]`, and a factor of a unit is `{}`, as in `[J/{}]`",
                               letter.letter, letter.name, letter.scale, letter.temperature, letter.difference, letter.difference);
   return conflict;
