@@ -229,10 +229,11 @@ TEST_CASE("a mistake in the body of a function is told at the call, with the pla
 TEST_CASE("cycles and radians without 2*pi are warned of, with it they are not") {
   for (std::string const statement :
        {"derive fn [Hz] = sqrt(k/m)", "derive wn [rad/s] = 2*f", "let a = sin(f*t)", "let a = cos(n/n*1 + f*t)",
-        "let a = f + sqrt(k/m)", "let a = max(w, f)", "derive wn [rad/s] = 6*f", "derive v [m/min] = n*1 [m]",
-        "derive a [rpm] = 2 [L/min]/1 [L]", "let a = if w > f then 1 else 0", "derive a [rad/s] = w/(2*pi)",
-        "derive a [Hz] = 2*pi*f", "let a = f^2*y*m + k*y", "derive a [N/m] = m*f^2", "let a = y' + f*y", "let a = f*(y - 2*y) - y'",
-        "derive fn [Hz] = (k/m)^(1/2)", "parameter a [Hz] ~ normal(w, sd = 1)"}) {
+        "let a = f + sqrt(k/m)", "let a = max(w, f)", "derive wn [rad/s] = 6*f",
+        "parameter turns [rpm] = 3\nderive v [m/min] = turns*1 [m]", "parameter flow [L/min] = 3\nderive a [rpm] = flow/1 [L]",
+        "let a = if w > f then 1 else 0", "derive a [rad/s] = w/(2*pi)", "derive a [Hz] = 2*pi*f", "let a = f^2*y*m + k*y",
+        "derive a [N/m] = m*f^2", "let a = y' + f*y", "let a = f*(y - 2*y) - y'", "derive fn [Hz] = (k/m)^(1/2)",
+        "parameter a [Hz] ~ normal(w, sd = 1)"}) {
     CAPTURE(statement);
     Said const said = with(statement);
     CHECK(said.code == "E2210");

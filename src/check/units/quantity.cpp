@@ -55,7 +55,7 @@ Typed unless_wrong(Typed result, Typed const& a, Typed const& b) {
 
 NodeId adapt(Graph& graph, Typed const& typed, std::optional<Unit> const& unit) {
   if (!unit) return typed.node;
-  if (typed.kind == Kind::literal) return graph.multiply(graph.constant(named_or_coherent(*unit).scale), typed.node);
+  if (typed.kind == Kind::literal) return graph.multiply(graph.constant(unit->scale), typed.node);
   if (typed.kind == Kind::known && typed.unit.offset != unit->offset && typed.unit.dimension == unit->dimension)
     return graph.add(typed.node, graph.constant(typed.unit.offset - unit->offset));
   return typed.node;
@@ -72,11 +72,13 @@ std::optional<Unit> unify(Graph& graph, std::span<Typed> operands) {
         unit = operand.unit;
         break;
       }
-  // Beside a pure number a bare number is one: 1 + a/L is not 1 mm/m more than a/L.
-  if (unit.dimensionless() &&
-      std::any_of(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::literal; })) {
-    unit.scale = 1;
-    unit.text.clear();
+  // Beside a pure number a bare number is one: 1 + a/L is not 1 mm/m more than a/L. Beside a product it counts in SI.
+  if (std::any_of(operands.begin(), operands.end(), [](Typed const& t) { return t.kind == Kind::literal; })) {
+    if (unit.dimensionless()) {
+      unit.scale = 1;
+      unit.text.clear();
+    }
+    unit = named_or_coherent(std::move(unit));
   }
   for (Typed& operand : operands) operand.node = adapt(graph, operand, unit);
   return unit;
