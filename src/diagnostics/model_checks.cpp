@@ -86,6 +86,13 @@ Findings check_use(Model const& model, StartRule const& start) {
            fmt::format("{} is used only in initial values, which `start = {}` replaces: its posterior equals its prior", name,
                        start_text(start)),
            "use `start = record`, which starts from the initial values, or remove the parameter"});
+    else if (model.name.find('(') != std::string::npos)  // `osc(cubic = 0)`: terms are switched off on purpose
+      findings.push_back(
+          {FindingCode::unused_parameter,
+           Severity::note,
+           {name},
+           fmt::format("{} is in no term of `{}`, as its arguments have it: its posterior equals its prior", name, model.name),
+           ""});
     else
       findings.push_back({FindingCode::unused_parameter,
                           Severity::warning,

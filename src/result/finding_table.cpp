@@ -119,7 +119,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::far_outside, "far_outside", warning},
     {FindingCode::duplicate_inputs, "duplicate_inputs", note},
     {FindingCode::length_beyond_range, "length_beyond_range", note},
-    {FindingCode::unused_parameter, "unused_parameter", warning},
+    {FindingCode::unused_parameter, "unused_parameter", warning_or_note},
     {FindingCode::not_measured, "not_measured", error},
     {FindingCode::unequal_steps, "unequal_steps", error},
     {FindingCode::steps_interpolated, "steps_interpolated", warning_or_note},

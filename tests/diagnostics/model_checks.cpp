@@ -108,3 +108,18 @@ TEST_CASE("chains that do not mix are told of their population, unless its membe
   CHECK(check_hierarchy(model, draws, unmixed, members).empty());
   CHECK(check_hierarchy(model, draws, {}).empty());
 }
+
+TEST_CASE("an idle parameter is warned of, unless arguments of the model may have switched its terms off") {
+  Model model = test::model_of(
+      "state y\ninitial y = 1\nparameter k ~ normal(1, sd = 1)\nparameter k3 ~ normal(1, sd = 1)\ny' = -k*y - 0*k3*y^3\n"
+      "observe d ~ normal(y, sd = 1)");
+  model.name = "osc";
+  Findings const idle = check_use(model, {});
+  REQUIRE(idle.size() == 1);
+  CHECK(idle[0].names == std::vector<std::string>{"k3"});
+  CHECK(idle[0].severity == Severity::warning);
+  model.name = "osc(cubic = 0)";
+  Findings const switched_off = check_use(model, {});
+  REQUIRE(switched_off.size() == 1);
+  CHECK(switched_off[0].severity == Severity::note);
+}
