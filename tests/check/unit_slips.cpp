@@ -80,6 +80,11 @@ TEST_CASE("letters of temperatures that are other units here are told once, wher
   CHECK(heater("degC", "J/C").find("as in `[J/K]`") != std::string::npos);
   CHECK(heater("F", "J/K", "degF").find("`[degF]`") != std::string::npos);
   CHECK(heater("degC", "J/K").empty());
+  // Inside the covariance of an unknown function as well.
+  std::string const covariance = test::messages(
+      "model m {\ninput T [degC]\nparameter s [mm] ~ half_normal(sd = 5)\nparameter n [mm] ~ half_normal(sd = 5)\n"
+      "function d(T) ~ gp(squared_exponential(amplitude = s, length = 10 [C]))\nobserve y [mm] ~ normal(d(T), sd = n)\n}\n");
+  CHECK(covariance.find("`[C]` is the coulomb") != std::string::npos);
   // A charge is one where no temperature would agree better.
   std::string const charge =
       test::messages("model m {\ninput q [C]\nparameter c [F] ~ log_uniform(1, 2)\nobserve u [V] ~ normal(q*c, sd = 1)\n}\n");

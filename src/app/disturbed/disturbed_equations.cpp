@@ -10,6 +10,7 @@
 #include "core/text/diagnostic.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -40,34 +41,6 @@ void require_open(Model const& model, Task const& fit) {
       throw refused(channel.span,
                     fmt::format("the noise of `{}` is not normal, which the filters of disturbances need", channel.name),
                     "fit with `normal(...)` noise");
-}
-
-void each_reference(ast::Expression const& expression, auto const& see) {
-  std::visit(
-      [&](auto const& node) {
-        using Node = std::decay_t<decltype(node)>;
-        if constexpr (std::is_same_v<Node, ast::Reference>) {
-          see(node);
-          for (ast::Expression const& index : node.index) each_reference(index, see);
-        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Unary>>) {
-          each_reference(*node->operand, see);
-        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Binary>>) {
-          each_reference(*node->left, see);
-          each_reference(*node->right, see);
-        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Call>>) {
-          for (ast::Argument const& argument : node->arguments) each_reference(argument.value, see);
-        } else if constexpr (std::is_same_v<Node, ast::Box<ast::Conditional>>) {
-          for (auto const* part : {&node->condition, &node->then, &node->otherwise}) each_reference(**part, see);
-        } else if constexpr (std::is_same_v<Node, ast::Box<ast::List>>) {
-          for (ast::Expression const& item : node->items) each_reference(item, see);
-        }
-      },
-      expression.node);
-}
-
-void each_reference(ast::Equation const& equation, auto const& see) {
-  each_reference(equation.left, see);
-  each_reference(equation.right, see);
 }
 
 template <class Statement>

@@ -1,5 +1,5 @@
-// Names, operators and functions of the user's text in terms of numbers. What needs no rewriting keeps its form: the checker reads
-// it.
+// Operators and functions of the user's text in terms of numbers (names: evaluator_names.cpp). What needs no rewriting keeps its
+// form: the checker reads it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 
 #include "check/elaborate/array_functions.hpp"
 #include "check/elaborate/frame.hpp"
-#include "check/elaborate/tree.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_reuse.hpp"
 #include "function/table.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 
@@ -65,180 +65,6 @@ std::optional<Array> Evaluator::evaluate_node(ast::Expression const& expression,
   return scalar(expression);  // a text
 }
 
-std::optional<Array> Evaluator::value_of(Frame& frame, std::string const& name, FrameSymbol& symbol) {
-  if (symbol.evaluated) return symbol.array;
-  symbol.evaluating = true;
-  auto const* locals = std::exchange(locals_, nullptr);
-  auto const* home = std::exchange(function_home_, nullptr);
-  auto value = evaluate(*symbol.value, *symbol.value_frame);
-  locals_ = locals;
-  function_home_ = home;
-  symbol.evaluating = false;
-  symbol.evaluated = true;
-  if (value && symbol.shape_known) {
-    std::string const path = symbol.bound() ? frame.prefix + name : name;
-    value = algebra_.fill(std::move(*value), symbol.shape, true, errors::named("the value of", path), symbol.value->span);
-  } else if (value) {
-    symbol.shape = value->shape;
-  }
-  symbol.shape_known = true;
-  if (value)
-    for (std::size_t i = 0; i < value->items.size(); ++i)
-      definitions_[element_name(frame.prefix + name, symbol.shape, i)] = value->items[i];
-  return symbol.array = std::move(value);
-}
-
-// `u[t-1]` where time is discrete; an index that is a whole number is that of an element.
-std::optional<Diagnostic> Evaluator::sample_index(ast::Reference const& reference, Frame const& frame, bool is_channel) const {
-  Frame const* whole = &frame;
-  while (whole->outer != nullptr) whole = whole->outer;
-  auto const& statements = whole->model().statements;
-  bool const discrete = std::any_of(statements.begin(), statements.end(), [](ast::ModelStatement const& each) {
-    return std::holds_alternative<ast::DiscreteTimeDeclaration>(each);
-  });
-  if (!discrete || reference.index.size() != 1 || whole_number(reference.index.front(), frame.instance.arguments))
-    return std::nullopt;
-  return errors::sample_by_index(reference.span, reference.index.front(), {reference.name.text, is_channel});
-}
-
-std::optional<Array> Evaluator::element(Array array, ast::Reference const& reference, Frame const& frame) {
-  if (reference.index.empty()) return array;
-  Span const span = cover(reference.index.front().span, reference.index.back().span);
-  if (auto refused = sample_index(reference, frame, false)) {
-    diagnostics_.add(std::move(*refused));
-    return std::nullopt;
-  }
-  if (static_cast<int>(reference.index.size()) != array.shape.rank) {
-    diagnostics_.add(errors::index_count(span, reference.name.text, array.shape, reference.index.size()));
-    return std::nullopt;
-  }
-  long place[2] = {1, 1};
-  for (std::size_t i = 0; i < reference.index.size(); ++i) {
-    auto const index = whole_number(reference.index[i], frame.instance.arguments);
-    if (!index) {
-      diagnostics_.add(errors::whole_number_needed(reference.index[i].span, {"an index"}));
-      return std::nullopt;
-    }
-    if (*index < 1 || *index > (i == 0 ? array.shape.rows : array.shape.columns)) {
-      diagnostics_.add(errors::index_out_of_range(reference.index[i].span, reference.name.text, array.shape));
-      return std::nullopt;
-    }
-    place[i] = *index;
-  }
-  return scalar(array.at(static_cast<int>(place[0] - 1), static_cast<int>(place[1] - 1)));
-}
-
-std::optional<Array> Evaluator::reference(ast::Reference const& reference, Frame& frame) {
-  std::string const& name = reference.name.text;
-  Span const span = reference.span;
-  if (locals_ != nullptr)
-    if (auto const local = locals_->find(name); local != locals_->end()) {
-      if (reference.primes > 0) {
-        diagnostics_.add(errors::primes_on(reference, "an argument of this function"));
-        return std::nullopt;
-      }
-      return element(local->second, reference, frame);
-    }
-  if (auto const argument = frame.instance.arguments.find(name); argument != frame.instance.arguments.end()) {
-    if (reference.primes > 0) {
-      diagnostics_.add(errors::primes_on(reference, "an argument of the model"));
-      return std::nullopt;
-    }
-    return element(scalar(tree::number(static_cast<double>(argument->second), span)), reference, frame);
-  }
-  Found const found = find(frame, name);
-  if (found.symbol == nullptr) {
-    auto const& statements = frame.model().statements;
-    bool const is_channel = std::any_of(statements.begin(), statements.end(), [&](ast::ModelStatement const& each) {
-      auto const* observation = std::get_if<ast::Observation>(&each);
-      return observation != nullptr && observation->channel.name.text == name;
-    });
-    if (auto refused = is_channel ? sample_index(reference, frame, true) : std::nullopt) {
-      diagnostics_.add(std::move(*refused));
-      return std::nullopt;
-    }
-    // Channels, `pi`, and what is not declared: the checker knows better.
-    ast::Reference copy = reference;
-    Shape shape;
-    shape.rank = static_cast<int>(reference.index.size());
-    copy.index.clear();
-    std::string indices;
-    for (ast::Expression const& index : reference.index) {
-      auto const number = whole_number(index, frame.instance.arguments);
-      if (!number) {
-        diagnostics_.add(errors::whole_number_needed(index.span, {"an index"}));
-        return std::nullopt;
-      }
-      indices += fmt::format("{}{}", indices.empty() ? "" : ", ", *number);
-    }
-    if (!indices.empty()) copy.name.text += "[" + indices + "]";
-    return scalar({{span}, std::move(copy)});
-  }
-  FrameSymbol& symbol = *found.symbol;
-  std::string const flat = found.frame->prefix + found.name;
-  bool const defined = symbol.value != nullptr;
-  if (symbol.kind == FrameSymbol::Kind::time && !time_name.empty()) {
-    motions_[time_name] = OverTime::Kind::time;
-    return element(scalar(tree::reference(time_name, reference.primes, span)), reference, frame);
-  }
-  std::optional<Array> value;
-  if (defined && !symbol.evaluating) {
-    value = value_of(*found.frame, found.name, symbol);
-    if (!value) return std::nullopt;
-  }
-  bool const bound_input = symbol.bound() && symbol.kind == FrameSymbol::Kind::input;
-  if (reference.primes > 0 && value && symbol.shape.rank > 0 && !bound_input) {
-    diagnostics_.add(errors::primes_on_array(reference));
-    return std::nullopt;
-  }
-  Array array{symbol.shape, {}};
-  for (std::size_t i = 0; i < symbol.shape.count(); ++i) {
-    std::string const each = element_name(flat, symbol.shape, i);
-    // A plain number among the elements stays one, so that it adapts to what it meets.
-    bool const plain =
-        reference.primes == 0 && value && symbol.shape.rank > 0 && !symbol.declared->unit && tree::is_plain_number(value->items[i]);
-    if (plain) {
-      array.items.push_back(value->items[i]);
-    } else if (bound_input && reference.primes > 0 && value) {
-      auto derived = rate(value->items[i], reference.primes, span, flat);
-      if (!derived) return std::nullopt;
-      array.items.push_back(std::move(*derived));
-    } else {
-      if (!defined) motions_[each] = symbol.kind == FrameSymbol::Kind::parameter ? OverTime::Kind::still : OverTime::Kind::moving;
-      array.items.push_back(tree::reference(each, reference.primes, span));
-    }
-  }
-  return element(std::move(array), reference, frame);
-}
-
-std::optional<OverTime> Evaluator::motion_of(std::string const& name) const {
-  if (auto const motion = motions_.find(name); motion != motions_.end()) return OverTime{motion->second, nullptr};
-  if (auto const definition = definitions_.find(name); definition != definitions_.end())
-    return OverTime{OverTime::Kind::defined, &definition->second};
-  if (name == "pi" || name == "inf") return OverTime{OverTime::Kind::still, nullptr};
-  return std::nullopt;
-}
-
-std::optional<ast::Expression> Evaluator::rate(ast::Expression expression, int primes, Span use, std::string const& input) {
-  Span const binding = expression.span;
-  for (; primes > 0; --primes) {
-    std::size_t left = algebra_.left();
-    auto derived = time_derivative(
-        expression, [&](std::string const& name) { return motion_of(name); }, left);
-    if (!derived && left == 0) {
-      algebra_.refuse(use);
-      return std::nullopt;
-    }
-    if (!derived) {
-      diagnostics_.add(errors::no_rate_of_binding(use, binding, input));
-      return std::nullopt;
-    }
-    expression = std::move(*derived);
-    if (!algebra_.spend(scalar(expression), use)) return std::nullopt;
-  }
-  return expression;
-}
-
 ast::FunctionDefinition const* Evaluator::find_function_definition(Frame const& frame, std::string const& name) const {
   // Inside a function of a module, names of functions mean those of the module.
   if (function_home_ == nullptr)
@@ -258,7 +84,7 @@ bool Evaluator::is_plain(ast::FunctionDefinition const& function, Frame const& f
   bool const imported = shared != home.functions.end() && shared->second.tree == &function && shared->second.home != &home;
   if (frame.outer != nullptr || imported || !home.module.empty()) return false;
   bool plain = true;
-  tree::each(function.value, [&](ast::Expression const& each) {
+  each_expression(function.value, [&](ast::Expression const& each) {
     if (std::holds_alternative<ast::Box<ast::List>>(each.node)) plain = false;
     if (auto const* name = std::get_if<ast::Reference>(&each.node)) {
       bool const own = std::any_of(function.parameters.begin(), function.parameters.end(),

@@ -10,6 +10,7 @@
 #include "check/elaborate/part_noise.hpp"
 #include "check/elaborate/tree.hpp"
 #include "check/message/errors_reuse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -56,7 +57,7 @@ class Flattener {
   template <class Statement>
   void add(Statement statement, Span span) {
     std::size_t nodes = 4;
-    tree::each_top(statement, [&](ast::Expression const& top) { nodes += tree::size(top, most_nodes); });
+    each_top_expression(statement, [&](ast::Expression const& top) { nodes += tree::size(top, most_nodes); });
     if (evaluator_.algebra().spend(nodes, span)) result_.tree.statements.push_back(std::move(statement));
   }
 
@@ -286,7 +287,7 @@ class Flattener {
       if (auto const* observation = std::get_if<ast::Observation>(&statement)) channels.insert(observation->channel.name.text);
     for (ast::ModelStatement const& statement : root_->model().statements) {
       if (!std::holds_alternative<ast::Equation>(statement) && !std::holds_alternative<ast::Definition>(statement)) continue;
-      tree::each_reference(statement, [&](ast::Reference const& reference) {
+      each_reference(statement, [&](ast::Reference const& reference) {
         std::string const& name = reference.name.text;
         bool const elsewhere = name.find('.') != std::string::npos || channels.contains(name) ||
                                root_->instance.arguments.contains(name) || find(*root_, name).symbol != nullptr;
@@ -322,7 +323,7 @@ class Flattener {
     std::set<std::string> noise;
     for (auto const& [frame, observation] : ignored_)
       for (ast::Argument const& argument : observation->noise.arguments)
-        tree::each(argument.value, [&, frame = frame](ast::Expression const& each) {
+        each_expression(argument.value, [&, frame = frame](ast::Expression const& each) {
           auto const* reference = std::get_if<ast::Reference>(&each.node);
           Found const found = reference == nullptr ? Found{} : find(*frame, reference->name.text);
           if (found.symbol != nullptr) noise.insert(found.frame->prefix + found.name);

@@ -86,6 +86,8 @@ class Evaluator {
   using Locals = std::map<std::string, Array>;
   std::optional<Array> evaluate_node(ast::Expression const& expression, Frame& frame);
   std::optional<Array> reference(ast::Reference const& reference, Frame& frame);
+  std::optional<Array> undeclared(ast::Reference const& reference, Frame const& frame);
+  std::optional<Array> declared(ast::Reference const& reference, Found const& found, Frame const& frame);
   std::optional<Diagnostic> sample_index(ast::Reference const& reference, Frame const& frame, bool is_channel) const;
   std::optional<Array> element(Array array, ast::Reference const& reference, Frame const& frame);
   std::optional<Array> call(ast::Call const& call, Span span, Frame& frame);

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "check/elaborate/tree.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -29,7 +29,7 @@ void spread(std::set<std::string>& names, Statements const& behind, Spelling con
     open.pop_back();
     if (place == behind.end()) continue;
     for (ast::ModelStatement const* statement : place->second)
-      tree::each_reference(*statement, [&](ast::Reference const& reference) {
+      each_reference(*statement, [&](ast::Reference const& reference) {
         std::string name = as(reference.name.text);
         if (names.insert(name).second) open.push_back(std::move(name));
       });
@@ -52,7 +52,7 @@ void drop_noise_of_parts(std::vector<ast::ModelStatement>& statements, std::set<
   std::set<std::string> kept;  // names of numbers
   for (ast::ModelStatement const& statement : statements)
     if (!of_noise(dispensable(statement)))
-      tree::each_reference(statement, [&](ast::Reference const& reference) { kept.insert(reference.name.text); });
+      each_reference(statement, [&](ast::Reference const& reference) { kept.insert(reference.name.text); });
   spread(kept, single, [](std::string const& name) { return name; });
   std::erase_if(statements, [&](ast::ModelStatement const& statement) {
     std::string const name = dispensable(statement);

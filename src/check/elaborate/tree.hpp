@@ -1,6 +1,5 @@
-// Building and looking through expressions of the syntax tree.
+// Building expressions of the syntax tree.
 #pragma once
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,13 +55,6 @@ inline ast::Expression product(ast::Expression a, ast::Expression b, Span span) 
   if (is_number(b, 1)) return a;
   return binary("*", std::move(a), std::move(b), span);
 }
-
-/// Calls visit(expression) for the expression and all below it, those of indices included, units excluded.
-void each(ast::Expression const& expression, std::function<void(ast::Expression const&)> const& visit);
-/// For every expression of a statement, at the top of it.
-void each_top(ast::ModelStatement const& statement, std::function<void(ast::Expression const&)> const& visit);
-/// Every name that a statement reads.
-void each_reference(ast::ModelStatement const& statement, std::function<void(ast::Reference const&)> const& visit);
 
 /// How many nodes, counted up to `most`.
 std::size_t size(ast::Expression const& expression, std::size_t most);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check/elaborate/tree.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -53,7 +54,7 @@ ast::UnitExpression with_arguments(ast::UnitExpression unit, WholeNumbers const&
     if (auto* group = std::get_if<ast::Box<ast::UnitExpression>>(&factor.base)) *group = with_arguments(std::move(**group), known);
     if (!factor.exponent) continue;
     bool reads_argument = false;
-    tree::each(**factor.exponent, [&](ast::Expression const& each) {
+    each_expression(**factor.exponent, [&](ast::Expression const& each) {
       auto const* reference = std::get_if<ast::Reference>(&each.node);
       reads_argument = reads_argument || (reference != nullptr && known.contains(reference->name.text));
     });

@@ -15,36 +15,6 @@
 namespace sysid {
 namespace {
 
-template <class Visit>
-void each_expression_of(ast::ModelStatement& statement, Visit const& visit) {
-  auto const call = [&](ast::Call& call) {
-    for (ast::Argument& argument : call.arguments) visit(argument.value);
-  };
-  std::visit(
-      [&](auto& one) {
-        using One = std::decay_t<decltype(one)>;
-        if constexpr (std::is_same_v<One, ast::InitialDeclaration>) {
-          for (ast::InitialValue& initial : one.values) {
-            if (initial.value) visit(*initial.value);
-            if (initial.law) call(*initial.law);
-          }
-        } else if constexpr (std::is_same_v<One, ast::DisturbanceDeclaration>) {
-          call(one.law);
-        } else if constexpr (std::is_same_v<One, ast::ParameterDeclaration>) {
-          if (one.prior) call(*one.prior);
-          if (one.value) visit(*one.value);
-        } else if constexpr (std::is_same_v<One, ast::Definition> || std::is_same_v<One, ast::FunctionDefinition>) {
-          visit(one.value);
-        } else if constexpr (std::is_same_v<One, ast::Observation>) {
-          call(one.noise);
-        } else if constexpr (std::is_same_v<One, ast::Equation>) {
-          visit(one.left);
-          visit(one.right);
-        }
-      },
-      statement);
-}
-
 /// Puts [degC] where [C] stands alone, and [K] where it is a factor of a unit, as in [J/C]. Returns the place of the first.
 std::optional<Span> replace_letter(ast::Model& model, errors::LetterUnit const& letter) {
   std::optional<Span> first;
@@ -61,7 +31,7 @@ std::optional<Span> replace_letter(ast::Model& model, errors::LetterUnit const& 
     if (each.unit) replace(*each.unit);
   });
   for (ast::ModelStatement& statement : model.statements)
-    each_expression_of(statement, [&](ast::Expression& top) {
+    each_top_expression(statement, [&](ast::Expression& top) {
       each_expression(top, [&](ast::Expression& part) {
         if (auto* number = std::get_if<ast::Number>(&part.node); number != nullptr && number->unit) replace(*number->unit);
       });

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <set>
 
-#include "check/elaborate/tree.hpp"
 #include "check/expression/distributions.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_disturbances.hpp"
 #include "model/invariant.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 
@@ -97,7 +97,7 @@ errors::StartValue ModelChecker::start_of_temperature(State const& state, std::s
 std::vector<errors::StartValue> ModelChecker::values_to_give(std::vector<std::size_t> const& components) const {
   std::set<std::string> read;
   for (ast::ModelStatement const& statement : tree_.statements)
-    tree::each_reference(statement, [&](ast::Reference const& reference) { read.insert(reference.name.text); });
+    each_reference(statement, [&](ast::Reference const& reference) { read.insert(reference.name.text); });
   auto const same_kind = [](std::optional<Unit> const& a, std::optional<Unit> const& b) {
     Unit const left = a.value_or(Unit{}), right = b.value_or(Unit{});
     return left.dimension == right.dimension && left.offset == right.offset;

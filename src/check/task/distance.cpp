@@ -7,10 +7,10 @@
 #include <set>
 #include <span>
 
-#include "check/elaborate/tree.hpp"
 #include "check/expression/non_negative.hpp"
 #include "check/message/errors.hpp"
 #include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -144,7 +144,7 @@ class DistanceChecker {
   bool reads_only_channels(ast::Expression const& tree) {
     bool good = true;
     std::vector<Span> channels;  // names inside of measured(...) and its kin
-    tree::each(tree, [&](ast::Expression const& each) {
+    each_expression(tree, [&](ast::Expression const& each) {
       if (auto const* call = std::get_if<ast::Box<ast::Call>>(&each.node)) {
         std::string const& function = (*call)->function.text;
         if (reads_channel(function))

@@ -132,8 +132,7 @@ void note_orders(ast::Equation const& equation, std::set<std::string> const& sta
   auto const note = [&](ast::Reference const& reference) {
     if (states.contains(reference.name.text)) orders[reference.name.text] = std::max(orders[reference.name.text], reference.primes);
   };
-  each_reference(equation.left, note);
-  each_reference(equation.right, note);
+  each_reference(equation, note);
 }
 
 /// The states whose highest derivative stands in the equation.
@@ -143,8 +142,7 @@ std::set<std::string> leads(ast::Equation const& equation, Orders const& orders)
     auto const order = orders.find(reference.name.text);
     if (order != orders.end() && reference.primes == order->second) result.insert(order->first);
   };
-  each_reference(equation.left, note);
-  each_reference(equation.right, note);
+  each_reference(equation, note);
   return result;
 }
 
