@@ -6,6 +6,7 @@
 #include "app/running.hpp"
 
 using namespace sysid;
+using json = nlohmann::json;
 
 namespace {
 
@@ -30,12 +31,16 @@ data run { file "coast.csv"; time t [s]; measure speed = speed [m/s] }
 which = select drag to run with abc_smc(particles = 200), seed = 1
 )";
 
-CheckResult check_drag(std::string const& text) {
+std::string coasting() {
   std::string table = "t,speed\n";
   for (int row = 0; row < 60; ++row)
     table += fmt::format("{},{:.4g}\n", 0.25 * row, 12 / (1 + 12 * 0.09 * 0.25 * row) + 0.05 * (row % 3 - 1));
+  return table;
+}
+
+CheckResult check_drag(std::string const& text) {
   TemporaryFolder folder;
-  write_file(folder.path() / "coast.csv", table);
+  write_file(folder.path() / "coast.csv", coasting());
   return checked(folder.path() / "m.sysid", text);
 }
 
@@ -83,6 +88,16 @@ TEST_CASE("an initial value in another unit is named beside the first sample, an
       preflight(result, "which", "quadratic").findings.front().help ==
       "check `initial v` and its unit; if the initial value is not known, declare `parameter v_start [m/s] ~ normal(11.9, sd = 6)` "
       "and write `initial v = v_start`");
+  // A fit reports it as `check` does.
+  for (bool const off : {true, false}) {
+    CAPTURE(off);
+    std::string const fit = with(off ? wrong : drag, "which = select drag to run with abc_smc(particles = 200)",
+                                 "which = fit quadratic to run with map");
+    json const summary = CaseRun(fit, {{"coast.csv", coasting()}}).summary("which");
+    auto const findings = summary.at("findings");
+    CHECK(std::any_of(findings.begin(), findings.end(), [](json const& each) { return each.at("code") == "initial_far_off"; }) ==
+          off);
+  }
   CHECK(messages(check_drag(drag), "initial_far_off").empty());
   // A parameter that may have the right value is not doubted.
   CHECK(

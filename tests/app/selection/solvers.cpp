@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "app/running.hpp"
+#include "app/selection/selection_checks.hpp"
 #include "core/numeric/random.hpp"
 
 using namespace sysid;
@@ -89,6 +91,96 @@ TEST_CASE("a candidate whose steps would grow is stepped exactly, and its eviden
           0.02 + 4 * model.at("log_evidence_error").get<double>());
   }
   CHECK(run.summary("again").at("settings").at("solver") == "exponential");
+}
+
+TEST_CASE("`abc_smc` steps a linear candidate exactly, and what cannot be stepped so is predicted by the stated solver") {
+  LagRecord const record;
+  std::string const smooth = "data smooth { file \"lag.csv\"; time t [s]; input u = u hold cubic; measure level = y }\n";
+  CaseRun const run(
+      lag_model("quick", "log_uniform(1e-3, 10)") + lag_data + smooth +
+          "candidates lags { quick }\n"
+          "selection = select lags to bench with abc_smc(particles = 100, populations = 4, cross_check = no), seed = 1\n"
+          "held = predict selection on bench with draws(20), seed = 1\n"
+          "other = predict selection on smooth with draws(20), seed = 1\n",
+      {{"lag.csv", record.text()}});
+  json const summary = run.summary("selection");
+  CHECK(summary.at("models").at("quick").at("simulated_with").at("solver") == "exponential");
+  for (json const& each : summary.at("findings")) CHECK(each.at("code") != "step_not_settled");
+  CHECK(run.summary("held").at("settings").at("solver") == "exponential");
+  CHECK(run.summary("other").at("settings").at("solver") != "exponential");
+}
+
+TEST_CASE("a result that does not say how its particles were simulated is predicted by the task's solver") {
+  LagRecord const record;
+  std::string const text =
+      lag_model("quick", "log_uniform(0.15, 0.3)") + lag_data +
+      "candidates lags { quick }\n"
+      "selection = select lags to bench with reversible_jump(samples = 200, burn_in = 50, pilot = 100), solver = "
+      "rk4(substeps = 64), seed = 1\n"
+      "again = predict selection on bench with draws(20), seed = 1\n";
+  TemporaryFolder const folder;
+  write_file(folder.path() / "lag.csv", record.text());
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "case.sysid", text, options, {"select"});
+  auto const place = folder.path() / "results" / "selection" / "summary.json";
+  json summary = json::parse(read_file(place));
+  REQUIRE(summary.at("models").at("quick").erase("simulated_with") == 1);
+  write_file(place, summary.dump(2));
+  run_text(folder.path() / "case.sysid", text, options, {"predict"});
+  json const again = json::parse(read_file(folder.path() / "results" / "again" / "summary.json"));
+  CHECK(again.at("settings").at("solver") == "rk4");
+  CHECK(again.at("settings").at("substeps") == 64);
+}
+
+namespace {
+
+/// One model whose finer solver adds `shift` to every distance.
+class ShiftedDistances : public SelectionTarget {
+ public:
+  ShiftedDistances(SelectedModel const& coarse, double shift) : coarse_(coarse), shift_(shift) {}
+  int size() const override { return 1; }
+  std::string const& name(int) const override { return coarse_.name; }
+  double prior_probability(int) const override { return 1; }
+  std::span<ParameterInfo const> parameters(int) const override { return coarse_.parameters; }
+  void sample_prior(int, StreamKey, Lanes) const override {}
+  void log_prior(int, ConstLanes, std::span<double>, bool) const override {}
+  void constrain(int, ConstLanes, Lanes) const override {}
+  void unconstrain(int, ConstLanes, Lanes) const override {}
+  void distances(std::span<Batch const> batches, double) const override {
+    for (std::size_t i = 0; i < batches[0].distance.size(); ++i) batches[0].distance[i] = coarse_.distance[i] + shift_;
+  }
+  std::pair<std::string, double> failure(int, ConstLanes) const override { return {}; }
+  void parallel(int tasks, std::function<void(int)> const& task) const override {
+    for (int i = 0; i < tasks; ++i) task(i);
+  }
+
+ private:
+  SelectedModel const& coarse_;
+  double shift_;
+};
+
+}  // namespace
+
+TEST_CASE("distances that a finer solver changes are a warning, and an error where they change by the threshold") {
+  SelectionResult result;
+  result.threshold = 2;
+  SelectedModel& selected = result.models.emplace_back();
+  selected.name = "m";
+  selected.theta = LaneArray(1, 50);
+  selected.distance.assign(50, 1.5);
+  auto const found = [&](double shift, SolverSettings const& solver = {}) {
+    return check_distances(ShiftedDistances(result.models.front(), shift), 0, result, solver);
+  };
+  CHECK(found(0.05).empty());
+  REQUIRE(found(0.5).size() == 1);
+  CHECK(found(0.5).front().severity == Severity::warning);
+  REQUIRE(found(2.5).size() == 1);
+  CHECK(found(2.5).front().severity == Severity::error);
+  CHECK(found(std::numeric_limits<double>::infinity()).front().severity == Severity::error);
+  SolverSettings model;
+  model.as_model = true;
+  CHECK(found(2.5, model).empty());
 }
 
 TEST_CASE("predictions of a selection are integrated as its particles were") {
