@@ -93,6 +93,42 @@ TEST_CASE("a disturbance that is held from sample to sample knows their interval
   }
 }
 
+TEST_CASE("exact steps keep a held disturbance as it is, alone and beside a white one") {
+  Model model = with_disturbance(filtered_file(filtered_text).models.front(), "w", "q");
+  LinearSystem system = oscillator_system(1.3, 4, 130, 0.02, 0.004);
+  model.disturbances.front().held = system.held = true;
+  std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
+  for (bool const equal : {true, false}) {
+    CAPTURE(equal);
+    FilterRecord const of = record(60, 2, equal);
+    ModelTarget const target(compile(model, false, "exponential"), of.experiment, filter_options("exponential", 1));
+    CHECK(value_at(target, values) == doctest::Approx(joint_density(system, of.experiment.time, of.u, of.y)).epsilon(1e-11));
+  }
+  // Both at once: the sum of what each adds is that of one of them with a share, as both enter the same way and steps are short.
+  std::vector<double> sums;
+  for (double const share : {0.0, 0.5, 1.0}) {
+    Model both = model;
+    Graph& graph = both.graph;
+    NodeId const q = both.disturbances.front().intensity;
+    Disturbance white = both.disturbances.front();
+    white.held = false;
+    double const step = 0.02;
+    white.intensity = graph.multiply(graph.constant(share * step), q);
+    both.disturbances.front().intensity = graph.multiply(graph.constant(1 - share), q);
+    both.disturbances.push_back(white);
+    for (State& state : both.states)
+      state.derivative = graph.substitute(state.derivative, [&](NodeId leaf) -> std::optional<NodeId> {
+        if (graph[leaf].operation != Operation::leaf || graph[leaf].leaf_kind != LeafKind::disturbance) return std::nullopt;
+        return graph.add(leaf, graph.leaf(LeafKind::disturbance, 1));
+      });
+    FilterRecord const of = record(60, 2, true);
+    ModelTarget const target(compile(both, false, "exponential"), of.experiment, filter_options("exponential", 1));
+    sums.push_back(value_at(target, values));
+  }
+  CHECK(sums[1] == doctest::Approx(0.5 * (sums[0] + sums[2])).epsilon(1e-3));
+  CHECK(sums[0] != sums[2]);
+}
+
 TEST_CASE("residuals and densities of samples are those of the filter") {
   std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
   Model const model = with_disturbance(filtered_file(filtered_text).models.front(), "w", "q");

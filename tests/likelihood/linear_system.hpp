@@ -29,6 +29,7 @@ struct LinearSystem {
   Eigen::MatrixXd a, b, g, h;
   Eigen::VectorXd start;
   Eigen::MatrixXd start_covariance, q, r;
+  bool held = false;  // w keeps its value from sample to sample, and q is its covariance
 };
 
 /// The same with the integral of each disturbance as a further state.
@@ -76,11 +77,15 @@ inline JointNormal joint_normal(LinearSystem const& system, std::vector<double> 
     block << -system.a, system.g * system.q * system.g.transpose(), Eigen::MatrixXd::Zero(n, n), system.a.transpose();
     Eigen::MatrixXd const power = (block * step).exp();
     Eigen::MatrixXd const transition = power.bottomRightCorner(n, n).transpose();
-    Eigen::MatrixXd const added = transition * power.topRightCorner(n, n);
-    Eigen::MatrixXd forced = Eigen::MatrixXd::Zero(n + system.b.cols(), n + system.b.cols());
-    forced.topLeftCorner(n, n) = system.a;
-    forced.topRightCorner(n, system.b.cols()) = system.b;
-    Eigen::MatrixXd const response = (forced * step).exp().topRightCorner(n, system.b.cols());
+    auto const response_to = [&](Eigen::MatrixXd const& gain) -> Eigen::MatrixXd {
+      Eigen::MatrixXd forced = Eigen::MatrixXd::Zero(n + gain.cols(), n + gain.cols());
+      forced.topLeftCorner(n, n) = system.a;
+      forced.topRightCorner(n, gain.cols()) = gain;
+      return (forced * step).exp().topRightCorner(n, gain.cols());
+    };
+    Eigen::MatrixXd const response = response_to(system.b), of_noise = response_to(system.g);
+    Eigen::MatrixXd added = transition * power.topRightCorner(n, n);
+    if (system.held) added = of_noise * system.q * of_noise.transpose();
     joint.mean.segment((k + 1) * n, n) = transition * joint.mean.segment(k * n, n) + response * u.col(k);
     covariance.block((k + 1) * n, 0, n, (k + 1) * n) = transition * covariance.block(k * n, 0, n, (k + 1) * n);
     covariance.block(0, (k + 1) * n, (k + 1) * n, n) = covariance.block((k + 1) * n, 0, n, (k + 1) * n).transpose();

@@ -22,6 +22,7 @@ constexpr int most_by_slopes = 3;
 struct Gain {
   NodeId intensity = 0;
   std::vector<NodeId> rows;
+  std::optional<NodeId> held = {};  // the variance of what keeps its value over a step that an exact method takes
 };
 
 class MomentWriter {
@@ -32,6 +33,7 @@ class MomentWriter {
         random_(random),
         states_(source_.states()),
         zero_(graph_.constant(0)),
+        exact_(!source_.map && find_solver(source_.integrator)->exact),
         covariance_(states_, zero_),
         stored_(states_, zero_),
         noise_(states_, zero_),
@@ -48,14 +50,13 @@ class MomentWriter {
     for (NodeId& derivative : source_.derivative) derivative = at_rest(derivative);
     for (NormalChannel const& channel : channels) outputs_.push_back(passage_.row(channel.mean));
     add_noise();
-    bool const exact = !source_.map && find_solver(source_.integrator)->exact;
-    if (exact)
+    if (exact_)
       step_exactly();
     else if (may_step_by_slopes())
       step_by_slopes(disturbed);
     if (rules_.empty())
       for (NodeId const derivative : source_.derivative) rules_.push_back(passage_.row(derivative));
-    factored_ = random_.by_slopes && source_.map && (!source_.stepped || exact) && are_linear(rules_) &&
+    factored_ = random_.by_slopes && source_.map && (!source_.stepped || exact_) && are_linear(rules_) &&
                 (passage_.linearises() || are_linear(outputs_));
     number_covariances();
     Moments result;
@@ -99,6 +100,7 @@ class MomentWriter {
       Gain gain;
       gain.intensity = noise.held && !source_.map ? graph_.multiply(noise.intensity, sampling_interval()) : noise.intensity;
       for (NodeId const derivative : source_.derivative) gain.rows.push_back(at_rest(graph_.differentiate(derivative, leaf)));
+      if (noise.held && exact_) gain.held = noise.intensity;
       gains_.push_back(std::move(gain));
     }
   }
@@ -119,15 +121,19 @@ class MomentWriter {
 
   void add_noise() {
     for (Gain const& gain : gains_)
-      for (int i = 0; i < states_; ++i)
-        for (int j = 0; j <= i; ++j)
-          add_product(noise_(i, j), gain.intensity,
-                      graph_.multiply(gain.rows[static_cast<std::size_t>(i)], gain.rows[static_cast<std::size_t>(j)]));
+      if (!gain.held) add_square(gain.intensity, gain.rows);
   }
 
+  /// To what is added to the covariance: v g g'.
+  void add_square(NodeId v, std::vector<NodeId> const& g) {
+    for (int i = 0; i < states_; ++i)
+      for (int j = 0; j <= i; ++j)
+        add_product(noise_(i, j), v, graph_.multiply(g[static_cast<std::size_t>(i)], g[static_cast<std::size_t>(j)]));
+  }
+
+  /// The matrices of an exact method are those of one step for all samples.
   NodeId sampling_interval() {
-    bool const exact = find_solver(source_.integrator)->exact;  // whose matrices are those of one step for all samples
-    return exact ? graph_.leaf(LeafKind::step_length) : graph_.leaf(LeafKind::interval, static_cast<int>(IntervalData::length));
+    return exact_ ? graph_.leaf(LeafKind::step_length) : graph_.leaf(LeafKind::interval, static_cast<int>(IntervalData::length));
   }
 
   /// Means and covariances of an exact method are those of a map.
@@ -143,17 +149,26 @@ class MomentWriter {
       rules_.push_back({exact.states[i], {row, row + states_}, true});
     }
     for (int i = 0; i < states_; ++i)
-      for (int j = 0; j <= i; ++j) noise_(i, j) = exact.added[static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j)];
+      for (int j = 0; j <= i; ++j)
+        if (std::ranges::any_of(gains_, [](Gain const& each) { return !each.held; }))
+          noise_(i, j) = exact.added[static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j)];
     source_.map = source_.stepped = true;
-    FactoredCovariance const factors = FactoredCovariance::of(graph_, noise_);
-    for (int i = 0; i < states_; ++i) {
-      weights_.push_back(factors.entries()(i, i));
-      for (int j = 0; j < states_; ++j) columns_.push_back(j < i ? zero_ : i == j ? graph_.constant(1) : factors.entries()(j, i));
-    }
     whole_gains_.assign(gains_.size(), std::vector<NodeId>(n, zero_));
     for (std::size_t d = 0; d < gains_.size(); ++d)
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < n; ++k) add_product(whole_gains_[d][i], exact.integral[i * n + k], gains_[d].rows[k]);
+    FactoredCovariance const factors = FactoredCovariance::of(graph_, noise_);
+    for (int i = 0; i < states_; ++i) {
+      weights_.push_back(factors.entries()(i, i));
+      for (int j = 0; j < states_; ++j) columns_.push_back(j < i ? zero_ : i == j ? graph_.constant(1) : factors.entries()(j, i));
+      for (std::size_t d = 0; d < gains_.size(); ++d)
+        if (gains_[d].held) columns_.push_back(whole_gains_[d][static_cast<std::size_t>(i)]);
+    }
+    for (std::size_t d = 0; d < gains_.size(); ++d)
+      if (gains_[d].held) {
+        weights_.push_back(*gains_[d].held);
+        add_square(*gains_[d].held, whole_gains_[d]);
+      }
     length_ = graph_.leaf(LeafKind::step_length);
   }
 
@@ -441,6 +456,7 @@ class MomentWriter {
   RandomStates const& random_;
   int states_;
   NodeId zero_;
+  bool exact_;  // the method's steps
   std::vector<NodeId> means_;
   std::vector<Gain> gains_;
   std::vector<MomentRow> rules_, outputs_;
