@@ -205,7 +205,7 @@ Findings check_chains(ChainReport const& report) {
   check_agreement(report, findings);
   if (!findings.empty() && findings.front().code == FindingCode::chains_disagree) return findings;
   check_size(report, findings);
-  if (findings.empty()) check_defined(report, findings);
+  check_defined(report, findings);
   return findings;
 }
 

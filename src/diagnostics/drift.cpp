@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace sysid {
 namespace {
@@ -15,9 +16,10 @@ constexpr double tolerable_drift = 1e-3;
 Findings drift_findings(Source const& source, Model const& model, Trajectory::Result const& result, std::string const& record) {
   Findings findings;
   for (std::size_t i = 0; i < model.invariants.size(); ++i) {
-    double largest = 0;
+    double largest = -1;
     for (double const drift : result.drift[i])
-      if (drift > largest) largest = drift;
+      if (std::isfinite(drift)) largest = std::max(largest, drift);
+    if (largest < 0) continue;  // nothing could be simulated, which other findings report
     findings.push_back(
         {FindingCode::constraint_drift,
          largest > tolerable_drift ? Severity::warning : Severity::note,

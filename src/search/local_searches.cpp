@@ -125,12 +125,16 @@ void settle_all(Objective const& objective, std::vector<Climber>& climbers,
 bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
   constexpr double tolerable = 0.03, as_high = 0.01;
   constexpr int usual = 2;  // places, of a search of any size
-  int places = 1, hits = modes.front().hits;
-  for (std::size_t m = 1; m < modes.size(); ++m) {
-    double const below = modes[m - 1].log_density - modes[m].log_density;
-    if (std::fabs(below) > as_high) ++places;
-    if (modes.front().log_density - modes[m].log_density < as_high) hits += modes[m].hits;
+  // Modes may be ranked by their mass: neighbours need not be the next in density, and a narrow one may be higher than the best.
+  std::vector<double> heights;
+  int places = 1, hits = 0;
+  for (Mode const& mode : modes) {
+    heights.push_back(mode.log_density);
+    if (std::fabs(modes.front().log_density - mode.log_density) < as_high) hits += mode.hits;
   }
+  std::ranges::sort(heights);
+  for (std::size_t m = 1; m < heights.size(); ++m)
+    if (heights[m] - heights[m - 1] > as_high) ++places;
   auto const w = static_cast<double>(places), n = static_cast<double>(searches);
   return hits < 2 || (places > usual && w * (w + 1) > tolerable * n * (n - 1));
 }

@@ -39,7 +39,8 @@ struct ClimbedTogether {
 ClimbedTogether climb_together(Objective const& objective, std::vector<Climber> climbers, int rounds, int as_many_again,
                                Ledger& ledger, std::function<bool()> const& stop, Journal* journal);
 
-/// Local searches from near their ends to these, with more patience for those that may end highest. Best first. affordable: rounds
+/// Local searches from near their ends to these, with more patience for those that may end highest. Best first before that patience,
+/// which may change their order. affordable: rounds
 /// of so many searches that may be made.
 void settle_all(Objective const& objective, std::vector<Climber>& climbers,
                 std::function<int(std::size_t searches)> const& affordable, Ledger& ledger, std::function<bool()> const& stop,

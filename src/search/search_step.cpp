@@ -37,6 +37,8 @@ void decode_climbers(nlohmann::json const& stored, std::vector<Climber>& climber
     each.log_density = values[0];
     each.damping = values[1];
     each.done = values[2] != 0;
+    if (!(values[3] >= 0 && values[3] <= std::numeric_limits<int>::max()))
+      throw checkpoint::Mismatch("its searches have no number of hits");
     each.hits = static_cast<int>(values[3]);
     each.gain = values[4];
     each.stalled = values[5] != 0;

@@ -210,11 +210,18 @@ SolverSettings make_solver(SolverRow const& row, Settings const& values) {
   SolverSettings result;
   result.method = row.name;
   for (auto const& [name, value] : values.all()) {
-    if (name == "substeps") result.substeps = static_cast<int>(values.integer(name));
-    if (name == "relative") result.relative = values.real(name);
-    if (name == "absolute") result.absolute = values.real(name);
-    if (name == "steps") result.steps = static_cast<int>(values.integer(name));
-    if (name == "as_model") result.as_model = values.flag(name);
+    if (name == "substeps")
+      result.substeps = static_cast<int>(values.integer(name));
+    else if (name == "relative")
+      result.relative = values.real(name);
+    else if (name == "absolute")
+      result.absolute = values.real(name);
+    else if (name == "steps")
+      result.steps = static_cast<int>(values.integer(name));
+    else if (name == "as_model")
+      result.as_model = values.flag(name);
+    else
+      throw InternalError(fmt::format("nothing reads the setting `{}` of a solver", name));
   }
   return result;
 }

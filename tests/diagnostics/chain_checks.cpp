@@ -124,6 +124,15 @@ TEST_CASE("too few independent draws are reported with how much longer to run") 
   CHECK(low);
 }
 
+TEST_CASE("a parameter whose draws are all equal is named beside one that has too few") {
+  ChainReport both = report(chains(4, 6000, 0.98));
+  both.summaries.push_back(summarise("stuck", "", ChainValues(4, std::vector<double>(6000, 1.0))));
+  bool named = false;
+  for (Finding const& f : check_chains(both))
+    named = named || (f.code == FindingCode::no_diagnostics && f.names == std::vector<std::string>{"stuck"});
+  CHECK(named);
+}
+
 TEST_CASE("draws that are all equal cannot be judged, which is a failure too") {
   Findings const findings = check_chains(report(ChainValues(4, std::vector<double>(2000, 1.0))));
   REQUIRE(findings.size() == 1);

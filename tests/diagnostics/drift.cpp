@@ -1,7 +1,10 @@
 // What a run says of constraints that the compiler differentiated.
 #include <doctest/doctest.h>
 
+#include <limits>
+
 #include "app/running.hpp"
+#include "diagnostics/drift.hpp"
 
 using namespace sysid;
 
@@ -20,6 +23,19 @@ std::string const warning = "truth: warning: the solution does not satisfy the c
 std::string const note = "truth: the solution does not satisfy the constraint `x^2 + y^2 = l^2` exactly";
 
 }  // namespace
+
+TEST_CASE("of a constraint nothing is said where nothing could be simulated") {
+  Source const source("m.sysid", "x^2 = 1");
+  Model model;
+  model.invariants.push_back({});
+  model.invariants.front().span = {0, 7};
+  Trajectory::Result result;
+  double const nothing = std::numeric_limits<double>::quiet_NaN();
+  result.drift = {{nothing, nothing}};
+  CHECK(drift_findings(source, model, result, "bench").empty());
+  result.drift = {{nothing, 0.5}};
+  CHECK(drift_findings(source, model, result, "bench").size() == 1);
+}
 
 TEST_CASE("a constraint that drifts by more than a thousandth of its terms is warned of, by less is noted") {
   std::string const loose = notices("cvode(relative = 1e-3)"), tight = notices("ida(relative = 1e-8)");

@@ -44,6 +44,21 @@ TEST_CASE("each mode that searches end in comes once, with the number of searche
   }
 }
 
+TEST_CASE("a mode met once may have a neighbour that was missed, whatever was met elsewhere") {
+  auto const mode = [](double log_density, int hits) {
+    Mode one;
+    one.log_density = log_density;
+    one.hits = hits;
+    return one;
+  };
+  CHECK(may_be_missed({mode(0, 1), mode(-5, 9)}, 10));
+  CHECK_FALSE(may_be_missed({mode(0, 5), mode(-5, 5)}, 10));
+  // Ranked by mass: the narrow one is higher, and says nothing of the broad one.
+  CHECK(may_be_missed({mode(0, 1), mode(4, 9)}, 10));
+  // Two copies with another mode between them in the order of mass are one place, and met as often as both.
+  CHECK_FALSE(may_be_missed({mode(0, 1), mode(-5, 8), mode(0, 1)}, 10));
+}
+
 TEST_CASE("searches that meet go on as one: eight cost little more than one") {
   TestTarget const target = duffing(3);
   Ledger ledger;

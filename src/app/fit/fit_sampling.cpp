@@ -225,6 +225,7 @@ HigherSearch FitSampling::choose_again(Again const& from, json const* steps) {
   if (!chosen) return HigherSearch::interrupted;
   if (searched == HigherSearch::nothing) {
     preparation_.searched_again = most_searches;
+    preparation_.ledger = std::move(again.ledger);
   } else {
     preparation_ = std::move(again);
     preparation_.ledger.merge(ledger_);
@@ -246,12 +247,15 @@ bool FitSampling::go_on_choosing(json const& stored) {
   checkpoint_.reading([&] {
     from = {read_solver(stored.at("solver")), checkpoint::decode(stored.at("place"))};
     require_method(from.solver);
-    bool const fits = from.place.empty() || std::ssize(from.place) == likelihood_->space().dimension();
+    // Of what is sampled: coefficients that are integrated out have no coordinate.
+    bool const fits = from.place.empty() || std::ssize(from.place) == preparing_.target(from.solver)->dimension();
     if (!fits) throw checkpoint::Mismatch("its parameters differ in number");
     ledger_ = checkpoint::decode_ledger(stored.at("ledger"));
     (void)stored.at("journal");
   });
-  return choose_again(from, &stored.at("journal")) != HigherSearch::interrupted;
+  HigherSearch const searched = choose_again(from, &stored.at("journal"));
+  if (searched == HigherSearch::nothing) ledger_ = {};  // the draws, which stay as they were, are drawn once more
+  return searched != HigherSearch::interrupted;
 }
 
 // From what an interrupted run has kept, if there is anything. False: interrupted, and kept.
