@@ -149,10 +149,9 @@ Diagnostic tilde_missing(Span where, std::string_view keyword, std::string_view 
 }
 
 Diagnostic tilde_without_keyword(Span where) {
-  return error(
-      "E1114", where, "`~` is used in a statement that is no prior, observation or disturbance",
-      "begin the statement with `parameter` for a prior, with `observe` for measured data, with `disturbance` for what was not "
-      "measured");
+  return error("E1114", where, "`~` is used in a statement that declares no prior, observation, disturbance or initial value",
+               "begin the statement with `parameter` for a prior, with `observe` for a measured quantity, with `disturbance` for "
+               "an unmeasured force or input");
 }
 
 Diagnostic other_file(Span begin, std::string const& name, std::string_view kind) {
@@ -191,7 +190,7 @@ Diagnostic left_arrow(Span where) { return foreign_operator(where, "<-", "an equ
 
 Diagnostic list_in_brackets(Span where, bool prior) {
   return error("E1118", where, "a list is not written in brackets",
-               prior ? "a range of values is a prior: `~ uniform(1, 2)`; a list is written in parentheses: `(1, 2)`"
+               prior ? "a range of values is written as a prior: `~ uniform(1, 2)`; a list is written in parentheses: `(1, 2)`"
                      : "write it in parentheses: `(1, 2)`");
 }
 
@@ -201,7 +200,7 @@ Diagnostic bounds_in_brackets(Span where) {
 }
 
 Diagnostic range_in_brackets(Span where) {
-  return error("E1118", where, "a range of values is not written in brackets", "it is a prior: `~ uniform(0.1, 10)`");
+  return error("E1118", where, "a range of values is not written in brackets", "write it as a prior: `~ uniform(0.1, 10)`");
 }
 
 Diagnostic bracket_out_of_place(Span where) {

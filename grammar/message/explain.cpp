@@ -204,14 +204,15 @@ class Failure {
     Diagnostic diagnostic = errors::unknown_statement(word, "a model", words::model_statements);
     bool const typed = words::translated(words::foreign_model_statements(), word.text) == "let";
     if (typed && has("~")) diagnostic.help = "did you mean `parameter`?";
-    if (typed && !has("~") && !has("=")) diagnostic.help = "did you mean `state`, or `parameter` for what is to be estimated?";
+    if (typed && !has("~") && !has("=")) diagnostic.help = "did you mean `state`, or `parameter` for a value to be estimated?";
     return diagnostic;
   }
 
   Diagnostic unknown_dictionary_statement() const {
     Diagnostic diagnostic = errors::unknown_statement(found(), "a dictionary", words::dictionary_statements);
     if (found().is("disturbance"))
-      diagnostic.help = "a discovery knows no disturbances: remove it, and declare it in the model that is fitted afterwards";
+      diagnostic.help =
+          "a dictionary cannot contain a disturbance: remove it, and declare it in the model that is fitted afterwards";
     return diagnostic;
   }
 

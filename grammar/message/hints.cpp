@@ -73,7 +73,7 @@ constexpr std::array<Situation, 35> situations{{
      "the prior probability of a candidate is written `NAME probability 0.5`"},
     {[](Gap const& g) { return found(g, "=") && g.at == 0; }, "an equation has two sides: `left = right`"},
     {[](Gap const& g) { return found(g, "%") && g.before() != nullptr && g.before()->kind == TokenKind::number; },
-     "a share in percent is written `1 [percent]`"},
+     "a percentage is written `1 [percent]`"},
     {[](Gap const& g) {
        return (found(g, "%") && (g.at == 0 || g.wanted == wanted::end_of_statement)) || (found(g, "*") && g.at == 0);
      },

@@ -237,7 +237,7 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
 std::string second_with(Gap const& gap, std::size_t first) {
   Token const* const sign = gap.next(2);
   if (sign != nullptr && sign->is("="))
-    return fmt::format("`with` stands once, and options are separated by commas: `{}, {}`", gap.text(first, gap.at),
+    return fmt::format("write `with` only once, and separate options by commas: `{}, {}`", gap.text(first, gap.at),
                        gap.text(gap.at + 1, gap.statement.size()));
   std::size_t const behind = sign != nullptr && sign->is("(") ? gap.closing(gap.at + 2) + 1 : gap.at + 2;
   return fmt::format("a task has one back end: write `{}{}` or `with {}`", gap.text(first, gap.at),

@@ -112,8 +112,9 @@ std::string behind_declared(Gap const& gap) {
   if (state && starts && !number.empty())
     return fmt::format("an initial value is a statement of its own: remove `{}` and write `initial {} = {}`", rest, name, number);
   if (state && gap.found->is("="))
-    return fmt::format("what measures a state is an observation: remove `{}` and write `observe {} ~ normal({}, sd = 1)`", rest,
-                       gap.next() == nullptr ? "channel" : gap.next()->text, name);
+    return fmt::format(
+        "the measurement of a state is declared with `observe`: remove `{}` and write `observe {} ~ normal({}, sd = 1)`", rest,
+        gap.next() == nullptr ? "channel" : gap.next()->text, name);
   if (state && gap.found->is("~"))
     return fmt::format(
         "a random initial value is a statement of its own: remove `{0}` and write `initial {1} ~ normal(0, sd = 1)`; "
@@ -219,14 +220,18 @@ std::string in_disturbance(Gap const& gap) {
   if (!gap.begins_with("disturbance") || gap.at < 2) return {};
   std::string_view const head = gap.text(0, std::min({gap.at, gap.find("~"), gap.find(",")}));
   std::string const law = fmt::format("`{} ~ white(intensity = 1)`, in discrete time `~ normal(0, sd = 1)`", head);
-  if (gap.wanted.starts_with("a distribution")) return fmt::format("a disturbance has a law with its arguments: {}", law);
+  if (gap.wanted.starts_with("a distribution"))
+    return fmt::format("a disturbance needs a law (its distribution) with arguments: {}", law);
   if (gap.wanted != wanted::tilde) return {};
   if (gap.found == nullptr) return fmt::format("write its law: {}", law);
   if (gap.found->is(","))
-    return fmt::format("declare each disturbance in a statement of its own: {}; equal ones are a vector, `disturbance {}(2) ~ ...`",
-                       law, gap.statement[1].text);
+    return fmt::format(
+        "declare each disturbance in a statement of its own: {}; several with the same law can be a vector, `disturbance {}(2) ~ "
+        "...`",
+        law, gap.statement[1].text);
   if (gap.found->is("="))
-    return fmt::format("what is known is a definition or an input; a disturbance has a law in place of `{}`: {}", gap.rest(), law);
+    return fmt::format("declare a known quantity with `let` or as an input; a disturbance has a law in place of `{}`: {}",
+                       gap.rest(), law);
   return {};
 }
 

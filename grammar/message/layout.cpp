@@ -186,7 +186,7 @@ class LayoutPass {
                      ? "a comment begins with `#` or `//`; to subtract a negative number, write a space between the signs: `a - -b`"
                  : written == "++" ? "write a single `+`"
                  : numbers ? fmt::format("an uncertain value is a prior: `~ normal({}, sd = {})`", before.text, tokens_[i + 2].text)
-                           : "an uncertain value is a prior, `~ normal(value, sd = 1)`; else write one sign"));
+                           : "an uncertain value is a prior, `~ normal(value, sd = 1)`; otherwise write a single sign"));
     }
   }
 

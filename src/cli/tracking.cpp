@@ -47,8 +47,8 @@ std::string read_drift(std::string const& text, DriftOption& drift) {
     if (good) time = unit->scale;
   }
   if (!good)
-    return fmt::format("invalid drift `{}`: a drift is a fraction from 0 to 1 in 1000 rows, or in a time: 0.01, 0.01/h, 0.05/day",
-                       text);
+    return fmt::format(
+        "invalid drift `{}`: a drift is a fraction from 0 to 1 per 1000 rows, or per unit of time: 0.01, 0.01/h, 0.05/day", text);
   drift = {relative, time, text};
   return "";
 }
@@ -98,7 +98,7 @@ Work declare_track(CLI::App& verb) {
       ->delimiter(',')
       ->type_name("NAMES");
   verb.add_option("--drift", options->drift,
-                  "relative sd of the change of a parameter in 1000 rows, or in a unit of time: 0.05/day")
+                  "relative sd of the change of a parameter per 1000 rows, or per unit of time: 0.05/day")
       ->type_name("DRIFT")
       ->check([&track](std::string const& text) { return read_drift(text, track.drift); })
       ->default_str("0.01");
@@ -110,7 +110,7 @@ Work declare_track(CLI::App& verb) {
       ->type_name("RATE")
       ->check(refuse_no_rate)
       ->default_str("1e-5");
-  verb.add_option("--window", track.window, "how many rows back the start of a change is looked for")
+  verb.add_option("--window", track.window, "number of past rows in which the start of a change is searched")
       ->type_name("N")
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();

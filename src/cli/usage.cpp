@@ -40,8 +40,9 @@ ExitCode no_verb(Messages const& messages, CLI::App const& app) {
   for (std::string const& word : app.remaining()) {
     if (word.starts_with('-')) continue;
     std::string const guess = did_you_mean(word, verb_names(app));
-    messages.complain(fmt::format("there is no command `{}`", word),
-                      guess.empty() ? fmt::format("commands: {}", fmt::join(verb_names(app), ", ")) : guess);
+    messages.complain(
+        fmt::format("there is no command `{}`", word),
+        guess.empty() ? fmt::format("commands (`sysid --help` describes them): {}", fmt::join(verb_names(app), ", ")) : guess);
     return ExitCode::usage;
   }
   *messages.out << app.help();

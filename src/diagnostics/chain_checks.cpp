@@ -134,8 +134,8 @@ std::string instead_of_disagreement(bool apart, bool exchanges) {
            "run longer chains or more temperatures, and check for a second mode or for parameters that the data cannot separate";
   if (apart)
     return start +
-           "there may be several modes: sample with tempering, whose chains cross between them, or narrow the priors to the "
-           "mode that is possible";
+           "there may be several modes: sample with tempering, whose chains cross between them, or, if only one mode is physically "
+           "possible, narrow the priors to it";
   return start +
          "run longer chains, or sample with tempering, which moves along ridges where the data cannot separate parameters, and "
          "check for a second mode";

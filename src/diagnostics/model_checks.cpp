@@ -91,7 +91,7 @@ Findings check_use(Model const& model, StartRule const& start) {
           {FindingCode::unused_parameter,
            Severity::note,
            {name},
-           fmt::format("{} is in no term of `{}`, as its arguments have it: its posterior equals its prior", name, model.name),
+           fmt::format("{} appears in no term of `{}` with these arguments: its posterior equals its prior", name, model.name),
            ""});
     else
       findings.push_back({FindingCode::unused_parameter,

@@ -228,8 +228,7 @@ std::string size_help(ScoredChannel const& of, Tested const& tested, bool larger
       return "the counts scatter less than counts of independent events: check that the column is neither smoothed nor a sum or a "
              "mean that was divided into several rows";
     if (coloured)
-      return "the model is incomplete: the residuals are correlated in time, which noise of counts that scatter more does not "
-             "explain";
+      return "the model is incomplete: the residuals are correlated in time, which overdispersed noise does not explain";
     std::string const shape = free_name(channel.name + "_shape", text.mentions);
     return use_overdispersed(shape, text.overdispersed ? text.overdispersed(channel, shape) : std::nullopt);
   }
@@ -250,10 +249,10 @@ void check_size(ScoredChannel const& of, Tested const& tested, Limits const& lim
 }
 
 std::string memory_help(ScoredChannel const& of, Tested const& tested) {
-  if (tested.offset_cures()) return fmt::format("{}; then look at what is left", offset_first);
+  if (tested.offset_cures()) return fmt::format("{}; then check the remaining residuals", offset_first);
   std::string help =
-      "look for a force or dynamics that the model lacks, or for coloured noise: the errors of the estimates can be "
-      "several times their sds";
+      "look for a force or dynamics that the model lacks, or for coloured noise; until this is resolved, the errors of the "
+      "estimates can be several times their sds";
   bool const normal = std::ranges::all_of(of.model().channels, [](Channel const& each) { return each.noise.row->gaussian; });
   if (of.model().integrated() && !of.model().filtered() && of.model().unknowns.empty() && of.model().processes.empty() && normal)
     help +=

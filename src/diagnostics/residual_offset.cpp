@@ -129,8 +129,8 @@ std::string cure_of_held(Parameter const& held, bool several) {
         "declared; if only this experiment has an offset, look for another cause in it",
         held.name);
   return fmt::format(
-      "`{0}` is added to this channel, but its prior, or another quantity that depends on it, keeps it from taking up the offset: "
-      "widen the prior of `{0}`",
+      "`{0}` is added to this channel, but its prior, or another quantity that depends on this parameter, prevents it from "
+      "compensating the offset: widen the prior of `{0}`",
       held.name);
 }
 
@@ -149,20 +149,19 @@ std::string cure(Model const& model, Channel const& channel, bool several, doubl
       fmt::format("parameter {}{}{}{} ~ normal(0, sd = {:g})", name, whole.size, several ? " per experiment" : "",
                   unit_of_offset(channel), round_number_above(3 * size));
   std::optional<std::string> const written = text.noise_statement_with ? text.noise_statement_with(channel, name) : std::nullopt;
-  std::string const added =
-      written ? fmt::format("add `{}` to the model and write `{}`", declaration, *written)
-              : fmt::format(
-                    "in a copy of the model, since it stands in a module, add `{}`, and add `{}` to the first argument of "
-                    "the distribution in `observe {}`",
-                    declaration, name, whole.name);
+  std::string const added = written ? fmt::format("add `{}` to the model and write `{}`", declaration, *written)
+                                    : fmt::format(
+                                          "copy the model from its module into your file, and in the copy add `{}`, and add `{}` "
+                                          "to the first argument of the distribution in `observe {}`",
+                                          declaration, name, whole.name);
   if (reads_samples(model, location))
     return fmt::format(
-        "if the equation lacks a constant term, {}; past samples already contain a part of a sensor's offset, and this parameter "
-        "is the rest of it",
+        "if the equation lacks a constant term, {}; if the sensor has an offset, the past samples already contain a part of it, "
+        "and this parameter estimates the rest",
         added);
   return fmt::format(
       "if the sensor has an offset, estimate it: {}; otherwise look for an input with an offset, for a constant force that the "
-      "model lacks, or for a law that is not the same in both directions",
+      "model lacks, or for a restoring or damping force that is not the same in both directions",
       added);
 }
 

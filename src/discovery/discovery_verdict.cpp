@@ -156,15 +156,14 @@ Findings other_terms(ValidationReport const& validation) {
   return {{FindingCode::other_terms_fit,
            rival ? Severity::warning : Severity::note,
            {outside.text},
-           rival
-               ? fmt::format(
-                     "an equation with terms outside the dictionary describes the record about as well or better, its coefficients "
-                     "counted: `{}` ({}); the terms that were found may only imitate it",
-                     outside.text, likelihood_clause(outside))
-               : fmt::format("an equation with terms outside the dictionary is as probable by the prior of terms and coefficients, "
-                             "but the record does not favour it: `{}` ({})",
-                             outside.text, likelihood_clause(outside)),
-           rival ? "if such terms make sense, add them to the dictionary and run again; a record of another amplitude decides"
+           rival ? fmt::format("an equation with terms outside the dictionary describes the record about as well or better, with a "
+                               "penalty for each coefficient: `{}` ({}); the terms that were found may only imitate it",
+                               outside.text, likelihood_clause(outside))
+                 : fmt::format("an equation with terms outside the dictionary is as probable, but only because of the prior of "
+                               "terms and coefficients; the record does not favour it: `{}` ({})",
+                               outside.text, likelihood_clause(outside)),
+           rival ? "if such terms are physically plausible, add them to the dictionary and run again; a record of another "
+                   "amplitude may decide between the two"
                  : "nothing, unless such terms make sense: then add them to the dictionary and run again"}};
 }
 

@@ -48,8 +48,8 @@ Finding crossed(Binding const& one, Binding const& other, bool exchange, std::st
   return {FindingCode::column_used_twice,
           Severity::warning,
           {one.name, data},
-          fmt::format("{} is read from column `{}` of {}, and column `{}` is read for {}: exchanged?", one.name, one.column, data,
-                      other.column, other.name),
+          fmt::format("{} is read from column `{}` of {}, and column `{}` is read for {}: the two may be exchanged", one.name,
+                      one.column, data, other.column, other.name),
           fmt::format("if so, write {}{}", one.line(other.column), exchange ? " and " + other.line(one.column) : "")};
 }
 

@@ -17,8 +17,8 @@ std::string cure_of(UnitInName const& found) {
   std::string const named = column_text(found.column, found.in_name), read = column_text(found.column, found.read_in);
   if (found.cycles)
     return fmt::format(
-        "one counts cycles, the other radians: declare in the model in {} what it measures, and write the factor 2*pi "
-        "where the equations need it; if the name is wrong, write `{}` in the data block",
+        "one unit counts cycles, the other radians: declare the quantity in the model in {}, and write the factor 2*pi where the "
+        "equations need it; if the name is wrong, write `{}` in the data block",
         found.in_name, read);
   if (found.word)
     return fmt::format(
@@ -120,11 +120,12 @@ Findings find_contradicted_rate(CheckedFile const& file, ExperimentData const& d
   if (found->kind == UnusedTime::Kind::other_units)
     return finding(fmt::format("column `{}` of {} agrees with the {} of `{}` only if its numbers are in {}", found->column,
                                block.name, stated, owner, found->meant_unit),
-                   fmt::format("if they are, {}: then its times are used", use));
+                   fmt::format("if they are, {}: the times of the column are then used", use));
   if (found->kind == UnusedTime::Kind::by_steps)
-    return finding(fmt::format("`{}` has {}, but column `{}` of {}, which is not used, has equal steps of {:.5g}: is it the time?",
-                               owner, stated, found->column, block.name, found->step),
-                   fmt::format("if it is, {}", use));
+    return finding(
+        fmt::format("`{}` has {}, but column `{}` of {}, which is not used, has equal steps of {:.5g}: it may be the time", owner,
+                    stated, found->column, block.name, found->step),
+        fmt::format("if it is, {}", use));
   std::string const rate = found->kind == UnusedTime::Kind::other_rate && of_block
                                ? word == "rate" ? fmt::format(" or `rate {:.6g} [Hz]`", 1 / found->step)
                                                 : fmt::format(" or `step {:.6g} [s]`", found->step)
@@ -158,13 +159,14 @@ Findings find_shared_columns(CheckedFile const& file, ExperimentData const& data
         use = fmt::format("the channel {}", block.measured[before].channel);
     if (use.empty() && data.record.measured_time == channel.column) use = "a time, by its name and its equal steps";
     if (use.empty()) continue;
-    findings.push_back({FindingCode::column_used_twice,
-                        Severity::warning,
-                        {channel.channel, data.use.name},
-                        fmt::format("{} is read from column `{}` of {}, which is also {}: nothing else was measured for it",
-                                    channel.channel, channel.column, data.use.name, use),
-                        fmt::format("write the column of its sensor in `measure {} = ...`{}", channel.channel,
-                                    others.empty() ? "" : "; columns that are not used: " + others)});
+    findings.push_back(
+        {FindingCode::column_used_twice,
+         Severity::warning,
+         {channel.channel, data.use.name},
+         fmt::format("{} is read from column `{}` of {}, which is also {}: the channel has no measurement of its own",
+                     channel.channel, channel.column, data.use.name, use),
+         fmt::format("write the column of its sensor in `measure {} = ...`{}", channel.channel,
+                     others.empty() ? "" : "; columns that are not used: " + others)});
   }
   return findings;
 }

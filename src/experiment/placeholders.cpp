@@ -94,8 +94,8 @@ Finding finding(ExperimentData const& data, ColumnUse const& column, std::string
   return {FindingCode::looks_missing,
           Severity::warning,
           {column.column, data.use.name},
-          fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: a missing value?", column.column,
-                      data.use.name, suspect.value, unit_after_number(unit), plural("row", rows.size()),
+          fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: this may mark a missing value",
+                      column.column, data.use.name, suspect.value, unit_after_number(unit), plural("row", rows.size()),
                       first_listed(rows, most_named)),
           cure};
 }
@@ -110,12 +110,12 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
   auto const look = [&](ColumnUse const& column, Quantity const& quantity, std::vector<double> values, bool input) {
     ColumnInFile const in_file(data, column, quantity);
     for (DoubtfulNumber const& suspect : doubtful_numbers(in_file.values(std::move(values))))
-      findings.push_back(finding(
-          data, column, in_file.unit_text(), suspect,
-          input ? "an input acts at every row: interpolate the missing samples in the file, or begin after them, with a range of "
-                  "rows in `split`; if a pulse saturated the recorder, the true values are larger"
-                : to_be_missing(block, data, model, column.column, {suspect.value}) +
-                      ": the row is then not scored; if it is a sample, add `none` to the list"));
+      findings.push_back(
+          finding(data, column, in_file.unit_text(), suspect,
+                  input ? "an input needs a value in every row: interpolate the missing samples in the file, or use only later "
+                          "rows, with a range in `split`; if the recorder was saturated, the true values are larger"
+                        : to_be_missing(block, data, model, column.column, {suspect.value}) +
+                              ": the row is then not scored; if it is a sample, add `none` to the list"));
   };
   for (DataInputUse const& column : block.inputs)
     for (std::size_t i = 0; i < model.inputs.size(); ++i) {

@@ -74,19 +74,20 @@ Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data,
       auto const clipped = has_own_end(model, channel) ? std::vector<ClippedSamples>() : clipped_samples(values);
       auto const run = frozen_run(values);
       if (!clipped.empty())  // first: a long part at an end of the range is both
-        findings.push_back({FindingCode::sensor_stuck,
-                            Severity::warning,
-                            {channel.name, experiment.name},
-                            fmt::format("{} stays {}, in runs of three or more: clipped?", subject, ends_text(clipped, in_file)),
-                            fmt::format("if the range of the sensor ended there, {}: these samples are then not scored",
-                                        to_be_missing(block, data, model, column.column, numbers_of(clipped, in_file)))});
+        findings.push_back(
+            {FindingCode::sensor_stuck,
+             Severity::warning,
+             {channel.name, experiment.name},
+             fmt::format("{} stays {}, in runs of three or more: it may be clipped", subject, ends_text(clipped, in_file)),
+             fmt::format("if the range of the sensor ended there, {}: these samples are then not scored",
+                         to_be_missing(block, data, model, column.column, numbers_of(clipped, in_file)))});
       else if (run && !has_own_end(model, channel))
         findings.push_back(
             {FindingCode::sensor_stuck,
              Severity::warning,
              {channel.name, experiment.name},
-             fmt::format("{} is {} in all {} samples of rows {} to {}, but changes from sample to sample elsewhere: "
-                         "was the sensor frozen?",
+             fmt::format("{} is {} in all {} samples of rows {} to {}, but changes from sample to sample elsewhere: the sensor may "
+                         "have been stuck",
                          subject, in_file.text(run->value), run->samples, experiment.first_row + static_cast<int>(run->first),
                          experiment.first_row + static_cast<int>(run->last)),
              ranges_without(*run, data, block)});

@@ -121,13 +121,12 @@ Finding widths_wrong(Target const& target, Mode const& best, WeightedDraws const
 
 /// Of a posterior that weighted draws do not describe, and that was too dear for walkers.
 Finding widths_unknown() {
-  return {
-      FindingCode::widths_not_normal,
-      Severity::warning,
-      {},
-      "it is not known whether the posterior has the stated sds: it is not normal around its optimum, and weighted draws do not "
-      "determine how wide it is",
-      "fit with mh to get the sds of the posterior; use only the optimum of this result"};
+  return {FindingCode::widths_not_normal,
+          Severity::warning,
+          {},
+          "whether the posterior has the stated sds is not known: the posterior is not normal around its optimum, and weighted "
+          "draws do not determine its width",
+          "fit with mh to get the sds of the posterior; use only the optimum of this result"};
 }
 
 /// A place that is not on the hill of the best mode, or on a part of it that the search has not climbed.

@@ -13,8 +13,8 @@ namespace {
 SelectorRow const selector_rows[] = {
     {"abc_smc", "approximate Bayesian computation (ABC) by sequential Monte Carlo, over models and parameters", abc::settings(),
      &abc::refuse, &abc::run},
-    {"reversible_jump", "chains that jump between models, by their likelihoods", jump::settings(), &jump::refuse, nullptr,
-     &jump::run},
+    {"reversible_jump", "reversible-jump Markov chains: jumps between models, with probabilities from their likelihoods",
+     jump::settings(), &jump::refuse, nullptr, &jump::run},
 };
 
 }  // namespace

@@ -50,8 +50,8 @@ Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::Vecto
   if (most >= 3 && portmanteau > limit) {
     Concern concern{.kind = Concern::Kind::not_white, .value = portmanteau};
     concern.clause =
-        fmt::format("the residual is not white: its chi-squared over {} lags is {:.0f}, that of white noise below {:.0f}", most,
-                    portmanteau, limit);
+        fmt::format("the residual is not white: its chi-squared over {} lags is {:.0f}; for white noise it would be below {:.0f}",
+                    most, portmanteau, limit);
     concerns.push_back(std::move(concern));
   }
   if (auto const trace = noise.input_in(equation, errors)) {

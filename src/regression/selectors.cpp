@@ -24,8 +24,8 @@ SelectorRow const selector_rows[] = {
      &no_refusal, &ard::choose},
     {"threshold", "removes the term with the smallest contribution, repeatedly", "contribution", threshold::settings(), &no_refusal,
      &threshold::choose},
-    {"forward", "takes the term that explains most of what is left, repeatedly", "error reduction ratio", forward::settings(),
-     &no_refusal, &forward::choose},
+    {"forward", "repeatedly adds the term that explains most of the remaining variance", "error reduction ratio",
+     forward::settings(), &no_refusal, &forward::choose},
 };
 
 }  // namespace

@@ -79,7 +79,7 @@ bool disturb(Context& context, std::string const& arguments) {
   });
   if (!found) return false;
   if (text.empty())
-    return context.output.refuse(fmt::format("the equations of `{}` stand in its parts", model),
+    return context.output.refuse(fmt::format("the equations of `{}` are written in its parts", model),
                                  "`save FILE`, then `sysid fit FILE --with-disturbance`");
   std::string const fit = fit_of(statement, name, changed_model);
   context.output.say(text + "\n" + fit);

@@ -78,7 +78,7 @@ constexpr KeywordRow keyword_rows[] = {
     // inside a data block
     {"file", "file \"bench.csv\"",
      "the file of a record: CSV, MATLAB, NetCDF or HDF5; its path is relative to the folder of the .sysid file"},
-    {"read", "read decimal = \",\", names = 4", "how a file is written that is not plain CSV (`list reading` has the settings)"},
+    {"read", "read decimal = \",\", names = 4", "the format of a file that is not plain CSV (`list reading` shows the settings)"},
     {"rate", "rate 1000 [Hz]", "samples per second, if no column contains the time"},
     {"step", "step 1 [ms]", "the time between samples, if no column contains it"},
     {"measure", "measure displacement = y_noisy [mm]", "the column with the samples of a channel, and its unit"},

@@ -291,12 +291,13 @@ SolverSettings tracking_solver(TrackedProgram const& program, SolverSettings sol
     std::swap(coarse, fine);
     solved = now;
   }
-  throw UserError({Severity::error,
-                   "",
-                   fmt::format("{} steps of {} between two samples are not enough for tracking", most_substeps, solver.method),
-                   std::nullopt,
-                   {},
-                   "the equations are too stiff for the sampling interval: leave out what is fast, or sample faster"});
+  throw UserError(
+      {Severity::error,
+       "",
+       fmt::format("{} steps of {} between two samples are not enough for tracking", most_substeps, solver.method),
+       std::nullopt,
+       {},
+       "the equations are too stiff for the sampling interval: remove the fast dynamics from the model, or sample faster"});
 }
 
 }  // namespace sysid

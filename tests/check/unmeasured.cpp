@@ -183,7 +183,7 @@ TEST_CASE("particles are for back ends that sample with estimates, and chosen fo
   CheckedFile const chosen = checked(of_heavy_tails("f = fit m to exact with mh"));
   auto const& fit = std::get<FitTask>(chosen.tasks.back().what);
   CHECK(fit.filter == FilterRule::particle);
-  CHECK(fit.particles_because == "no other filter takes the noise of `displacement`, which is `student_t`");
+  CHECK(fit.particles_because == "no other filter supports the noise of `displacement`, which is `student_t`");
   for (std::string const backend : {"nuts", "map", "mh, filter = unscented", "mh, start = estimated(rows = 5)"})
     CHECK(refused(of_heavy_tails("f = fit m to exact with " + backend), "E3314"));
 }

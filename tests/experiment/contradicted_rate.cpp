@@ -146,7 +146,7 @@ TEST_CASE("columns that are no time say nothing of a rate, and those that may be
 TEST_CASE("a channel whose column is the input or the time is a warning, the column of its sensor is none") {
   auto const twice = [](std::string const& block) { return messages(check_block("t", scaled(0.02), block), "column_used_twice"); };
   Messages const input = twice("time t [s]; input u = force [N] hold linear; measure z = force [mm]");
-  CHECK(input == Messages{"z is read from column `force` of record, which is also the input u: nothing else was measured for it"});
+  CHECK(input == Messages{"z is read from column `force` of record, which is also the input u: the channel has no measurement of its own"});
   CheckResult const shown = check_block("t", scaled(0.02), "time t [s]; input u = force [N] hold linear; measure z = force [mm]");
   std::string const help = finding_of(shown, FindingCode::column_used_twice).help;
   CHECK(help == "write the column of its sensor in `measure z = ...`; columns that are not used: `level`");

@@ -109,7 +109,7 @@ TEST_CASE("an input that no draw lets through is not said to be missing from the
       if (each.code == FindingCode::prior_at_rest) return each.help;
     return std::string();
   };
-  CHECK(help(check_of(nothing, closed)).starts_with("an input enters the equations, but does not move this channel"));
+  CHECK(help(check_of(nothing, closed)).starts_with("an input enters the equations, but does not affect this channel"));
   CHECK(help(check_of(nothing, with(closed, "b*max(u - 1 [kN], 0 [N])", "0*b*u"))) ==
         "check that an equation of this state contains an input");
 }

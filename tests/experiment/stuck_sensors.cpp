@@ -55,7 +55,7 @@ TEST_CASE("a sensor that froze for half of the record is named by its rows, and 
   CHECK(messages(result, "sensor_stuck") ==
         std::vector<std::string>{
             "z, column `level` of record, is 1.25 mm in all 150 samples of rows 151 to 300, but changes from sample "
-            "to sample elsewhere: was the sensor frozen?"});
+            "to sample elsewhere: the sensor may have been stuck"});
   std::smatch lines;
   std::string const help = stuck_help(result);
   REQUIRE(std::regex_search(help, lines, std::regex("`(split [^`]*)` in `record`, and fit to `([^`]*)`")));

@@ -28,13 +28,12 @@ ReportTable quantity_table(CalibrationReport const& calibration) {
   int const n = calibration.with_draws();
   ReportTable table{
       "calibration",
-      fmt::format(
-          "Over {} records: how many percent of the true values lie inside the central 50, 90 and 95 % of their posteriors, ± "
-          "the standard error that chance alone gives; mean and sd of z = (posterior mean - true value)/posterior sd, which are 0 "
-          "and 1 where the posterior is normal; contraction, the part of the prior variance that the data remove; p-values of the "
-          "test that the ranks are uniform, by the distribution of all ranks (Säilynoja et al. 2022) and by chi-square in {} "
-          "groups; the last column is the smaller one, corrected for all tests together (Bonferroni).",
-          n, calibration.bins),
+      fmt::format("Over {} records. 50, 90, 95 %: percentage of the true values inside the central intervals of their posteriors, "
+                  "± the standard error by chance. z = (posterior mean - true value)/posterior sd: its mean and sd are 0 and 1 if "
+                  "the posterior is normal. Contraction: fraction of the prior variance that the data remove. p: tests that the "
+                  "ranks are uniform, from the distribution of all ranks (Säilynoja et al. 2022) and by chi-square in {} groups; "
+                  "the last column is the smaller of the two, corrected for all tests (Bonferroni).",
+                  n, calibration.bins),
       {"quantity", "50 %", "90 %", "95 %", "mean z", "sd z", "contraction", "p ECDF", "p chi-square", "p together"},
       {}};
   for (CalibratedQuantity const& each : calibration.quantities)

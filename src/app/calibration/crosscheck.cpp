@@ -185,11 +185,12 @@ class Crosscheck {
     report.ledger.merge(second.report.ledger);
     double largest = 0;
     for (ComparedNumber const& each : numbers) largest = std::max(largest, std::fabs(each.z()));
-    report.verdict = !agree         ? fmt::format("{} and {} differ", first.backend, second.backend)
-                     : with_optimum ? fmt::format("the optimum and sds by {} agree with the posterior by {} to a fifth of its sds",
-                                                  first.backend, second.backend)
-                                    : fmt::format("{} and {} agree: the largest of {} differences is {:.1f} standard errors",
-                                                  first.backend, second.backend, numbers.size(), largest);
+    report.verdict =
+        !agree         ? fmt::format("{} and {} differ", first.backend, second.backend)
+        : with_optimum ? fmt::format("the optimum and sds by {} agree with the posterior by {} to within a fifth of a posterior sd",
+                                     first.backend, second.backend)
+                       : fmt::format("{} and {} agree: the largest of {} differences is {:.1f} standard errors", first.backend,
+                                     second.backend, numbers.size(), largest);
     if (agree && !verdict_of(report.findings).pass) report.verdict += ", but a fit failed its own checks";
     return report;
   }

@@ -42,7 +42,8 @@ std::string missing_term(OrderedJson const& with) {
 /// Which of both the record prefers. Nothing is said of an evidence that is not there.
 std::string preference(Comparison const& comparison, std::string const& missing) {
   if (comparison.fits.size() != 2 || !comparison.fits[0].log_bayes_factor || !comparison.fits[1].log_bayes_factor)
-    return "one of the evidences is not known, so the models cannot be compared by it; compare the residuals of both fits\n";
+    return "one of the evidences is not known, so the models cannot be compared by their evidence; compare the residuals of both "
+           "fits\n";
   double const factor = *comparison.fits[1].log_evidence - *comparison.fits[0].log_evidence;
   std::string const size = fmt::format("log Bayes factor {:+.1f}", factor);
   if (factor >= 3 && !missing.empty())

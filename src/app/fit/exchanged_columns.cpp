@@ -177,10 +177,10 @@ Findings check_exchanged_columns(FinishedFit& fit) {
         {FindingCode::column_used_twice,
          Severity::warning,
          {best->one, best->other, block.name},
-         fmt::format("with the columns `{}` and `{}` of {} exchanged, the model leaves {} % of the variance, in place of {} %: "
-                     "exchanged?",
+         fmt::format("with the columns `{}` and `{}` of {} exchanged, the model leaves {} % of the variance unexplained, instead "
+                     "of {} %: the columns may be exchanged",
                      best->one, best->other, block.name, significant(100 * least, 2), significant(100 * std::min(1.0, stated), 2)),
-         fmt::format("if so, write {}", best->lines)});
+         fmt::format("if they are exchanged, write {}", best->lines)});
   }
   fit.extra.add_solves(ledger.solves());
   return findings;

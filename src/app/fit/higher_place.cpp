@@ -42,7 +42,7 @@ HigherSearch search_from_place(std::vector<double> const& place, Target const& t
   std::vector<Eigen::VectorXd> starts{Eigen::Map<Eigen::VectorXd const>(place.data(), std::ssize(place))};
   for (Mode const& mode : preparation.modes) starts.push_back(theta_of(mode));
   double const before = highest(preparation.modes);
-  SearchResult found = search_from(target, objective_kind, to_lanes(starts), context, "searching from a higher place");
+  SearchResult found = search_from(target, objective_kind, to_lanes(starts), context, "searching from a point of higher density");
   if (found.interrupted) return HigherSearch::interrupted;
   ++preparation.searched_again;
   if (found.failure || !(highest(found.modes) > before + rise)) return HigherSearch::nothing;

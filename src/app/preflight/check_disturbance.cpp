@@ -131,16 +131,17 @@ class SizesApart {
     };
     std::string const whose = listed(sizes.disturbances);
     std::string text =
-        from == sizes_tried ? fmt::format("the record is not expected to determine {} at any size that its prior allows", info.name)
-        : from == 0         ? fmt::format("the record is expected to determine {} at any size that its prior allows", info.name)
-                            : fmt::format("the record is expected to determine {} where it is above {}", info.name, about(from));
+        from == sizes_tried
+            ? fmt::format("the record is not expected to determine {} for any value that the prior allows", info.name)
+        : from == 0 ? fmt::format("the record is expected to determine {} for any value that the prior allows", info.name)
+                    : fmt::format("the record is expected to determine {} only if its value is above {}", info.name, about(from));
     if (!sizes.noise.empty()) {
       std::vector<std::string> names;
       for (int const k : sizes.noise) names.push_back(name(k));
-      text += to < 0 ? fmt::format("; it is not expected to determine {} at any size of {}", listed(names), info.name)
+      text += to < 0 ? fmt::format("; it is not expected to determine {} for any value of {}", listed(names), info.name)
               : to == sizes_tried - 1
-                  ? fmt::format("; it is expected to determine {} at any size of the disturbance", listed(names))
-                  : fmt::format("; it is expected to determine {} where {} is below {}", listed(names), info.name, about(to));
+                  ? fmt::format("; it is expected to determine {} for any size of the disturbance", listed(names))
+                  : fmt::format("; it is expected to determine {} only if {} is below {}", listed(names), info.name, about(to));
     }
     std::string const sentence = fmt::format("{} and measurement noise: {}", whose, text);
     preflight_.page.disturbances.push_back(sentence);

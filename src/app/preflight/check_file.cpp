@@ -56,7 +56,7 @@ void check_bands(TaskPage& page) {
              fmt::format("{} of {} has power up to {:.3g} Hz, which is {:.2f} times the sampling rate, but `{}` is exact only up "
                          "to {} times this rate",
                          input.name, coverage.name, input.high, input.high / coverage.rate, input.rule, row_of(*rule).band),
-             "check whether it was held between the samples, or sampled without an anti-aliasing filter"});
+             "check whether the input was held between the samples, or sampled without an anti-aliasing filter"});
 }
 
 // Where the samples of an input contradict the curve that its rule draws through them. What was held cannot be told from what was

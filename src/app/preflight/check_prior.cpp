@@ -69,8 +69,8 @@ std::string unit_of_time_first(Preflight const& preflight) {
   if (first.time.size() < 2) return {};
   double const step = (first.time.back() - first.time.front()) / static_cast<double>(first.time.size() - 1);
   return fmt::format(
-      "check the unit of time in the data block first: its rows are {} s apart, too far for the motion that {} of "
-      "{} prior draws predict; else ",
+      "check the unit of time in the data block first: its rows are {} s apart, too far to resolve the motion that {} of {} prior "
+      "draws predict; if the unit is right, ",
       significant(step, 3), page.failed_as_stated, page.draws);
 }
 
@@ -84,7 +84,7 @@ void check_stiffness(Preflight const& preflight, double share) {
   if (preflight.what.solver.row().exact)
     return preflight.add(
         FindingCode::stiff_prior, Severity::warning, {},
-        fmt::format("{:.0f} % of the prior draws move too fast for {}, and {} succeeds on {} of these",
+        fmt::format("the motion of {:.0f} % of the prior draws is too fast for {}, and {} succeeds on {} of these",
                     100.0 * page.failed_explicit / page.draws, page.stated, page.stiff_solver, followed),
         fmt::format("use `solver = {}`, or narrow the priors if such fast motion is not intended", page.stiff_solver));
   std::string const exact = preflight.exact_steps
@@ -92,8 +92,8 @@ void check_stiffness(Preflight const& preflight, double share) {
                                 : fmt::format("`solver = {}`", page.stiff_solver);
   preflight.add(
       FindingCode::stiff_prior, Severity::warning, {},
-      fmt::format("explicit steps ({}, {}) fail on {:.0f} % of the prior draws, and {} succeeds on {} of these: the model "
-                  "is stiff there",
+      fmt::format("explicit steps ({}, {}) fail on {:.0f} % of the prior draws, and {} succeeds on {} of these: the model is stiff "
+                  "for these draws",
                   page.stated, page.explicit_solver, 100.0 * page.failed_explicit / page.draws, page.stiff_solver, followed),
       fmt::format("{}use {}, or narrow the priors if such fast motion is not intended", unit_of_time_first(preflight), exact));
 }
@@ -140,7 +140,7 @@ void check_failures(Preflight const& preflight) {
   if (out_of_steps(preflight) && share > many_failures)
     preflight.add(
         FindingCode::prior_fails, Severity::warning, {},
-        fmt::format("{:.0f} % of the prior draws take more than {} steps of {} between two samples: `check` leaves them out",
+        fmt::format("{:.0f} % of the prior draws need more than {} steps of {} between two samples: `check` leaves these draws out",
                     100 * share, solver.steps, solver.method),
         unit_of_time_first(preflight) + "narrow the priors if such fast motion is not intended");
   else if (page.failed == page.draws)
@@ -201,16 +201,18 @@ void check_motion(Preflight const& preflight, PriorPage::Channel const& line, Ch
         }))
       still.push_back(preflight.model().inputs[i].name);
   bool const driven = !preflight.model().inputs.empty(), dead = driven && still.size() == preflight.model().inputs.size();
-  preflight.add(FindingCode::prior_at_rest, Severity::warning, {line.name},
-                fmt::format("{} is constant in the simulation of every prior draw, but its measured range is {}{}", line.name,
-                            significant(line.measured, 2), unit_after_number(line.unit)),
-                dead     ? fmt::format("{} constant in the data: check the column, or give initial values other than zero",
-                                       quoted(still) + (still.size() == 1 ? " is" : " are"))
-                : driven ? (drives(preflight.model())
-                                ? "an input enters the equations, but does not move this channel at any prior draw: check the size "
-                                  "and the unit of the input against thresholds such as a dead zone and their priors"
-                                : "check that an equation of this state contains an input")
-                         : "the model has no input: give initial values other than zero, or the input that drove the motion");
+  preflight.add(
+      FindingCode::prior_at_rest, Severity::warning, {line.name},
+      fmt::format("{} is constant in the simulation of every prior draw, but its measured range is {}{}", line.name,
+                  significant(line.measured, 2), unit_after_number(line.unit)),
+      dead ? fmt::format("{} constant in the data: check the column, or give initial values other than zero",
+                         quoted(still) + (still.size() == 1 ? " is" : " are"))
+      : driven
+          ? (drives(preflight.model())
+                 ? "an input enters the equations, but does not affect this channel for any prior draw: compare the size and the "
+                   "unit of the input with thresholds of the model, such as a dead zone, and check the priors of these thresholds"
+                 : "check that an equation of this state contains an input")
+          : "the model has no input: give initial values other than zero, or the input that drove the motion");
 }
 
 void check_ranges(Preflight const& preflight, PriorPage::Channel const& line, Channel const& channel, double apart) {

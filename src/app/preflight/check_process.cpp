@@ -179,17 +179,15 @@ class ProcessPreflight {
     double const spacing = places.spacing(), range = places.range();
     if (double const part = share(drawn, [&](double length) { return length < spacing; }); part >= most)
       add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
-          fmt::format(
-              "{:.0f} % of the prior draws have a length-scale of `{}` along {} below the spacing of its inputs: the function acts "
-              "as additional noise there",
-              100 * part, process.name, input.name),
+          fmt::format("for {:.0f} % of the prior draws the length-scale of `{}` along {} is shorter than the spacing of the "
+                      "inputs: the function then acts as additional noise",
+                      100 * part, process.name, input.name),
           "check the unit of the input and the prior of the length");
     else if (double const flat = share(drawn, [&](double length) { return length > nearly_straight * range; }); flat >= most)
       add(FindingCode::length_and_inputs, Severity::warning, {process.name, input.name},
-          fmt::format(
-              "{:.0f} % of the prior draws have a length-scale of `{}` along {} above {} times the range of its inputs: the "
-              "function is nearly straight there",
-              100 * flat, process.name, input.name, nearly_straight),
+          fmt::format("for {:.0f} % of the prior draws the length-scale of `{}` along {} is longer than {} times the range of the "
+                      "inputs: the function is then nearly a straight line",
+                      100 * flat, process.name, input.name, nearly_straight),
           "check the unit of the input and the prior of the length");
   }
 

@@ -110,8 +110,8 @@ void confirm(Preflight const& preflight, PriorDraws const& prior, double suggest
     std::string const sds = suggested > 5 ? "more than 5 sds" : fmt::format("up to {:.2g} sd", suggested);
     preflight.add(
         FindingCode::integration_step, Severity::note, {},
-        fmt::format("{} may be too inaccurate: at draws of the prior, parameters would move by {} with {}, but no "
-                    "mode was found to confirm this",
+        fmt::format("{} may be too inaccurate: at draws of the prior, estimates would change by {} with {}, but no mode was found "
+                    "that confirms this",
                     solver.text(), sds, solver.finer_words()),
         solver.as_model ? "nothing, if the solver is meant to be part of the model" : "nothing now: the fit checks its own result");
     return;
@@ -134,12 +134,11 @@ void judge_by_prior(Preflight const& preflight) {
   } else if (!preflight.sticking.empty() && information.moves.size() > slow) {
     auto const& [solver, move] = information.moves[slow - 1];
     information.advised.clear();
-    preflight.add(
-        FindingCode::integration_step, preflight.what.solver.as_model ? Severity::note : Severity::warning, {},
-        fmt::format("with {}, parameters still move by {} sd from those with {}: the equations jump where a velocity changes "
-                    "its sign",
-                    information.refinement, move > 5 ? "many" : fmt::format("{:.2g}", move), solver),
-        preflight.sticking);
+    preflight.add(FindingCode::integration_step, preflight.what.solver.as_model ? Severity::note : Severity::warning, {},
+                  fmt::format("with {}, estimates still differ by {} sd from those with {}: the equations are discontinuous where "
+                              "a velocity changes its sign",
+                              information.refinement, move > 5 ? "many" : fmt::format("{:.2g}", move), solver),
+                  preflight.sticking);
   }
 }
 

@@ -139,21 +139,19 @@ std::string in_milliseconds(DataBlock const& block, double scale) {
 Finding fast_finding(CheckedFile const& file, Model const& model, ExperimentData const& data, Rates const& rates, double step) {
   DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
   double const scale = data.experiment.time_unit ? data.experiment.time_unit->scale : 1;
-  return {
-      FindingCode::time_scales_apart,
-      Severity::warning,
-      {data.experiment.name},
-      fmt::format("rows of {} are {} apart, but at every prior draw even the slowest motion of `{}` is over, or has made a "
-                  "whole oscillation, before the next row: its rate is {} to {} rad/s",
-                  data.experiment.name, in_seconds(step), model.name, significant(rates.least, 2), significant(rates.most, 2)),
-      fmt::format(
-          "correct the unit of {} in `{}`{}; or the units of the parameters that contain a time. If all are right, replace "
-          "the equation of a motion that decays between two rows by its steady state; where it oscillates through several rows, "
-          "sample faster",
-          block.time          ? "`time`"
-          : block.step_stated ? "`step`"
-                              : "`rate`",
-          block.name, in_milliseconds(block, scale))};
+  return {FindingCode::time_scales_apart,
+          Severity::warning,
+          {data.experiment.name},
+          fmt::format("rows of {} are {} apart, but at every prior draw even the slowest motion of `{}` is over, or has made a "
+                      "whole oscillation, before the next row: its rate is {} to {} rad/s",
+                      data.experiment.name, in_seconds(step), model.name, significant(rates.least, 2), significant(rates.most, 2)),
+          fmt::format("correct the unit of {} in `{}`{}; or correct the units of the parameters that contain a time. If all units "
+                      "are right: for a motion that decays between two rows, replace its equation by its steady state; if the "
+                      "motion continues to oscillate over several rows, sample faster",
+                      block.time          ? "`time`"
+                      : block.step_stated ? "`step`"
+                                          : "`rate`",
+                      block.name, in_milliseconds(block, scale))};
 }
 
 Finding apart_finding(CheckedFile const& file, Model const& model, ExperimentData const& data, Rates const& rates) {

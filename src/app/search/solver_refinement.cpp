@@ -104,22 +104,21 @@ std::string solver_advice(SolverSettings const& solver, Ledger const& ledger) {
 
 Findings stiff_prior(SearchSolver const& search, bool exact) {
   if (!search.stiff() && search.too_fast())
-    return {
-        {FindingCode::stiff_prior,
-         Severity::warning,
-         {},
-         fmt::format("{:.0f} % of the prior draws overflow with {}, fewer than with longer steps: the motion is too fast for these "
-                     "steps there, and the search ignores that part of the prior",
-                     100 * search.failed, accuracy(search.solver)),
-         fmt::format("fit with `solver = {}`, which {}, or narrow the priors if such fast motion is not intended",
-                     exact ? exact_solver().name : adaptive_solver().name,
-                     exact ? "is exact for these equations" : "takes as many steps as the motion needs")}};
+    return {{FindingCode::stiff_prior,
+             Severity::warning,
+             {},
+             fmt::format("{:.0f} % of the prior draws overflow with {}, and more with longer steps: for these draws the motion is "
+                         "too fast for the steps, and the search ignores that part of the prior",
+                         100 * search.failed, accuracy(search.solver)),
+             fmt::format("fit with `solver = {}`, which {}, or narrow the priors if such fast motion is not intended",
+                         exact ? exact_solver().name : adaptive_solver().name,
+                         exact ? "is exact for these equations" : "takes as many steps as the motion needs")}};
   if (!search.stiff()) return {};
   return {{FindingCode::stiff_prior,
            Severity::warning,
            {},
            fmt::format("{:.0f} % of the prior draws overflow even with {}; {} of these were simulated with {}, {} of them without "
-                       "failure: the model is stiff there, and the search ignores that part of the prior",
+                       "failure: the model is stiff for these draws, and the search ignores that part of the prior",
                        100 * search.failed, accuracy(search.solver), search.tried, stiff_solver().name, search.followed),
            fmt::format("fit with `solver = {}`{}, or narrow the priors if such fast motion is not intended",
                        exact ? exact_solver().name : stiff_solver().name, exact ? ", which is exact for these equations" : "")}};

@@ -148,8 +148,8 @@ Findings solver_findings(std::vector<Candidate> const& candidates, std::vector<C
       findings.push_back({FindingCode::integration_step,
                           stated.as_model ? Severity::note : Severity::warning,
                           {candidates[k].what->name},
-                          fmt::format("the particles of `{}` were simulated with {}, whose error moves parameters by {} of "
-                                      "the posterior that is computed from the likelihood",
+                          fmt::format("the particles of `{}` were simulated with {}, whose error changes parameters by {}, in "
+                                      "units of the posterior that is computed from the likelihood",
                                       candidates[k].what->name, stated.text(),
                                       *posterior.move > 5 ? "more than 5 sds" : fmt::format("about {:.2g} sd", *posterior.move)),
                           stated.as_model ? "nothing, if the solver is meant to be part of the model"

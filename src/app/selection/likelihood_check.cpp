@@ -45,15 +45,16 @@ std::string cure(SelectionResult const& result, std::optional<double> floor) {
   if (!floor || !std::isfinite(result.threshold) || result.threshold > far_from_floor * *floor)
     return fmt::format("let the run stop later (a smaller `relative_change`, or a longer `schedule`), use more `particles`, or {}",
                        by_likelihood);
-  std::string const sampled = fmt::format("{}; `reversible_jump` samples them", by_likelihood);
+  std::string const sampled = fmt::format("{}; `reversible_jump` computes these probabilities by sampling", by_likelihood);
   if (result.threshold * far_from_floor >= *floor)
     return fmt::format(
-        "{}: the run has come to the noise floor {}, and neither a later end nor more `particles` makes the two agree", sampled,
-        significant(*floor, 4));
+        "{}: the run has reached the noise floor {}, and neither a later stop nor more `particles` makes the two probabilities "
+        "agree",
+        sampled, significant(*floor, 4));
   return fmt::format(
-      "{}: the threshold {} is below the noise floor {}, so that the particles follow this noise, and simpler models that died "
-      "cannot come back with a later end or more `particles` (`target = {}` ends the run at the floor and keeps more of them, but "
-      "a threshold still weighs them otherwise than the likelihood)",
+      "{}: the threshold {} is below the noise floor {}, so the particles fit the noise of this record, and simpler models that "
+      "died do not come back if the run stops later or has more `particles` (`target = {}` ends the run at the floor, where fewer "
+      "models have died, but their probabilities still differ from those by the likelihood)",
       sampled, significant(result.threshold, 4), significant(*floor, 4), significant(*floor, 4));
 }
 

@@ -52,8 +52,9 @@ SuitedTask with_exact_steps(Session& session, FitTask what) {
 }
 
 std::string exact_notice(std::string const& name, SolverSettings const& given, SuitedTask const& suited) {
-  return fmt::format("{}: {} integrates exactly: with {}, the steps grow without bound on {:.0f} % of the prior draws\n", name,
-                     suited.task.solver.method, accuracy(given), 100 * suited.growing);
+  return fmt::format(
+      "{}: the exact solver {} is used, because with {} the integration is unstable for {:.0f} % of the prior draws\n", name,
+      suited.task.solver.method, accuracy(given), 100 * suited.growing);
 }
 
 SolverSettings solver_along(Session& session, FitTask const& fit, SolverSettings const& fitted,

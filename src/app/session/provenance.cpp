@@ -92,7 +92,8 @@ DataInfo describe_data(CheckedFile const& file, ExperimentData const& data, Mode
     std::vector<std::uint8_t> const& has_lags = data.experiment.has_lags[c];
     auto const without = std::count(has_lags.begin(), has_lags.end(), 0);
     if (without > 0)
-      info.notes.push_back(fmt::format("{}: {} rows are not scored, a past sample is missing", model.channels[c].name, without));
+      info.notes.push_back(
+          fmt::format("{}: {} rows are not scored, because a past sample is missing", model.channels[c].name, without));
   }
   return info;
 }

@@ -179,13 +179,14 @@ class Discover {
     bool const simulated = validation && validation->report.structures.front().failure.empty();
     Findings findings;
     for (std::string const& name : interpolated_)
-      findings.push_back({FindingCode::steps_interpolated,
-                          simulated ? Severity::note : Severity::warning,
-                          {name},
-                          fmt::format("the time steps of `{}` are unequal: the regression reads it interpolated to equal steps{}",
-                                      name, simulated ? ", the simulation reads the samples as they are" : ""),
-                          fmt::format("{}if it was sampled regularly, write `step` or `rate` in place of `time` in the data block",
-                                      simulated ? "" : "take the coefficients and sds as approximate; ")});
+      findings.push_back(
+          {FindingCode::steps_interpolated,
+           simulated ? Severity::note : Severity::warning,
+           {name},
+           fmt::format("the time steps of `{}` are unequal: the regression uses the record interpolated to equal steps{}", name,
+                       simulated ? ", the simulation uses the samples at their own times" : ""),
+           fmt::format("{}if it was sampled regularly, write `step` or `rate` in place of `time` in the data block",
+                       simulated ? "" : "take the coefficients and sds as approximate; ")});
     return findings;
   }
 

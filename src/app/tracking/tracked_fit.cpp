@@ -33,7 +33,7 @@ void require_trackable(Model const& model) {
                       "solve the equations for the highest derivatives by hand");
   if (!model.memories.empty())
     throw no_tracking(name + " uses `since_last`, which needs values at the previous row: it cannot be tracked",
-                      "observe the quantity itself, or make its change a state of its own");
+                      "observe the quantity itself, with a column of its values in the record");
   for (Channel const& channel : model.channels)
     if (!channel.noise.row->gaussian || channel.noise.lower || channel.noise.upper)
       throw no_tracking(fmt::format("the noise of `{}` is not normal: a Kalman filter cannot track {}", channel.name, name),

@@ -158,7 +158,7 @@ std::optional<Array> Evaluator::array_function(ast::Call const& call, std::vecto
   auto result = row.apply(algebra_, arguments, sizes, span);
   if (!result && diagnostics_.all().size() == before)
     diagnostics_.add(errors::array_arguments(call.function, call.arguments.size(),
-                                             std::string("it is ") + std::string(row.usage) + ": " + std::string(row.summary)));
+                                             std::string("write ") + std::string(row.usage) + ": " + std::string(row.summary)));
   return result;
 }
 

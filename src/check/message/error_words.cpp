@@ -51,7 +51,7 @@ std::string choose(Names const& known, std::string const& what) {
 }
 
 std::string positive_prior(Names const& names) {
-  if (names.empty()) return "choose arguments for which it is positive";
+  if (names.empty()) return "write a positive value";
   return fmt::format(
       "check the {} of {} and what is computed from {}: `half_normal(sd = 1)` and `log_uniform(0.1, 10)` have only positive "
       "values",

@@ -33,13 +33,13 @@ Diagnostic fit_without_weight(ast::Name const& fit, std::string const& backend, 
 
 Diagnostic average_without_channel(ast::Name const& fit, std::string const& channel, std::string const& other,
                                    std::string const& data) {
-  return about(
-      {fit.text, channel, other, data},
-      error("E6706", fit.span,
-            fmt::format("`{}` does not observe `{}`, which `{}` measures and `{}` predicts", fit.text, channel, data, other),
-            fmt::format("an average needs every measured channel from all its fits: add `observe {} ~ ...` to the model, "
-                        "or predict on data without this channel",
-                        channel)));
+  return about({fit.text, channel, other, data},
+               error("E6706", fit.span,
+                     fmt::format("the model of `{}` does not observe `{}`, which data block `{}` measures and fit `{}` predicts",
+                                 fit.text, channel, data, other),
+                     fmt::format("an average needs every measured channel from all its fits: add `observe {} ~ ...` to the model, "
+                                 "or predict on data without this channel",
+                                 channel)));
 }
 
 Diagnostic average_of_two_units(ast::Name const& fit, Unit const& unit, std::string const& channel, std::string const& other,

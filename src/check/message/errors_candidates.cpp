@@ -25,10 +25,11 @@ Diagnostic probabilities(ast::Name const& set, double sum, int open, int models)
 }
 
 Diagnostic not_a_probability(Span span, double value) {
-  return error("E6503", span, fmt::format("a prior probability must be above 0 and at most 1, but this is {:.10g}", value),
-               value == 0
-                   ? "remove the candidate"
-                   : "give a number above 0 and at most 1, or remove it: models without a stated probability share the rest");
+  return error(
+      "E6503", span, fmt::format("a prior probability must be above 0 and at most 1, but this is {:.10g}", value),
+      value == 0
+          ? "remove the candidate"
+          : "give a number above 0 and at most 1, or remove the probability: models without a stated probability share the rest");
 }
 
 Diagnostic shared_by_none(ast::Name const& name, std::string const& set, Names const& known) {

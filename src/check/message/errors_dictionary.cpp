@@ -77,11 +77,9 @@ Diagnostic coefficient_inside(Span term, std::string const& text) {
 }
 
 Diagnostic inner_prior(Span prior, std::string const& parameter, std::string const& why) {
-  return about(
-      {parameter},
-      error("E6617", prior, fmt::format("the prior of `{}` {}", parameter, why),
-            "a parameter inside terms is searched for over its prior: give it a proper prior whose arguments are numbers, such as "
-            "`uniform(0, 1)` or `log_uniform(0.01, 10)`"));
+  return about({parameter}, error("E6617", prior, fmt::format("the prior of `{}` {}", parameter, why),
+                                  "the value of a parameter inside a term is searched within its prior: give it a proper prior "
+                                  "whose arguments are numbers, such as `uniform(0, 1)` or `log_uniform(0.01, 10)`"));
 }
 
 Diagnostic inner_scales(Span term, std::string const& text, std::string const& parameter, std::string const& declared) {
@@ -92,7 +90,7 @@ Diagnostic inner_scales(Span term, std::string const& text, std::string const& p
 
 Diagnostic inner_in_target(Span target, std::string const& text, std::string const& parameter, std::string const& declared) {
   return about({text, parameter},
-               error("E6617", target, fmt::format("`{}` has a prior and stands in the target `{}`", parameter, text),
+               error("E6617", target, fmt::format("`{}` has a prior, but is used in the target `{}`", parameter, text),
                      fmt::format("a parameter with a prior can be used only inside terms; for the target declare `parameter {}` "
                                  "without a prior and use it as a "
                                  "factor, or give it a value",

@@ -233,8 +233,9 @@ Diagnostic logarithm_of_shifted(Span span, std::string const& spelling, std::str
   return about(
       {distribution, spelling},
       error("E2112", span,
-            fmt::format("`{}` of `{}` cannot be given: a temperature that does not count from absolute zero has no logarithm",
-                        spelling, distribution),
+            fmt::format(
+                "`{}` of `{}` cannot be given: a temperature in [degC] or [degF] has no logarithm, because its zero is arbitrary",
+                spelling, distribution),
             "give the median, which is not a logarithm: `median = 20 [degC]`; or declare the parameter in [K]"));
 }
 
@@ -283,7 +284,8 @@ Diagnostic never_allowed(Span span, std::string const& distribution, std::string
                          std::vector<std::string> const& names) {
   return about({distribution, variate},
                error("E2112", span,
-                     fmt::format("`{}` of `{}` is invalid at all values that the priors allow: {}", distribution, variate, reason),
+                     fmt::format("`{}` of `{}` has invalid arguments for all values that the priors allow: {}", distribution,
+                                 variate, reason),
                      positive_prior(names)));
 }
 

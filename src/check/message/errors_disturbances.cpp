@@ -49,7 +49,7 @@ Diagnostic unknown_law(ast::Call const& law, ast::Name const& name, bool discret
 
 Diagnostic sd_of_white_noise(Span argument, std::string const& name) {
   return about({name},
-               error("E3302", argument, "white noise has no standard deviation: that of its samples is infinite",
+               error("E3302", argument, "white noise in continuous time has no standard deviation: its variance is infinite",
                      "state its intensity, `white(intensity = q)`; a disturbance of standard deviation s that is correlated "
                      "over a time T is `ornstein_uhlenbeck(sd = s, time = T)`, which acts on slow motions as white noise of "
                      "intensity `2*s^2*T`"));
@@ -144,7 +144,7 @@ Diagnostic bounds_of_initial(ast::Call const& law, std::string const& state) {
 
 Diagnostic random_guess(Span initial, std::string const& unknown) {
   return about({unknown}, error("E3310", initial, fmt::format("the first value of `{}` follows from the equations", unknown),
-                                fmt::format("write a starting guess, `initial {} = 0`", unknown)));
+                                fmt::format("write a starting guess in place of the distribution, `initial {} = 0`", unknown)));
 }
 
 Diagnostic estimated_and_random_start(Span option, Span initial, std::string const& state) {
@@ -156,29 +156,31 @@ Diagnostic estimated_and_random_start(Span option, Span initial, std::string con
 Diagnostic filter_of_nothing(Span option, std::string const& model) {
   return about({"filter", model},
                error("E3312", option, fmt::format("model `{}` has no random states, so it needs no filter", model),
-                     "remove the option, or declare what was not measured: `disturbance w [N] ~ white(intensity = q)`"));
+                     "remove the option, or declare an unmeasured force or input: `disturbance w [N] ~ white(intensity = q)`"));
 }
 
 Diagnostic kalman_of_nonlinear(Span option, std::string const& model, std::optional<Span> const& part) {
-  return about({"filter", "kalman", model},
-               with_place(error("E3313", option,
-                                fmt::format("`kalman` needs linear equations and channels; those of `{}` are not linear", model),
-                                "write `filter = extended` or `unscented`, or remove the option: the program then chooses"),
-                          part, "not linear"));
+  return about(
+      {"filter", "kalman", model},
+      with_place(
+          error("E3313", option, fmt::format("`kalman` needs linear equations and channels; those of `{}` are not linear", model),
+                "write `filter = extended` or `unscented`, or remove the option: the filter is then chosen automatically"),
+          part, "not linear"));
 }
 
 Diagnostic noise_of_filter(Span channel, std::string const& name, std::string const& noise, Span task, std::string const& help) {
-  Diagnostic diagnostic =
-      error("E3314", channel,
-            fmt::format("with random states this task needs normal noise: that of channel `{}` is `{}`", name, noise), help);
+  Diagnostic diagnostic = error(
+      "E3314", channel,
+      fmt::format("with random states this task needs normal noise, but the noise of channel `{}` is `{}`", name, noise), help);
   diagnostic.secondary.push_back({task, "fitted here"});
   return about({name, noise}, std::move(diagnostic));
 }
 
 Diagnostic steps_ahead_of_known(Span option, std::string const& model) {
-  return about({model}, error("E3320", option,
-                              fmt::format("model `{}` has no random states: the samples do not correct its prediction", model),
-                              "remove the option, or declare what was not measured: `disturbance w ~ white(intensity = q)`"));
+  return about({model},
+               error("E3320", option,
+                     fmt::format("model `{}` has no random states, so its predictions do not depend on measured samples", model),
+                     "remove the option, or declare an unmeasured force or input: `disturbance w ~ white(intensity = q)`"));
 }
 
 Diagnostic steps_ahead_of_several(Span option) {
@@ -195,9 +197,10 @@ Diagnostic likelihood_by_particles(Span place, Subject const& what, std::string 
 }
 
 Diagnostic particles_of_other_filter(Span option, std::string const& filter) {
-  return about({"particles", "filter", filter},
-               error("E3321", option, fmt::format("`particles` belongs to `filter = particle`, and the filter is `{}`", filter),
-                     "remove the option, or write `filter = particle`"));
+  return about(
+      {"particles", "filter", filter},
+      error("E3321", option, fmt::format("`particles` is an option for `filter = particle`, but the filter is `{}`", filter),
+            "remove the option, or write `filter = particle`"));
 }
 
 Diagnostic law_of_input_error(Span law, std::string const& input, std::string const& reason) {

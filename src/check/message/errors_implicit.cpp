@@ -34,13 +34,15 @@ Diagnostic solver_of_linear_equations(Span option, std::string const& solver, st
 }
 
 Diagnostic solver_that_reads_no_time(Span option, std::string const& solver, std::string const& model) {
-  return {Severity::error,
-          "E3020",
-          fmt::format("`{}` needs equations that read time linearly or not at all, but those of `{}` do otherwise", solver, model),
-          Label{option, {}},
-          {},
-          fmt::format("replace what depends on time by an input of the model; or {}", other_solvers),
-          {solver, model}};
+  return {
+      Severity::error,
+      "E3020",
+      fmt::format("`{}` needs equations that do not depend on time, or only linearly, but those of `{}` depend on it nonlinearly",
+                  solver, model),
+      Label{option, {}},
+      {},
+      fmt::format("replace the term that depends on time by an input of the model; or {}", other_solvers),
+      {solver, model}};
 }
 
 Diagnostic solver_of_few_states(Span option, std::string const& solver, std::string const& model, std::size_t states, int most) {

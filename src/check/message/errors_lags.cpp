@@ -46,11 +46,11 @@ Diagnostic primes_in_discrete_time(ast::Reference const& reference) {
                      fmt::format("write differences of samples: `{0} - lag({0}, 1)`; or remove `discrete`", reference.name.text)));
 }
 Diagnostic channel_as_quantity(ast::Name const& name, bool discrete, std::string const& past) {
-  return about(
-      {name.text},
-      error("E2001", name.span, fmt::format("`{}` is a measured channel, and its name alone stands for no quantity", name.text),
-            discrete ? fmt::format("its earlier samples are `{}`", past)
-                     : fmt::format("write what the channel observes: the expression after `observe {} ~`", name.text)));
+  return about({name.text},
+               error("E2001", name.span,
+                     fmt::format("`{}` is a measured channel: its name alone cannot be used in an expression", name.text),
+                     discrete ? fmt::format("its earlier samples are `{}`", past)
+                              : fmt::format("write what the channel observes: the expression after `observe {} ~`", name.text)));
 }
 std::optional<Diagnostic> sample_by_index(Span span, ast::Expression const& index, IndexedQuantity const& what) {
   std::optional<int> const shift = shift_of(index);

@@ -154,7 +154,7 @@ Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_q
                  "function");
   auto const help = [&](std::string const& list) {
     if (name.text == "pi") return std::string("write `pi`: it is a number");
-    return guess_or(function_synonyms, name.text, known, "define it: `function f(a, b) = ...`; built-in ones: " + list);
+    return guess_or(function_synonyms, name.text, known, "define it: `function f(a, b) = ...`; built-in functions: " + list);
   };
   Diagnostic result = about(
       {name.text}, error("E2003", name.span, fmt::format("there is no function `{}`", name.text), help("sysid list functions")),

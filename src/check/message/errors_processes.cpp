@@ -288,9 +288,11 @@ Diagnostic condition_count(Span span, std::string const& name, std::string const
                      "give one for each input, `zero_at = (0, 0)`; several points are a list of such lists"));
 }
 Diagnostic condition_without_derivative(Span span, std::string const& kernel) {
-  return about({kernel, "flat_at"},
-               error("E3226", span, fmt::format("`flat_at` sets a derivative to zero, but functions of `{}` have none", kernel),
-                     "`matern32` has one, `matern52` two, `squared_exponential` all; `zero_at` needs none"));
+  return about(
+      {kernel, "flat_at"},
+      error("E3226", span,
+            fmt::format("`flat_at` sets a derivative to zero, but functions with the kernel `{}` have no derivative", kernel),
+            "`matern32` has one, `matern52` two, `squared_exponential` all; `zero_at` needs none"));
 }
 
 }  // namespace sysid::errors

@@ -91,7 +91,7 @@ constexpr Synonym option_places[] = {
     {"sampler", of_backend},
     {"duration", of_duration},
     {"time", of_duration},
-    {"snr", "noise is a share of the signal: `noise = 1 [percent]`"},
+    {"snr", "noise is given relative to the standard deviation of the signal: `noise = 1 [percent]`"},
     {"input", "an input is named: `input x = gaussian(sd = 10)`"},
 };
 constexpr std::string_view of_backends[] = {"samples", "burn_in", "thin", "chains", "proposal", "particles", "variance"};
@@ -274,7 +274,7 @@ Diagnostic task_too_late(ast::Name const& name) {
   Diagnostic result = about({name.text}, error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text),
                                                "tasks run in the order of the file: move that task before this one"));
   result.prompt_help = fmt::format(
-      "a task cannot build on one that was entered after it: give this task another name, or enter `{}` anew", name.text);
+      "a task cannot use a task that was entered after it: give this task another name, or enter `{}` again", name.text);
   return result;
 }
 

@@ -247,7 +247,7 @@ void ModelChecker::place_disturbances() {
         "eliminate the unknowns, so that each state has its differential equation, solved for its highest derivative"));
   if (!model_.memories.empty())
     diagnostics_.add(errors::disturbance_beside(random.span, subject, errors::named("since_last"),
-                                                "observe the quantity itself, or make its change a state of its own"));
+                                                "observe the quantity itself, with a column of its values in the record"));
   int which = 0;
   for (Channel const& channel : model_.channels)
     for (NodeId const argument : channel.noise.arguments)

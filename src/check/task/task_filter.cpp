@@ -200,7 +200,7 @@ void TaskChecker::suit_particles(FitTask& task, Model const& fitted) {
   if (estimates && may_choose) {
     task.filter = FilterRule::particle;
     task.particles_because =
-        fmt::format("no other filter takes the noise of `{}`, which is `{}`", other->name, other->noise.row->name);
+        fmt::format("no other filter supports the noise of `{}`, which is `{}`", other->name, other->noise.row->name);
   } else if (tree_.verb.text == "select") {
     suit_noise(fitted, normal_noise);
   } else {

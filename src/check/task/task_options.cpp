@@ -15,7 +15,7 @@ constexpr TaskOptionRow rows[] = {
     {"solver", "solver = cvode(relative = 1e-8)", "integration method of the equations", {}},
     {"substeps", "substeps = 2", "steps of rk4 between two samples; if not given, the fit chooses it", "automatic"},
     {"prediction", "prediction = free_run",
-     "which past samples a prediction uses, of a model in discrete time or with random states", "as_written one_step free_run"},
+     "for a model in discrete time or with random states: which past samples a prediction uses", "as_written one_step free_run"},
     {"filter", "filter = unscented", "how the likelihood is computed where states are random: disturbances, random initial values",
      "auto kalman extended unscented particle"},
     {"particles", "particles = 1000", "particles of `filter = particle`; if not given, the fit chooses how many", "automatic"},

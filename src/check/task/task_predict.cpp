@@ -219,7 +219,7 @@ void TaskChecker::suit_average(std::vector<FitTask const*> const& fits, PredictT
                                                   "fit it with a back end that uses the prior; " + others));
     else if (by_evidence && fits[k]->evidence == EvidenceMethod::none)
       diagnostics_.add(errors::fit_without_weight(name(k), fits[k]->backend, "its fit has `evidence = none`",
-                                                  "remove that option from the fit, or write `weights = stacking`; " + others));
+                                                  "remove that option from the fit; write `weights = stacking`; " + others));
     else if (!by_evidence && optimum)
       diagnostics_.add(errors::fit_without_weight(
           name(k), fits[k]->backend, fmt::format("`{}` has no posterior draws, and so no predictive scores", backend->name),

@@ -24,10 +24,11 @@ Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word
   if (!is_text)
     help = fmt::format("write their unit in the data block: `time {}`", column_text(cell.column, find_serial_time(word)->unit));
   if (word == "days") help += fmt::format("; if they are seconds, `time {}`", column_text(cell.column, "s"));
-  return error("E4029", mention,
-               fmt::format("{}: {:.15g} is probably not a time in seconds of the record, but {} since {}", place(cell), value, word,
-                           word == "days" ? "1900 or the year 0, as spreadsheets and MATLAB count them" : "1970"),
-               std::move(help));
+  return error(
+      "E4029", mention,
+      fmt::format("{}: {:.15g} is probably not a time in seconds from the start of the record, but {} since {}", place(cell), value,
+                  word, word == "days" ? "1900 or the year 0, as spreadsheets and MATLAB count them" : "1970"),
+      std::move(help));
 }
 
 Diagnostic times_are_clock(Cell const& cell, double before, double now, std::vector<std::string> const& patterns, bool is_text,

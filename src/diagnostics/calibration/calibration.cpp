@@ -101,7 +101,7 @@ std::string_view shape_words(RankShape shape) {
     case RankShape::too_narrow:
       return "posteriors too narrow: true values lie in their tails too often";
     case RankShape::too_wide:
-      return "posteriors too wide: true values lie in their middle too often";
+      return "posteriors too wide: true values lie near their centre too often";
     case RankShape::too_low:
       return "posteriors too low: true values lie above them too often";
     case RankShape::too_high:
@@ -149,12 +149,11 @@ Findings calibration_findings(CalibrationReport const& calibration) {
         {FindingCode::replications_failed,
          20 * (all - n) > all ? Severity::error : Severity::warning,
          {},
-         fmt::format(
-             "{} of {} simulated records have no fit (the first: {}); the ranks of the others may look better than they are",
-             all - n, all,
-             std::find_if(calibration.records.begin(), calibration.records.end(),
-                          [](Replication const& each) { return !each.has_draws(); })
-                 ->failure),
+         fmt::format("{} of {} simulated records have no fit (the first: {}); the test of the others may be too optimistic",
+                     all - n, all,
+                     std::find_if(calibration.records.begin(), calibration.records.end(),
+                                  [](Replication const& each) { return !each.has_draws(); })
+                         ->failure),
          "narrow the priors to what is possible, or choose a search and a solver that work in the whole prior"});
   std::vector<CalibratedQuantity const*> wrong;
   for (CalibratedQuantity const& each : calibration.quantities)

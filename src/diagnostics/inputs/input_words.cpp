@@ -38,8 +38,8 @@ std::string lag_advice(InputOf const& input, int later) {
   std::string const& name = name_of(input);
   std::set<int> const lags = lags_of(input);
   if (lags.empty() || *lags.begin() + later < 0)
-    return fmt::format("the column of {} is {} late against the response: {}, or correct the delay of the recording", name,
-                       of_samples(std::abs(later)), move_column("it", false, std::abs(later)));
+    return fmt::format("the column of {} is delayed by {} relative to the response: {}, or correct the delay of the recording",
+                       name, of_samples(std::abs(later)), move_column("it", false, std::abs(later)));
   auto const written = [&](int lag) { return lag == 0 ? "`" + name + "`" : fmt::format("`lag({}, {})`", name, lag); };
   std::string const read = lags.size() == 1
                                ? fmt::format("write {} in place of {}", written(*lags.begin() + later), written(*lags.begin()))
@@ -94,7 +94,7 @@ Finding other_timing(InputOf const& input, double shift, double gain, int scored
                 "the response begins {} after the input: if the recording causes this, {}; otherwise the model lacks a dead time, "
                 "a slow actuator or a slow sensor of about this size (`tau*z' = y - z`, with `observe` of `z`)",
                 by, move_column("the column of " + name_of(input), true, count))
-          : fmt::format("the column of {} is {} late against the response: {}, or correct the delay of the recording",
+          : fmt::format("the column of {} is delayed by {} relative to the response: {}, or correct the delay of the recording",
                         name_of(input), by, move_column("it", false, count));
   return {FindingCode::input_timing, Severity::warning, names, better_shifted(input, later, by, gain, scored), help};
 }

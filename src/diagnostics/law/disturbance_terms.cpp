@@ -253,13 +253,12 @@ Finding finding(Model const& model, Disturbance const& disturbance, Smoothed con
       FindingCode::disturbance_follows_states,
       Severity::warning,
       {disturbance.name},
-      fmt::format("the smoothed `{}` follows {}, which explains {:.0f} % of its mean square ({} standard errors): does the "
-                  "equation lack this term?",
+      fmt::format("the smoothed `{}` is correlated with {}, which explains {:.0f} % of its mean square ({} standard errors): the "
+                  "equation may lack this term",
                   disturbance.name, shown, 100 * found.followed.share, significant(std::abs(found.followed.standard_errors), 2)),
-      fmt::format(
-          "add `{0}{1}` beside `{2}` in its equation, with `parameter {0}{3} ~ normal(0, sd = {4})`, and fit "
-          "again; with a missing term the disturbance is not independent of the states, and the other parameters are biased",
-          name, times, disturbance.name, bracket, shortest(wide_sd(value)))};
+      fmt::format("add `{0}{1}` beside `{2}` in its equation, with `parameter {0}{3} ~ normal(0, sd = {4})`, and fit "
+                  "again; while a term is missing, the disturbance depends on the states, and the other parameters are biased",
+                  name, times, disturbance.name, bracket, shortest(wide_sd(value)))};
 }
 
 }  // namespace

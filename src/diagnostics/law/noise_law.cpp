@@ -12,7 +12,7 @@ std::string cure_of_growth(LawWords const& words) {
   std::string const relative = free_name(words.names.front() + "_relative", words.taken);
   auto const line = words.proportional(relative);
   std::string const cure = line ? fmt::format("add `parameter {} [-] ~ log_uniform(1e-4, 1)` and write `{}`", relative, *line)
-                                : std::string("let its sd grow with what is predicted");
+                                : std::string("let the sd of the noise increase with the predicted value");
   return fmt::format(
       "if the noise is in part proportional to the signal, {}; otherwise look for what the model lacks at large "
       "amplitudes",
@@ -30,14 +30,13 @@ std::optional<Finding> noise_law(ResidualLaw const& law, double limit, LawWords 
                     words.channel, words.names.front(), law.growth),
         cure_of_growth(words)};
   if (!law.heavy(limit)) return std::nullopt;
-  return Finding{
-      FindingCode::noise_law, Severity::warning, words.names,
-      fmt::format("the residuals of {} have heavier tails than normal noise (excess kurtosis {:.2g}): a few samples have "
-                  "more influence than they should",
-                  words.channel, law.excess_kurtosis),
-      words.random_states
-          ? "check the largest residuals; if they are measurements, the disturbance does not describe the motion there"
-          : "check the largest residuals; if they are measurements, " + use_heavy_tails(words.heavy_tailed())};
+  return Finding{FindingCode::noise_law, Severity::warning, words.names,
+                 fmt::format("the residuals of {} have heavier tails than normal noise (excess kurtosis {:.2g}): a few samples "
+                             "have too much influence on the estimates",
+                             words.channel, law.excess_kurtosis),
+                 words.random_states
+                     ? "check the largest residuals; if they are measurements, the disturbance does not describe the motion there"
+                     : "check the largest residuals; if they are measurements, " + use_heavy_tails(words.heavy_tailed())};
 }
 
 }  // namespace sysid

@@ -77,9 +77,8 @@ std::optional<Finding> equal_distances(SelectionResult const& result) {
       fmt::format("the threshold cannot fall below {:.6g}: all particles of {} have exactly this distance, because their "
                   "simulation depends on no parameter",
                   result.threshold, fixed),
-      "while the threshold stays there, smaller distances of the other models do not raise their probability: compare the "
-      "likelihoods, or set a smaller threshold by "
-      "`schedule`"};
+      "as long as the threshold cannot fall, smaller distances of the other models do not increase their probabilities: compare "
+      "the likelihoods, or set a smaller threshold with `schedule`"};
 }
 
 }  // namespace
@@ -138,7 +137,7 @@ Findings check_populations(SelectionResult const& result, Plan const& plan) {
     findings.push_back({FindingCode::budget_spent,
                         Severity::warning,
                         {},
-                        fmt::format("the run stopped before its end: {}{}", result.stopped_by,
+                        fmt::format("the run stopped before its stopping rule was met: {}{}", result.stopped_by,
                                     std::isfinite(result.threshold) ? "" : "; its only population is a sample of the priors"),
                         "raise the limit that was reached (`simulations`, `wall_time`, `populations`), use fewer `particles`, or "
                         "stop at a larger `target` or "

@@ -17,8 +17,8 @@ constexpr SettingRow rows[] = {
     {"thin", SettingKind::integer, "4", 1, 1e9, "", "keep every thin-th iteration after burn-in"},
     {"chains", SettingKind::integer, "8", 1, 65536, "", "number of independent chains"},
     {"pilot", SettingKind::integer, "2000", 100, 1e8, "",
-     "iterations, a quarter of them burn-in, of each of the four chains that learn a model's posterior beforehand; up to 16 times "
-     "as many where these are not enough"},
+     "iterations, a quarter of them burn-in, of each of the four chains that sample a model's posterior before the jumps; up to 16 "
+     "times as many are used if these are not enough"},
 };
 
 /// Parts of all chains together: their scatter is then known to a tenth.

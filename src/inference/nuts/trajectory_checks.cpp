@@ -110,7 +110,7 @@ Findings check_trajectories(TrajectoryReport const& report) {
          fmt::format("{:.2g} % of the trajectories reached the maximum length of {} steps without a U-turn, so the draws are more "
                      "correlated than necessary",
                      100 * static_cast<double>(sum.cut) / all, (1 << report.depth) - 1),
-         fmt::format("use a longer burn-in (burn_in), in which the metric is learnt{}; check for parameters that the data cannot "
+         fmt::format("use a longer burn-in (burn_in), in which the metric is adapted{}; check for parameters that the data cannot "
                      "separate, and for discontinuities of the density, for which mh is better",
                      report.depth < 15 ? fmt::format(", or depth = {}", std::min(15, report.depth + 2)) : "")});
   return findings;

@@ -74,12 +74,13 @@ Distance::Distance(Model const& model, DistanceMeasure const& measure, std::span
     }
     double const weight = count > 0 ? measure.weights[c] : 0;
     if (kind_ == DistanceKind::nmse && weight > 0 && !(spread > 0))
-      throw UserError({Severity::error,
-                       "E6517",
-                       fmt::format("channel `{}` does not vary in the scored rows, so there is no NMSE", model.channels[c].name),
-                       std::nullopt,
-                       {},
-                       "score rows in which it moves, or take `distance = rmse`"});
+      throw UserError(
+          {Severity::error,
+           "E6517",
+           fmt::format("channel `{}` does not vary in the scored rows, so its NMSE is not defined", model.channels[c].name),
+           std::nullopt,
+           {},
+           "score rows in which it moves, or take `distance = rmse`"});
     weight_.push_back(weight);
     count_.push_back(count);
     scale_.push_back(weight == 0                   ? 0

@@ -238,11 +238,11 @@ Figure free_run_figure(Prediction const& run, PredictedQuantity const& quantity)
   auto const start = std::find(run.scored.begin(), run.scored.end(), 1) - run.scored.begin();
   std::vector<double> const& mean = quantity.response.mean;
   std::string caption = fmt::format(
-      "Measured {} and a free run of the equations found: its start is estimated from the {} rows before, and nothing that is "
-      "measured later enters it{}.",
+      "Measured {} and a free run of the equations found. Its start is estimated from the {} rows before; no later measurement is "
+      "used{}.",
       quantity.name, start, run.inputs.empty() ? "" : ", except the inputs");
   if (!mean.empty() && !std::isfinite(mean.back()))
-    caption += " It is shown up to where it leaves ten times the range of what is measured.";
+    caption += " It is shown until it leaves ten times the range of the measurements.";
   figure.caption = caption + samples_excluded(run, window(run));
   return figure;
 }

@@ -181,7 +181,7 @@ std::string information_text(InformationPage const& page) {
     out += entry(moves.empty() ? "solver" : "",
                  {fmt::format("`solver = {}` would be exact, as the equations are linear", page.exact)});
   if (page.found_move)
-    out += entry("", {fmt::format("the mode that {} finds from these draws moves by {} sd with {}", page.moves.front().first,
+    out += entry("", {fmt::format("the mode found with {} from these draws changes by {} sd with {}", page.moves.front().first,
                                   significant(*page.found_move, 2), page.refinement)});
   if (page.response_move && std::isfinite(*page.response_move))
     out += entry("", {fmt::format("with {}, the median response changes by {} % of its sd, which is an nmse of {} %",

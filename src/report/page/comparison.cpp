@@ -78,8 +78,7 @@ std::string known(double error) { return std::isnan(error) ? "-" : fmt::format("
 ReportTable scores_table(ComparedScores const& scores) {
   ReportTable table;
   table.title = fmt::format("expected log predictive density (elpd) of {}, {}", counted(scores.samples, "sample"),
-                            scores.future ? "each predicted from the rows before that tenth of the record to which it belongs "
-                                            "(leave-future-out)"
+                            scores.future ? "each tenth of the record predicted from the rows before it (leave-future-out)"
                                           : "each left out (leave-one-out)");
   table.header = {"fit", "model", "elpd", "error", "difference", "error of difference", "stacking weight", "pseudo-BMA+ weight"};
   for (ComparedScore const& fit : scores.fits) {

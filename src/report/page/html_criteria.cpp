@@ -88,8 +88,8 @@ std::string time_words(Criteria const& criteria, bool measured_past) {
       "last five tenths from the rows before it. ";
   if (measured_past)
     words +=
-        "In both only the parameters are from those rows: each sample is predicted one step ahead, from the measured ones before "
-        "it. ";
+        "In both, only the parameters are estimated from those rows: each sample is predicted one step ahead, from the measured "
+        "samples before it. ";
   words += "The standard errors assume independent samples; if residuals are correlated, they are too small. ";
   if (!all_reached(criteria.blocks))
     words += "Leave-block-out: Pareto’s k of a block is above 0.7, and its score is not reliable. ";

@@ -152,8 +152,8 @@ std::string calibration_meaning(Report const& report) {
     case Severity::warning:
       return "Check the points below before you rely on intervals of such fits.";
     default:
-      return "Records were simulated with the model itself, with true values from its priors. No difference was found between how "
-             "often the intervals of these fits contain the true values and how often they should. This does not prove the model: "
+      return "Records were simulated with the model itself, with true values from its priors. The intervals of these fits contain "
+             "the true values as often as they should, as far as the test can show. This does not prove the model: "
              "a real record does not come from it.";
   }
 }

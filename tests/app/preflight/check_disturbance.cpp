@@ -56,7 +56,7 @@ Said said_of(std::string const& text, double step) {
 TEST_CASE("a disturbance of a motion that is sampled often is told from noise, above a size that is named") {
   Said const said = said_of(leak, 0.1);
   INFO(said.line);
-  CHECK(said.line.starts_with("w and measurement noise: the record is expected to determine q where it is above about "));
+  CHECK(said.line.starts_with("w and measurement noise: the record is expected to determine q only if its value is above about "));
   CHECK(contains(said.line, "sigma"));
   CHECK(said.warnings == 0);
 }
@@ -73,7 +73,7 @@ TEST_CASE("where the noise is known a disturbance that is larger can be seen") {
       with(with(leak, "median = 0.5", "median = 50"), "  parameter sigma ~ log_uniform(0.01, 1)\n", "  parameter sigma = 0.1\n"),
       1);
   INFO(said.line);
-  CHECK(contains(said.line, "determine q where it is above about"));
+  CHECK(contains(said.line, "determine q only if its value is above about"));
   CHECK_FALSE(contains(said.line, "sigma"));
   CHECK(said.warnings == 0);
 }

@@ -540,7 +540,7 @@ TEST_CASE("steps that only draws of the prior find too coarse are no warning, an
   CHECK(messages(result, "integration_step").empty());
   REQUIRE(information.found_move);
   CHECK(*information.found_move <= tolerable_move);
-  CHECK(check_text(result.page).find("the mode that rk4(substeps = 1) finds from these draws moves by") != std::string::npos);
+  CHECK(check_text(result.page).find("the mode found with rk4(substeps = 1) from these draws changes by") != std::string::npos);
 }
 
 TEST_CASE("a prior that explicit steps cannot follow is called stiff, and the solver that follows it is named") {

@@ -124,7 +124,7 @@ TEST_CASE("a check ends where a solver with its own steps needs very many of the
   CHECK(apart(result) == nullptr);
   std::vector<std::string> const said = messages(result, "prior_fails");
   REQUIRE(said.size() == 1);
-  CHECK(said.front().find(" steps of cvode between two samples: `check` leaves them out") != std::string::npos);
+  CHECK(said.front().find(" steps of cvode between two samples: `check` leaves these draws out") != std::string::npos);
   for (Finding const& each : preflight(result, "post").findings)
     if (each.code == FindingCode::prior_fails) CHECK(each.help.starts_with("check the unit of time in the data block first"));
   CHECK(messages(check_vibration(with(text, "t [s]", "t [ms]")), "prior_fails").empty());

@@ -161,7 +161,7 @@ posterior = fit ar to record with mh(samples = 600, burn_in = 300, thin = 3), se
 again = predict posterior on record with draws(50), seed = 1
 )",
                     {{"record.csv", rows}});
-  CHECK(run.summary("posterior").dump().find("output: 2 rows are not scored, a past sample is missing") != std::string::npos);
+  CHECK(run.summary("posterior").dump().find("output: 2 rows are not scored, because a past sample is missing") != std::string::npos);
   for (std::string const task : {"posterior", "again"}) {
     std::string const scores = run.summary(task).at("fit").dump();
     CAPTURE(scores);

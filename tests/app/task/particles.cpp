@@ -137,7 +137,7 @@ TEST_CASE("noise with heavy tails: the posterior by particles is that by quadrat
       ", solver = exponential, seed = 1\nahead = predict post on d with draws(50), prediction = one_step, seed = 1\n";
   std::string const data = relaxation(1, 0.5, 5, 40, true);
   CaseRun const run(text, {{"d.csv", data}});
-  CHECK(run.result.notices.find("filter = particle, because no other filter takes the noise of `m`, which is `student_t`") !=
+  CHECK(run.result.notices.find("filter = particle, because no other filter supports the noise of `m`, which is `student_t`") !=
         std::string::npos);
   std::vector<double> measured;
   std::istringstream lines(data);
