@@ -17,7 +17,8 @@ namespace sysid {
 struct RandomStates {
   struct Noise {
     NodeId intensity = 0;  // q of its autocovariance q*delta(t); of a map, and if `held`, the variance
-    bool held = false;     // one value from sample to sample: counts as white of intensity variance * sampling interval
+    // One value from sample to sample. Exact methods step it so; to others it is white, of intensity variance * sampling interval.
+    bool held = false;
   };
   std::vector<Noise> noises;
   std::vector<std::optional<NodeId>> initial_variances;  // per state; absent: the initial value is known
