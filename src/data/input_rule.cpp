@@ -35,7 +35,7 @@ std::span<InputRuleRow const> input_rules() {
       {.rule = InputRule::cubic,
        .name = "cubic",
        .usage = "hold cubic",
-       .summary = "the input is a cubic spline through its samples",
+       .summary = "the input is smooth: a cubic spline through its samples",
        .degree = 3,
        .coefficients = &cubic_coefficients},
       {.rule = InputRule::band_limited,

@@ -34,6 +34,17 @@ std::map<std::string, std::string> units_of(std::string const& text) {
   return units;
 }
 
+/// Of all channels and experiments; none where no channel has one.
+std::optional<double> largest_nmse(Json const& fit) {
+  std::optional<double> largest;
+  if (!fit.contains("channels")) return largest;
+  for (auto const& [experiment, channels] : fit["channels"].items())
+    for (auto const& [channel, scores] : channels.items())
+      if (scores.contains("nmse") && scores["nmse"].is_number())
+        largest = std::max(largest.value_or(0), scores["nmse"].get<double>());
+  return largest;
+}
+
 RecordSeries read_record(std::filesystem::path const& path) {
   NumberTable const table = read_number_table(path);
   RecordSeries record;
@@ -89,6 +100,7 @@ Result read_result(std::filesystem::path const& folder, std::string const& task,
     };
     result.nmse = score("nmse");
     result.rmse = score("rmse");
+    if (!result.nmse) result.nmse = largest_nmse(summary["fit"]);
   }
   constexpr std::size_t of_sampler = 4;  // columns before the user's
   for (int k = 1; verb == "fit" && std::filesystem::exists(folder / fmt::format("draws_{}.csv", k)); ++k) {

@@ -36,7 +36,7 @@ struct Result {
   std::vector<std::size_t> chains;  // draws of each
   std::vector<DrawColumn> draws;
   std::vector<RecordSeries> records;
-  std::optional<double> nmse, rmse;  // of a fit over all channels
+  std::optional<double> nmse, rmse;  // of a fit or prediction; of several channels the largest nmse, and no rmse: units differ
 
   bool optimum() const { return chains.size() == 1 && chains[0] == 1; }
   DrawColumn const* find_draws(std::string_view name) const;

@@ -192,15 +192,35 @@ std::string model_text(StoredSummary const& result) {
 
 /// A model, how its likelihood reads the record, and the inputs that it is given: fits that agree in it are of one and the same
 /// model.
-std::string identity(StoredSummary const& result) {
-  json const settings = result.summary.value("settings", json::object());
-  json all = {model_text(result), result.summary.value("prediction_rule", ""), settings.value("start_state", "")};
+struct Identity {
+  std::string text, start, prediction_rule, inputs;
+
+  friend bool operator==(Identity const&, Identity const&) = default;
+  std::string whole() const { return json({text, start, prediction_rule, inputs}).dump(); }
+};
+
+Identity identity(StoredSummary const& result) {
   std::vector<std::string> records;  // in any order
   for (json const& data : result.summary.at("data"))
     records.push_back(data.value("sha256", "") + " " + data.value("inputs_sha256", ""));
   std::sort(records.begin(), records.end());
-  all.push_back(records);
-  return all.dump();
+  return {model_text(result), result.summary.value("settings", json::object()).value("start_state", ""),
+          result.summary.value("prediction_rule", ""), json(records).dump()};
+}
+
+/// In what they differ.
+std::string difference_of(std::vector<Identity> const& identities) {
+  struct Part {
+    std::string Identity::*member;
+    char const* words;
+  };
+  std::vector<std::string> parts;
+  for (Part const& part : {Part{&Identity::text, "the text of the model"}, Part{&Identity::start, "the start"},
+                           Part{&Identity::prediction_rule, "the prediction rule"},
+                           Part{&Identity::inputs, "the inputs or the rule between their samples"}})
+    if (std::ranges::any_of(identities, [&](Identity const& each) { return each.*part.member != identities.front().*part.member; }))
+      parts.emplace_back(part.words);
+  return listed(parts);
 }
 
 /// Which fits of models of one name are not of the same, as an equation before and after a change.
@@ -209,12 +229,11 @@ std::vector<std::string> models_of_one_name(std::vector<StoredSummary> const& re
   std::set<std::string> told;
   for (StoredSummary const& first : results) {
     if (!told.insert(first.model).second) continue;
-    std::vector<std::string> identities, fits;  // one entry each per model of this name
-    bool other_text = false;
+    std::vector<Identity> identities;  // one entry each per model of this name
+    std::vector<std::string> fits;
     for (StoredSummary const& each : results) {
       if (each.model != first.model) continue;
-      other_text = other_text || model_text(each) != model_text(first);
-      std::string const own = identity(each);
+      Identity const own = identity(each);
       auto const known = std::find(identities.begin(), identities.end(), own);
       if (known == identities.end()) {
         identities.push_back(own);
@@ -224,9 +243,8 @@ std::vector<std::string> models_of_one_name(std::vector<StoredSummary> const& re
       }
     }
     if (fits.size() > 1)
-      notes.push_back(fmt::format("the fits of `{}` differ in {}: {}", first.model,
-                                  other_text ? "the text of the model" : "start, prediction rule or inputs",
-                                  fmt::join(fits, "; ")));
+      notes.push_back(
+          fmt::format("the fits of `{}` differ in {}: {}", first.model, difference_of(identities), fmt::join(fits, "; ")));
   }
   return notes;
 }
@@ -311,7 +329,7 @@ Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model
   std::vector<ScoredFit> scored;
   for (StoredSummary const& each : fits)
     if (auto found = scored_fit(each.name, each.model, each.folder, each.summary)) {
-      found->identity = identity(each);
+      found->identity = identity(each).whole();
       scored.push_back(std::move(*found));
     }
   comparison.scores = compare_scores(scored);
@@ -321,7 +339,7 @@ Comparison compare(std::vector<fs::path> const& folders, ModelNames const& model
   std::vector<std::string> models;
   std::vector<json> evidences;
   for (StoredSummary const& each : fits) {
-    models.push_back(identity(each));
+    models.push_back(identity(each).whole());
     evidences.push_back(each.summary.value("evidence", json::object()));
   }
   weigh_models(models, comparison.fits);

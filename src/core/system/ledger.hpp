@@ -26,7 +26,7 @@ struct Failure {
 class Ledger {
  public:
   /// Where the failures lie that are counted without a look at each.
-  static constexpr char const* untraced = "place not determined: it is determined for the first eight failures only";
+  static constexpr char const* untraced = "place not determined, which is done for a few failures only";
   /// Ends the place of failures that are counted together.
   static constexpr std::string_view not_traced = ", place not determined";
   void add_solves(std::uint64_t count) { solves_ += count; }

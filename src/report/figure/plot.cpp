@@ -43,7 +43,8 @@ std::string shortened(std::string_view text, double pixels) {
   // Of a short name nothing would be left: rather less of the unit, but for the power of ten, without which numbers are wrong.
   std::size_t const power = unit.starts_with(" [10") ? unit.find(' ', 1) : std::string_view::npos;
   std::string const rest = power == std::string_view::npos ? " […]" : std::string(unit.substr(0, power)) + " …]";
-  return text_pixels(name) + text_pixels(rest) <= pixels ? std::string(name) + rest : left();
+  if (text_pixels(name) + text_pixels(rest) <= pixels) return std::string(name) + rest;
+  return counted ? std::string(name) + (power == std::string_view::npos ? "" : std::string(unit.substr(0, power)) + "]") : left();
 }
 
 std::pair<double, double> cover(std::pair<double, double> a, std::pair<double, double> b) {

@@ -129,8 +129,7 @@ std::string prior_text(PriorPage const& prior, std::string const& time_unit, dou
   for (Failure const& failure : prior.failures)
     lines.push_back(fmt::format("  {} x {}: {} (first at t = {} {})", failure.count, name(failure.kind), failure.where,
                                 significant(failure.time / time_scale, 4), time_unit));
-  if (prior.untraced > 0)
-    lines.push_back(fmt::format("  {} x place not determined: it is determined for the first eight failures only", prior.untraced));
+  if (prior.untraced > 0) lines.push_back(fmt::format("  {} x {}", prior.untraced, Ledger::untraced));
   for (PriorPage::Channel const& channel : prior.channels)
     lines.push_back(
         fmt::format("{}: in 90 % of the draws its range (largest minus smallest) is between {} and {}, median {}; measured {}",
@@ -169,13 +168,16 @@ std::string information_text(InformationPage const& page) {
   for (auto const& [solver, move] : page.moves)
     moves += fmt::format("{}{} sd for {}", moves.empty() ? "" : ", ", move > 5 ? "more than 5" : significant(move, 2), solver);
   if (!moves.empty())
-    out +=
-        entry("solver", {fmt::format("with {}, parameters change by {}", page.refinement, moves),
-                         page.advised.empty() ? "none of these is accurate enough"
-                         : page.prior_overflows
-                             ? fmt::format("{} is needed: explicit steps overflow on a large part of the prior", page.advised)
-                         : page.taken.empty() ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
-                                              : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
+    out += entry(
+        "solver",
+        {fmt::format("with {}, parameters change by {}", page.refinement, moves),
+         page.advised.empty()
+             ? page.taken.empty()
+                   ? "none of these is accurate enough at these draws; the fit chooses its solver settings at its mode"
+                   : "none of these is accurate enough"
+         : page.prior_overflows ? fmt::format("{} is needed: explicit steps overflow on a large part of the prior", page.advised)
+         : page.taken.empty()   ? fmt::format("{} is sufficient; the fit chooses its solver settings", page.advised)
+                                : fmt::format("{} is sufficient; the task uses {}", page.advised, page.taken)});
   if (!page.exact.empty() && page.exact == page.taken) out += entry("solver", {fmt::format("{} is exact", page.exact)});
   if (!page.exact.empty() && page.exact != page.taken)
     out += entry(moves.empty() ? "solver" : "",

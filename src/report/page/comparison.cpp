@@ -60,12 +60,12 @@ ReportTable fits_table(Comparison const& comparison) {
                           fit.probability ? model_probability(*fit.probability, fit.probability_error) : "-",
                           checks_text(fit.pass, fit.warnings)});
     std::string note;
-    if (!fit.log_evidence) note = fmt::format("{} has no evidence: {}", fit.name, fit.without);
+    if (!fit.log_evidence) note = fmt::format("`{}` has no evidence: {}", fit.name, fit.without);
     if (fit.rough)
       note =
-          fmt::format("{}: its evidence is approximate: {} changes it by {:+.1f}", fit.name,
+          fmt::format("the evidence of `{}` is approximate: {} changes it by {:+.1f}", fit.name,
                       fit.rough_by_draws ? "the estimate by weighted draws" : "integration along the axes of its mode", *fit.rough);
-    if (!fit.not_confirmed.empty()) note = fmt::format("{}: its evidence is not confirmed: {}", fit.name, fit.not_confirmed);
+    if (!fit.not_confirmed.empty()) note = fmt::format("the evidence of `{}` is not confirmed: {}", fit.name, fit.not_confirmed);
     if (!note.empty()) table.caption += (table.caption.empty() ? "" : "\n") + note;
   }
   return table;
@@ -86,7 +86,7 @@ ReportTable scores_table(ComparedScores const& scores) {
                           std::isnan(fit.difference) ? "-" : with_error(fit.difference, {}, 1), known(fit.difference_error),
                           fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
     if (fit.doubtful > 0 && !scores.future)
-      table.caption += fmt::format("{}{}: Pareto's k is above 0.7 for {}, so its elpd is too high",
+      table.caption += fmt::format("{}`{}`: Pareto's k is above 0.7 for {}, so its elpd is too high",
                                    table.caption.empty() ? "" : "\n", fit.name, counted(fit.doubtful, "sample"));
     if (fit.impossible > 0)
       table.caption += fmt::format("{}{}: the density of {} is zero under all draws, so this fit has no weight",

@@ -94,7 +94,7 @@ free = predict b_arx on points.test with draws(20), prediction = free_run, seed 
   CHECK(found.predictions[1].nmse == run.summary("one").at("fit").at("nmse").get<double>());
   std::string const text = comparison_text(found);
   CAPTURE(text);
-  CHECK(text.find("d_ml has no evidence: only the likelihood") != std::string::npos);
+  CHECK(text.find("`d_ml` has no evidence: only the likelihood") != std::string::npos);
   json const printed = json::parse(comparison_json(found));
   CHECK(printed.at("fits").at(3).at("log_evidence").is_null());
   CHECK(printed.at("predictions").size() == 3);
@@ -164,10 +164,10 @@ b_self = fit still to self.train with map, seed = 1
   CHECK(*found.fits[0].probability + *found.fits[1].probability == doctest::Approx(1));
   CHECK((*found.fits[0].probability > *found.fits[1].probability) == (*found.fits[0].log_evidence > *found.fits[1].log_evidence));
   REQUIRE(found.notes.size() == 1);
-  CHECK(found.notes[0] == "the fits of `still` differ in start, prediction rule or inputs: a_input; b_self");
+  CHECK(found.notes[0] == "the fits of `still` differ in the inputs or the rule between their samples: a_input; b_self");
   auto const page = run.folder.path() / "page.html";
   report_results(run.folder.path() / "results", page, false);
-  CHECK(read_file(page).find("differ in start, prediction rule or inputs: a_input; b_self") != std::string::npos);
+  CHECK(read_file(page).find("differ in the inputs or the rule between their samples: a_input; b_self") != std::string::npos);
 }
 
 TEST_CASE("fits to different samples are refused, also where only the models' own lags make the difference") {

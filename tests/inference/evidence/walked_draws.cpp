@@ -11,10 +11,10 @@ using namespace sysid;
 
 namespace {
 
-/// A standard normal, and far from it a narrow place with a millionth of its mass, which nobody leaves who is there.
+/// A standard normal, and far from it a place with a millionth of its mass, which nobody leaves who is there.
 double with_a_far_place(std::vector<double> const& u) {
-  constexpr double width = 0.3, mass = 1e-6;
-  double const far = (u[0] - 30) / width, beside = u[1] / width;
+  constexpr double width = 1, mass = 1e-6;
+  double const far = (u[0] - 15) / width, beside = u[1] / width;
   double const main = -0.5 * (u[0] * u[0] + u[1] * u[1]),
                other = -0.5 * (far * far + beside * beside) + std::log(mass / (width * width));
   double const most = std::max(main, other);
@@ -28,7 +28,7 @@ marginal::WalkedDraws walked_with(int strayed) {
   LaneArray walkers(2, width);
   for (int w = 0; w < width; ++w) {
     Stream stream({3, Purpose::test, static_cast<std::uint64_t>(w), 0});
-    walkers(0, w) = w < strayed ? 30 : stream.normal();
+    walkers(0, w) = w < strayed ? 15 : stream.normal();
     walkers(1, w) = w < strayed ? 0 : stream.normal();
   }
   Ledger ledger;
