@@ -77,7 +77,7 @@ TEST_CASE("a candidate whose steps would grow is stepped exactly, and its eviden
           "selection = select lags to bench with reversible_jump(samples = 1000, burn_in = 200, pilot = 400), seed = 1\n"
           "again = predict selection on bench with draws(50), seed = 1\n",
       {{"lag.csv", record.text()}});
-  CHECK(run.result.notices.find("quick: exponential integrates exactly") != std::string::npos);
+  CHECK(run.result.notices.find("quick: the exact solver exponential is used") != std::string::npos);
   json const summary = run.summary("selection");
   struct Expected {
     char const* name;

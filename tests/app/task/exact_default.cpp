@@ -129,7 +129,7 @@ TEST_CASE("a prior that reaches far below the samples is fitted by exact steps, 
     json const summary = run.summary("posterior");
     CHECK(summary.at("settings").at("solver") == "exponential");
     CHECK_FALSE(summary.at("settings").contains("substeps"));
-    CHECK(run.result.notices.find("grow without bound on") != std::string::npos);
+    CHECK(run.result.notices.find("the integration is unstable for") != std::string::npos);
     CHECK_FALSE(has_finding(summary, "stiff_prior"));
     CHECK_FALSE(has_finding(summary, "failed_solves"));
     Reference const expected = reference(record, 1e-3, 10);
@@ -146,7 +146,7 @@ TEST_CASE("a prior that the usual steps follow, and a solver that is stated, are
   CaseRun const mild(lags("log_uniform(1, 10)", ""), {{"lags.csv", csv(record)}});
   json const summary = mild.summary("posterior");
   CHECK(summary.at("settings").at("solver") == "rk4");
-  CHECK(mild.result.notices.find("grow without bound") == std::string::npos);
+  CHECK(mild.result.notices.find("unstable") == std::string::npos);
   CaseRun const stated(lags("log_uniform(1e-3, 10)", ", solver = rk4"), {{"lags.csv", csv(record)}});
   CHECK(stated.summary("posterior").at("settings").at("solver") == "rk4");
 }
