@@ -18,6 +18,18 @@ constexpr std::array<std::string_view, 4> heads{"file", "time", "rate", "step"};
 bool is_word(Token const* token) { return token != nullptr && token->kind == TokenKind::word; }
 bool is_number(Token const* token) { return token != nullptr && token->kind == TokenKind::number; }
 
+/// `input f = test.force`, `time run(1)`: the name of a column that is not a word, up to a blank or its unit.
+std::string in_name_of_column(Gap const& gap) {
+  bool const within = gap.wanted == wanted::end_of_statement && (gap.found->is(".") || gap.found->is("("));
+  if (!within || !is_word(gap.before()) || gap.before()->span.end != gap.found->span.begin) return {};
+  std::size_t end = gap.at;
+  while (end < gap.statement.size() && gap.statement[end].span.begin == gap.statement[end - 1].span.end &&
+         !gap.statement[end].is("[") && !gap.statement[end].is(";"))
+    ++end;
+  return fmt::format("the name of a column is written in quotes unless it is a single word: `{} \"{}\"`", gap.text(0, gap.at - 1),
+                     gap.text(gap.at - 1, end));
+}
+
 /// `rate = 100 [Hz]`, `file("a.csv")`, `time [s] t`: statements without a sign.
 std::string in_head(Gap const& gap) {
   if (!words::contains(heads, gap.statement[0].text) || gap.found == nullptr) return {};
@@ -36,6 +48,7 @@ std::string in_head(Gap const& gap) {
   if (gap.wanted == wanted::end_of_statement && gap.at > 1 && words::contains(starts, gap.found->text))
     return fmt::format("remove `{}`; to use a part of the record, name its rows, `split part = rows 101..500`, and use `DATA.part`",
                        gap.rest());
+  if (gap.begins_with("time") && gap.at == 2) return in_name_of_column(gap);
   if (gap.begins_with("time") && gap.at == 1 && is_number(gap.found))
     return fmt::format("name the column; put it in quotes if it is not a single word: `time \"{}\"`", gap.found->text);
   return {};
@@ -103,6 +116,7 @@ std::string in_column(Gap const& gap) {
     return {};
   }
   if (equals >= gap.at) return {};
+  if (std::string help = in_name_of_column(gap); !help.empty()) return help;
   constexpr std::array<std::string_view, 4> operators{"*", "/", "+", "-"};
   bool const operates = words::contains(operators, gap.found->text), behind_unit = operates && gap.before()->is("]");
   bool const computed = gap.wanted == wanted::column ? !gap.found->is("[") : operates && (gap.at == equals + 2 || behind_unit);

@@ -207,7 +207,7 @@ TEST_CASE("columns that are exchanged by their names are named with the lines th
   };
   CheckResult const exchanged = of("input load = temp [kN]; input temp = load [degC]; measure gap = gap [mm]");
   CHECK(messages(exchanged, "column_used_twice") ==
-        Messages{"load is read from column `temp` of record, and column `load` is read for temp: exchanged?"});
+        Messages{"load is read from column `temp` of record, and column `load` is read for temp: the two may be exchanged"});
   std::string const help = help_of(exchanged, FindingCode::column_used_twice);
   CHECK(help == "if so, write `input load = load [kN]` and `input temp = temp [degC]`");
   std::string cure;
@@ -219,7 +219,7 @@ TEST_CASE("columns that are exchanged by their names are named with the lines th
   CHECK(help_of(half, FindingCode::column_used_twice) == "if so, write `input load = load [kN]` and `measure gap = gap [mm]`");
   CheckResult const own = of("input x = gap [kN]; input temp = temp [degC]; measure gap = load [mm]", "x [kN], temp [degC]");
   CHECK(messages(own, "column_used_twice") ==
-        Messages{"gap is read from column `load` of record, and column `gap` is read for x: exchanged?"});
+        Messages{"gap is read from column `load` of record, and column `gap` is read for x: the two may be exchanged"});
   // No name is that of a column that is read for something else.
   CHECK(messages(of("input load = load [kN]; input temp = temp [degC]; measure gap = gap [mm]"), "column_used_twice").empty());
   CHECK(messages(of("input x = load [kN]; input temp = temp [degC]; measure gap = gap [mm]", "x [kN], temp [degC]"),
