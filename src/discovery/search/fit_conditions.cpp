@@ -32,6 +32,7 @@ RoundedInputs rounded_inputs(std::vector<Experiment> records, std::size_t inputs
     std::vector<double> all;
     for (Experiment const& each : records)
       for (int row = 0; row < each.inputs[i].rows(); ++row) all.push_back(each.inputs[i].sample(row));
+    if (are_levels(all)) continue;
     std::vector<double> const sds = rounding_sds(all);
     if (std::all_of(sds.begin(), sds.end(), [](double sd) { return sd == 0; })) continue;
     any = true;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "core/numeric/elementary.hpp"
@@ -65,6 +66,23 @@ double rounding_sd(std::span<double const> samples) {
   double squares = 0, count = 0;
   for (double const sd : rounding_sds(samples)) squares += sd * sd, count += sd > 0 ? 1 : 0;
   return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+bool are_levels(std::span<double const> samples) {
+  constexpr std::size_t few = 32;
+  std::set<double> values;
+  for (double const each : samples)
+    if (std::isfinite(each) && values.size() <= few) values.insert(each);
+  if (values.size() <= few) return true;
+  double const unit = std::sqrt(12.0) * rounding_sd(samples);
+  int stays = 0, moves = 0, jumps = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    double const change = std::fabs(samples[i] - samples[i - 1]);
+    if (change == 0) ++stays;
+    if (change > 0) ++moves;
+    if (change > 1.5 * unit) ++jumps;
+  }
+  return stays >= moves && 4 * jumps >= 3 * moves;
 }
 
 std::optional<GrowingNoise> growing_noise(std::span<double const> signal, std::span<double const> residual) {

@@ -38,6 +38,24 @@ TEST_CASE("the rounding of a record is read off its digits, significant ones or 
   CHECK(rounding_sd(std::vector<double>{0, std::nan(""), 0}) == 0);
 }
 
+TEST_CASE("an input of set levels has no rounding error, one that was measured and rounded has") {
+  Stream stream({4, Purpose::test, 0, 0});
+  std::vector<double> switched, stairs, measured, slow;
+  double level = 0;
+  for (int i = 0; i < 400; ++i) {
+    switched.push_back(stream.uniform() < 0.5 ? 0.3 : -0.3);
+    if (i % 4 == 0) level = std::round(100 * stream.normal()) / 100;
+    stairs.push_back(level);
+    measured.push_back(std::round(100 * stream.normal()) / 100);
+    slow.push_back(std::round(100 * std::sin(0.01 * i)) / 100);
+  }
+  CHECK(are_levels(switched));
+  CHECK(are_levels(stairs));
+  CHECK_FALSE(are_levels(measured));
+  CHECK_FALSE(are_levels(slow));
+  CHECK_FALSE(are_levels(motion()));
+}
+
 TEST_CASE("noise in proportion to the signal is told from noise that is alike in all samples") {
   std::vector<double> const signal = motion();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
