@@ -111,6 +111,15 @@ bool is_settled(ValidationReport const& validation) {
          validation.structures.front().residual_over_noise <= settled_residual;
 }
 
+void temper_by_terms(DiscoveredEquation const& equation, Finding& finding) {
+  if (finding.code != FindingCode::terms_collinear || finding.names.empty()) return;
+  auto const kept = [&](std::string const& term) {
+    return std::any_of(equation.terms.begin(), equation.terms.end(),
+                       [&](DiscoveredTerm const& each) { return each.kept && each.text == term; });
+  };
+  if (!std::all_of(finding.names.begin() + 1, finding.names.end(), kept)) finding.severity = Severity::note;
+}
+
 void temper_by_form(ValidationReport const& validation, std::string const& target, Finding& finding) {
   if (!checked(validation)) return;
   auto const kept = [&](std::string const& term) {
@@ -146,6 +155,26 @@ Findings undecided_form(ValidationReport const& validation) {
   }
   return {{FindingCode::form_undecided, Severity::warning, std::move(names),
            fmt::format("the record does not decide the form; probabilities: {}", fmt::join(listed, ", ")),
+           "add a record from another start or of another amplitude to the same discovery: `discover ... from first, second`"}};
+}
+
+Findings undecided_terms(DiscoveredEquation const& equation) {
+  std::vector<std::string> kept;
+  for (DiscoveredTerm const& each : equation.terms)
+    if (each.kept) kept.push_back(each.text);
+  double own = 0, sum = 0, known = 0;
+  std::vector<std::string> names, listed;
+  for (DiscoveredSupport const& each : equation.supports) {
+    known += each.probability;
+    if (each.terms == kept) own = each.probability;
+    if (sum >= shared_probability || names.size() >= most_named) continue;
+    sum += each.probability;
+    names.push_back(each.terms.empty() ? "none" : fmt::format("{}", fmt::join(each.terms, ", ")));
+    listed.push_back(fmt::format("`{}` {}", names.back(), probability_text(each.probability)));
+  }
+  if (known == 0 || own >= probable) return {};
+  return {{FindingCode::form_undecided, Severity::warning, std::move(names),
+           fmt::format("the record does not decide the terms of `{}`; probabilities: {}", equation.target, fmt::join(listed, ", ")),
            "add a record from another start or of another amplitude to the same discovery: `discover ... from first, second`"}};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "result/discovery.hpp"
 #include "result/finding.hpp"
 #include "result/simulation_validation.hpp"
 
@@ -18,6 +19,12 @@ void temper_by_form(ValidationReport const& validation, std::string const& targe
 
 /// That the record does not decide the form; nothing where it does, or where no structure could be checked.
 Findings undecided_form(ValidationReport const& validation);
+
+/// The same of a regression that no simulation has followed: sets of terms that share the probability, where the one that was kept
+/// has less than 0.8 of it. Nothing where its selector knows no probabilities.
+Findings undecided_terms(DiscoveredEquation const& equation);
+/// Of such a regression: a term left out because others make it up is a note, unless all of these are kept.
+void temper_by_terms(DiscoveredEquation const& equation, Finding& finding);
 
 /// That an equation with terms which the dictionary lacks is as probable; a note where it describes the record less well. Nothing
 /// where none is, or where no structure could be checked.

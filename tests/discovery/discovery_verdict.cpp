@@ -99,6 +99,41 @@ TEST_CASE("a form that is not decided is one warning with the structures that sh
   CHECK(undecided.front().help.find("from first, second") != std::string::npos);
 }
 
+TEST_CASE("sets of terms that share the probability of a regression are one warning, where none is simulated") {
+  DiscoveredEquation equation;
+  equation.target = "y";
+  for (auto const& [text, kept] : {std::pair("lag(y, 1)", true), {"lag(u, 1)", true}, {"lag(u, 1)^2", false}}) {
+    equation.terms.emplace_back().text = text;
+    equation.terms.back().kept = kept;
+  }
+  CHECK(undecided_terms(equation).empty());  // a selector without probabilities
+  equation.supports = {{{"lag(y, 1)", "lag(u, 1)"}, 0.5}, {{"lag(y, 1)", "lag(u, 1)", "lag(u, 1)^2"}, 0.4}, {{"lag(y, 1)"}, 0.08}};
+  Findings const found = undecided_terms(equation);
+  REQUIRE(found.size() == 1);
+  CHECK(found.front().code == FindingCode::form_undecided);
+  CHECK(found.front().names.size() == 3);
+  equation.supports.front().probability = 0.9;
+  CHECK(undecided_terms(equation).empty());
+  // What is kept is not the most probable.
+  equation.terms[2].kept = true;
+  CHECK(undecided_terms(equation).size() == 1);
+}
+
+TEST_CASE("a term that others make up is a note, unless all of these are in the equation") {
+  DiscoveredEquation equation;
+  for (auto const& [text, kept] : {std::pair("lag(y, 1)", true), {"lag(y, 3)", false}}) {
+    equation.terms.emplace_back().text = text;
+    equation.terms.back().kept = kept;
+  }
+  auto const severity = [&](std::vector<std::string> names) {
+    Finding each = finding(FindingCode::terms_collinear, std::move(names));
+    temper_by_terms(equation, each);
+    return each.severity;
+  };
+  CHECK(severity({"lag(y, 2)", "lag(y, 1)", "lag(y, 3)"}) == Severity::note);
+  CHECK(severity({"lag(y, 2)", "lag(y, 1)"}) == Severity::warning);
+}
+
 TEST_CASE("other terms are a warning where the record is described as well by them, with their coefficients counted") {
   ValidationReport validation = report(0.98);
   CHECK(other_terms(validation).empty());
