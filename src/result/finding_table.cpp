@@ -61,6 +61,8 @@ constexpr FindingRow rows[] = {
     {FindingCode::disturbance_follows_states, "disturbance_follows_states", warning},
     {FindingCode::input_timing, "input_timing", warning},
     {FindingCode::input_rule, "input_rule", warning_or_note},
+    {FindingCode::experiments_disagree, "experiments_disagree", warning},
+    {FindingCode::member_far_off, "member_far_off", warning},
     {FindingCode::optimum_of_hierarchy, "optimum_of_hierarchy", warning},
     {FindingCode::hierarchy_narrows, "hierarchy_narrows", note},
     {FindingCode::diagnostics_on_thinned, "diagnostics_on_thinned", note},

@@ -60,6 +60,8 @@ enum class FindingCode {
   disturbance_follows_states,
   input_timing,
   input_rule,
+  experiments_disagree,
+  member_far_off,
   optimum_of_hierarchy,
   hierarchy_narrows,
   diagnostics_on_thinned,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/fit/exchanged_columns.hpp"
+#include "app/fit/experiment_checks.hpp"
 #include "app/fit/hierarchies.hpp"
 #include "app/session/fit_end.hpp"
 #include "core/text/source.hpp"
@@ -206,7 +207,9 @@ Findings hierarchy(FinishedFit& fit) {
   std::vector<std::string> non_centred;
   if (ParameterSpace const* const space = fit.likelihood.with_hierarchies())
     non_centred = parameters_of(*space, fit.preparation.standardised);
-  return check_hierarchy(fit.likelihood.model(), fit.result.draws, fit.report.findings, non_centred);
+  Findings found = check_hierarchy(fit.likelihood.model(), fit.result.draws, fit.report.findings, non_centred);
+  for (Finding& each : check_members(fit.likelihood.space(), fit.report.draws)) found.push_back(std::move(each));
+  return found;
 }
 
 Findings failed_solves(FinishedFit& fit) { return failure_findings(fit.sampling); }
@@ -237,6 +240,7 @@ constexpr FitCheckRow rows[] = {
     {"parameter_use", true, &always, &parameter_use},
     {"residuals", false, &always, &residuals},
     {"input_timing", false, &without_timing, &input_timing},
+    {"shared_parameters", false, &without_shared_parameters, &check_shared_parameters},
     {"solver_accuracy", false, &without_solver, &solver_accuracy},
     {"linearisation", false, &without_linearisation, &linearisation, true},
     {"particles", false, &always, &particles, true, true},

@@ -1,0 +1,22 @@
+// Whether the experiments of a fit agree: on the parameters that they share, and as members of one population.
+#pragma once
+#include <string>
+
+#include "app/fit/fit_checks.hpp"
+
+namespace sysid {
+
+/// Why shared parameters are not compared between experiments; empty: they are.
+std::string without_shared_parameters(FinishedFit const& fit);
+
+/// The mode of the fit is followed to the target of each experiment alone, under the same prior. Where estimates of a shared
+/// parameter lie more than six of their sds apart, and all experiments alone are clearly better described than together, they
+/// disagree: a parameter that is not the same in all, a clock, a unit or a sensor that is another. The most distant parameter is
+/// named first.
+Findings check_shared_parameters(FinishedFit& fit);
+
+/// A member that no other member resembles, by its draws against those of the others, without it: one that is far off widens the
+/// population until it looks usual there. At least five members; by the tail of Student's t distribution.
+Findings check_members(ParameterSpace const& space, Draws const& draws);
+
+}  // namespace sysid
