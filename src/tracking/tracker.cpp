@@ -19,7 +19,9 @@ constexpr int rows_at_once = 1024;
 /// The size of a jump is found on equations that are linearised as they were without it, and for the likeliest row: of 50 jumps by
 /// a tenth the errors were 2.0 of the sds that this gives.
 constexpr double beyond_linear = 2;
-constexpr int most_lags = 1000;  // of a model that looks back
+constexpr int most_lags = 1000;   // of a model that looks back
+constexpr double far_off = 8;     // expected sds: no sample of a right model
+constexpr int most_in_a_row = 2;  // rows so far off one after the other are no outliers, but a change
 
 /// With a column for every channel: an experiment may lack those that come last.
 Schedule schedule_of(TrackedProgram const& program, Experiment experiment, SolverSettings const& solver) {
@@ -86,6 +88,7 @@ Tracker::Tracker(TrackedProgram program, SolverSettings solver, ExecutionOptions
   row_.sd = row_.mean;
   row_.innovation.resize(program_.channels.size());
   row_.expected = row_.innovation;
+  row_.left_out.assign(program_.channels.size(), 0);
 }
 
 void Tracker::take(Experiment const& experiment, int from, Sink const& sink) {
@@ -102,6 +105,9 @@ int Tracker::take_some(Experiment const& experiment, int from, int to, Sink cons
   int const first = begins ? from : from - 1;
   Experiment part = slice(experiment, first, to, std::min(most_lags, experiment.first_row + first));
   if (!begins) part.scored.front() = 0;  // it has corrected the moments
+  if (left_out_row_ == experiment.first_row + from)
+    for (std::size_t c = 0; c < part.measured.size(); ++c)
+      if (row_.left_out[c] != 0) part.measured[c][static_cast<std::size_t>(from - first)] = std::nan("");
   LaneArray records;
   bool const fine =
       records_along(program_, solver_, execution_, part, parameters_of(program_, options_.intensities, moments_), records);
@@ -111,10 +117,40 @@ int Tracker::take_some(Experiment const& experiment, int from, int to, Sink cons
     int const half = from + (to - from) / 2;
     return take_some(experiment, from, half, sink);
   }
-  for (int index = from; index < to; ++index)
-    if (read(experiment, index, records.view().data() + static_cast<std::ptrdiff_t>(index - first) * program_.records, sink))
-      return index + 1;
+  for (int index = from; index < to; ++index) {
+    double const* const row = records.view().data() + static_cast<std::ptrdiff_t>(index - first) * program_.records;
+    if (leaves_out(experiment, index, row)) return index;
+    if (read(experiment, index, row, sink)) return index + 1;
+  }
   return to;
+}
+
+/// True where samples of the row are to be left out: it is then filtered once more, without them. A change of a parameter as large
+/// as that is found two rows later.
+bool Tracker::leaves_out(Experiment const& experiment, int index, double const* records) {
+  int const row = experiment.first_row + index;
+  if (left_out_row_ == row) return false;  // without them it still comes here
+  std::ranges::fill(row_.left_out, 0);
+  if (!options_.leaves_out || settling_ > 0) return false;
+  bool any = false;
+  for (std::size_t c = 0; c < program_.channels.size(); ++c) {
+    auto const& channel = program_.channels[c];
+    double const sds = records[channel.innovation] / std::sqrt(records[channel.variance]);
+    if (!(std::fabs(sds) > far_off)) continue;
+    row_.left_out[c] = sds;
+    any = true;
+  }
+  if (!any) {
+    left_out_in_a_row_ = 0;
+    return false;
+  }
+  if (left_out_in_a_row_ >= most_in_a_row) {
+    std::ranges::fill(row_.left_out, 0);
+    return false;
+  }
+  ++left_out_in_a_row_;
+  left_out_row_ = row;
+  return true;
 }
 
 /// True where the moments are no longer those of the records.

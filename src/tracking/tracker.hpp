@@ -33,6 +33,9 @@ struct TrackingOptions {
   double false_alarms = 1e-5;       // most of them per row
   int window = 2048;                // rows looked back for a jump
   int settling_rows = 50;
+  /// Samples too far from their prediction for any change of a parameter are left out. Not where predictions read measured samples:
+  /// one that is left out would be missing in those of later rows.
+  bool leaves_out = true;
 };
 
 /// A jump of a parameter, in SI; rows as of the experiment's file.
@@ -56,6 +59,7 @@ struct TrackedRow {
   std::vector<double> innovation, expected;  // per channel, and its sd; NaN: no sample
   double squared = 0;                        // sum of (innovation/sd)^2
   int samples = 0;
+  std::vector<double> left_out;  // per channel, how many expected sds off a sample was that was left out; else 0
   Alarm const* alarm = nullptr;
 };
 
@@ -74,13 +78,15 @@ class Tracker {
 
  private:
   int take_some(Experiment const& experiment, int from, int to, Sink const& sink);
+  bool leaves_out(Experiment const& experiment, int index, double const* records);
   bool read(Experiment const& experiment, int index, double const* records, Sink const& sink);
   void report(Experiment const& experiment, int index, double const* records, TrackedRow& row);
   void settle();
   Alarm respond(Experiment const& experiment, int index, DetectedJump const& jump);
   double& moment(int i, int j) { return moments_[static_cast<std::size_t>(program_.place(i, j))]; }
   double variance(int i) const { return moments_[static_cast<std::size_t>(program_.place(i, i))]; }
-  /// SI value and sd of a tracked parameter whose coordinate has this mean and variance; the other parameters are where they are now.
+  /// SI value and sd of a tracked parameter whose coordinate has this mean and variance; the other parameters are where they are
+  /// now.
   std::pair<double, double> value_of(int parameter, double mean, double variance) const;
   void values_now(std::vector<double>& mean, std::vector<double>& sd);
 
@@ -93,6 +99,8 @@ class Tracker {
   std::vector<double> moments_;
   int rows_ = 0;                               // taken so far
   int settling_ = 0;                           // rows left
+  int left_out_row_ = 0;                       // the row of the file that has samples left out, as row_.left_out says; 0: none yet
+  int left_out_in_a_row_ = 0;                  // rows before the next one
   std::vector<std::pair<int, double>> times_;  // of the rows that a jump may have come after: row of the file, time
   TrackedRow row_;
   std::vector<double> scratch_;

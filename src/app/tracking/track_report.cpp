@@ -16,7 +16,14 @@
 namespace sysid {
 namespace {
 
+constexpr std::size_t most_kept_outliers = 100;
 constexpr std::size_t most_shown = 300;  // and up to twice as many: all that a figure shows
+
+std::vector<std::string> channel_names(Model const& model) {
+  std::vector<std::string> names;
+  for (Channel const& channel : model.channels) names.push_back(channel.name);
+  return names;
+}
 
 std::string with_sd(double value, double sd) {
   if (!(sd > 0) || !std::isfinite(value)) return significant(value, 4);
@@ -103,6 +110,24 @@ ReportTable innovation_table(GatheredTrack const& gathered) {
                              : "smaller than expected"}}};
 }
 
+/// "d of row 450 is 101 expected sds off its prediction, and was left out".
+Finding far_off_samples(GatheredTrack const& gathered) {
+  constexpr std::size_t most_told = 3;
+  std::vector<std::string> told, names;
+  for (GatheredTrack::LeftOut const& each : gathered.left_out) {
+    if (told.size() < most_told)
+      told.push_back(
+          fmt::format("{} at row {} ({} expected sds off)", each.channel, each.row, significant(std::fabs(each.sds), 2)));
+    if (std::find(names.begin(), names.end(), each.channel) == names.end()) names.push_back(each.channel);
+  }
+  auto const more = gathered.left_out_samples - static_cast<std::int64_t>(told.size());
+  return {FindingCode::samples_far_off, Severity::warning, std::move(names),
+          fmt::format("{} far from the predictions {} left out: {}{}", counted(gathered.left_out_samples, "sample"),
+                      gathered.left_out_samples == 1 ? "was" : "were", fmt::join(told, ", "),
+                      more > 0 ? fmt::format(" and {} more", more) : ""),
+          "check the sensor at these rows; if such samples are usual, nothing else is to be done"};
+}
+
 void add_findings(GatheredTrack const& gathered, Report& report) {
   constexpr std::size_t most_told = 3;
   InnovationSize const size = innovation_size(gathered);
@@ -120,6 +145,7 @@ void add_findings(GatheredTrack const& gathered, Report& report) {
          fmt::format("{}{}", fmt::join(told, "; "), changes > most_told ? fmt::format("; and {} more", changes - most_told) : ""),
          "look for the cause at these rows; to predict later rows, fit the rows after the last change and use that fit"});
   }
+  if (gathered.left_out_samples > 0) report.findings.push_back(far_off_samples(gathered));
   if (!size.odd()) return;
   report.verdict += fmt::format("; the innovations are {} than expected", size.ratio > 1 ? "larger" : "smaller");
   report.findings.push_back(
@@ -135,7 +161,12 @@ void add_findings(GatheredTrack const& gathered, Report& report) {
 }  // namespace
 
 GatheredTrack::GatheredTrack(TrackedFit const& fit, TrackedUnits of)
-    : units(std::move(of)), states(fit.model().states.size()), tracked(fit.tracked.size()), mean(units.names.size()), sd(mean) {}
+    : units(std::move(of)),
+      channels(channel_names(fit.model())),
+      states(fit.model().states.size()),
+      tracked(fit.tracked.size()),
+      mean(units.names.size()),
+      sd(mean) {}
 
 void GatheredTrack::add(TrackedRow const& row) {
   auto const declared = [&](std::vector<double> values) {
@@ -156,6 +187,11 @@ void GatheredTrack::add(TrackedRow const& row) {
   last_row = row.row;
   if (!row.settling) squared += row.squared, samples += row.samples;
   if (row.alarm != nullptr) alarms.push_back(*row.alarm);
+  for (std::size_t c = 0; c < row.left_out.size(); ++c) {
+    if (row.left_out[c] == 0) continue;
+    ++left_out_samples;
+    if (left_out.size() < most_kept_outliers) left_out.push_back({row.row, channels[c], row.left_out[c]});
+  }
   if (kept++ % stride == 0) {
     time.push_back(row.time);
     for (std::size_t q = 0; q < mean.size(); ++q) {

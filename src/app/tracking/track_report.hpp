@@ -16,6 +16,7 @@ struct GatheredTrack {
   std::string name(std::size_t quantity) const;
 
   TrackedUnits units;
+  std::vector<std::string> channels;
   std::size_t states, tracked;
   std::string file, digest;
   std::optional<Unit> time_unit;
@@ -24,6 +25,13 @@ struct GatheredTrack {
   int first_row = 0, last_row = 0;
   double squared = 0;  // of the rows that did not settle
   std::vector<Alarm> alarms;
+  struct LeftOut {
+    int row;
+    std::string channel;
+    double sds;
+  };
+  std::vector<LeftOut> left_out;  // samples too far from their prediction, the first hundred
+  std::int64_t left_out_samples = 0;
   std::vector<double> first_mean, first_sd, last_mean, last_sd;  // [states + tracked], declared units
   bool settled = false;        // some rows settled the states: then the parameters begin behind them, as the fit has them
   bool past_settling = false;  // and there are rows behind them

@@ -19,6 +19,7 @@
 #include "data/table/table.hpp"
 #include "data/table_record.hpp"
 #include "experiment/record_request.hpp"
+#include "model/lags.hpp"
 #include "report/file/stored_files.hpp"
 
 namespace sysid {
@@ -237,6 +238,7 @@ class FitForTracking {
     run_scalar(result_.program.values, {result_.prior.mean.data(), count}, values);
     result_.tracking.false_alarms = options.false_alarms;
     result_.tracking.window = options.window;
+    result_.tracking.leaves_out = data_lag(result_.model()) == 0;
     bool const by_rows = !result_.model().integrated();  // intensities are per row, else per second
     double const rows = options.drift.time > 0 ? options.drift.time / result_.step : 1000;
     for (std::size_t j = 0; j < count; ++j) {
