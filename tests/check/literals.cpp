@@ -268,6 +268,18 @@ TEST_CASE("products, quotients, powers and roots of quantities count in SI, what
   CHECK(at(model, model.channels[1].noise.arguments[0], {{"x", 2e-3}}) == near(7e-3));
 }
 
+TEST_CASE("a channel without a unit, of a product, has that of the size of its noise, where this is a name") {
+  std::string const text =
+      "input S [mmol/l], e [mmol/s], n [mol^2/s^2], t0 [s]\nparameter V [mmol/s] ~ log_uniform(0.01, 100)\n"
+      "parameter K [mmol/l] ~ log_uniform(0.01, 100)\nobserve v ~ ";
+  auto const channel = [&](std::string const& noise) { return model_of(text + noise).channels.at(0); };
+  CHECK(channel("normal(V*S/(K + S), sd = e)").unit_text() == "mmol/s");
+  CHECK(channel("normal(V*S/(K + S), sd = e)").from_si(7) == near(7000));
+  // Of another dimension, or computed, it says nothing of readings.
+  CHECK(channel("normal(V*S/(K + S), variance = n)").from_si(7) == near(7));
+  CHECK(channel("normal(V*S/(K + S), sd = 2*e)").from_si(7) == near(7));
+}
+
 TEST_CASE("a temperature without an initial value is given a parameter, other quantities 0") {
   auto const said = [](std::string const& unit, std::string const& more = "") {
     return messages("model m {\nstate T [" + unit + "]\nparameter k [1/s] ~ log_uniform(1, 2)\nparameter Ta [" + unit +

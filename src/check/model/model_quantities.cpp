@@ -130,7 +130,16 @@ std::optional<Unit> ModelChecker::location_unit(ast::Call const& noise, Scope& q
   if (location == nullptr) return std::nullopt;
   auto const value = quiet.expression(*location);
   if (!value || value->kind != Typed::Kind::known) return std::nullopt;
-  return named_or_coherent(with_own_unit(*value).unit);
+  Unit unit = with_own_unit(*value).unit;
+  // A product has no unit that the user wrote. The size of the noise is stated in that of the readings.
+  for (ast::Argument const& argument : noise.arguments) {
+    if (!unit.text.empty()) break;
+    if (&argument.value == location || !std::holds_alternative<ast::Reference>(argument.value.node)) continue;
+    auto const size = quiet.expression(argument.value);
+    if (size && size->kind == Typed::Kind::known && !size->unit.text.empty() && size->unit.dimension == unit.dimension)
+      return size->unit;
+  }
+  return named_or_coherent(std::move(unit));
 }
 
 void ModelChecker::derived() {
