@@ -9,7 +9,7 @@
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
 #include "likelihood/smoothing/pooled_states.hpp"
-#include "likelihood/simulated_parameters.hpp"
+#include "model/simulated_parameters.hpp"
 #include "result/experiment_words.hpp"
 
 namespace sysid {

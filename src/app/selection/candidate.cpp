@@ -11,7 +11,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/text/diagnostic.hpp"
 #include "data/scored_samples.hpp"
-#include "likelihood/simulated_parameters.hpp"
+#include "model/simulated_parameters.hpp"
 
 namespace sysid {
 namespace {
