@@ -8,8 +8,9 @@
 
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"
-#include "likelihood/simulated_parameters.hpp"
 #include "likelihood/smoothing/pooled_states.hpp"
+#include "model/simulated_parameters.hpp"
+#include "result/experiment_words.hpp"
 
 namespace sysid {
 
@@ -112,13 +113,12 @@ Findings band_findings(Prediction const& prediction, int failed, int failed_else
     if (excluded <= 0) continue;
     Severity severity = failure_severity(static_cast<std::uint64_t>(excluded), static_cast<std::uint64_t>(widest.draws));
     if (severity == Severity::error && !measured) severity = Severity::warning;  // the others are what they are
-    findings.push_back(
-        {FindingCode::undefined_in_band,
-         severity,
-         {quantity.name, prediction.experiment},
-         fmt::format("{}{} is undefined somewhere along {} of {} trajectories; its band contains only the others", quantity.name,
-                     several ? " on " + prediction.experiment : std::string(), excluded, widest.draws),
-         "check for a root or a logarithm of a negative number, or a division by zero"});
+    findings.push_back({FindingCode::undefined_in_band,
+                        severity,
+                        {quantity.name, prediction.experiment},
+                        fmt::format("{}{} is undefined somewhere along {} of {} trajectories; its band contains only the others",
+                                    quantity.name, on_experiment(prediction.experiment, several), excluded, widest.draws),
+                        "check for a root or a logarithm of a negative number, or a division by zero"});
   }
   return findings;
 }

@@ -63,11 +63,8 @@ std::string wrong_sign_at_bound(std::string const& parameter, double lower) {
 Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws, std::span<PriorInfo const> priors) {
   Findings findings;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    std::vector<double> values;
-    for (Chain const& chain : draws.chains)
-      for (auto const& draw : chain.values) values.push_back(draw[p]);
     ParameterInfo const& info = parameters[p];
-    BoundCheck const check = check_bounds(values, info.lower, info.upper, spread_of(info, priors));
+    BoundCheck const check = check_bounds(draws.column(p), info.lower, info.upper, spread_of(info, priors));
     if (!check.at_lower && !check.at_upper) continue;
     std::string help = "widen the prior, unless the bound is a physical limit";
     if (check.at_lower && info.lower >= 0 && !info.size_alone) help += "; " + wrong_sign_at_bound(info.name, info.lower);

@@ -286,6 +286,15 @@ Fourier const& ConvergenceTables::fourier(std::size_t draws) {
   return *fourier_;
 }
 
+ChainValues chains_of(Draws const& draws, std::size_t column) {
+  ChainValues values;
+  for (Chain const& chain : draws.chains) {
+    values.emplace_back();
+    for (auto const& draw : chain.values) values.back().push_back(draw[column]);
+  }
+  return values;
+}
+
 double rhat(ChainValues const& draws) {
   if (has_no_diagnostics(draws)) return nan;
   ChainValues const halves = split(draws);

@@ -8,9 +8,13 @@
 
 #include "core/numeric/fourier.hpp"
 #include "core/numeric/statistics.hpp"
+#include "result/draws.hpp"
 #include "result/summary.hpp"
 
 namespace sysid {
+
+/// Of one column of the draws, chain by chain.
+ChainValues chains_of(Draws const& draws, std::size_t column);
 
 /// NaN for constant or non-finite draws, as `posterior` returns NA.
 double rhat(ChainValues const& draws);

@@ -1,4 +1,4 @@
-// Whether data lie within the bands of a prediction, and the verdict of the prediction.
+// Whether data lie within the bands of a prediction.
 #pragma once
 #include "result/report.hpp"
 
@@ -14,8 +14,5 @@ namespace sysid {
 /// found beyond chance; errors in logarithms where the band is skewed as that of a log-normal quantity is. fed_back: the noise of a
 /// sample shows in later ones, which a free run leaves out.
 bool add_coverage(Report& report, bool fed_back);
-
-/// What a prediction's bands allow, from its findings and failures; missed: as `add_coverage` says.
-std::string prediction_verdict(Report const& report, bool missed);
 
 }  // namespace sysid

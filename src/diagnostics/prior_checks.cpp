@@ -9,6 +9,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "search/mode_findings.hpp"
 
 namespace sysid {
 
@@ -64,7 +65,7 @@ bool agrees(Report const& report, Maxima const& maxima, Mode const& mode) {
 }
 
 bool another_agrees(Report const& report, Maxima const& maxima) {
-  constexpr double nearly_as_high = 4.6;  // in log likelihood, as `second_mode` has it
+  double const nearly_as_high = -elementary::log(notable_share);  // as `second_mode` has it, of a likelihood
   return !maxima.modes.empty() && std::ranges::any_of(maxima.modes.subspan(1), [&](Mode const& mode) {
     return mode.log_density > maxima.modes.front().log_density - nearly_as_high && agrees(report, maxima, mode);
   });

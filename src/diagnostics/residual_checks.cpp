@@ -20,6 +20,7 @@
 #include "diagnostics/sized_residuals.hpp"
 #include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
+#include "result/experiment_words.hpp"
 
 namespace sysid {
 namespace {
@@ -42,15 +43,11 @@ struct ScoredChannel {
   Model const& model() const { return of_model; }
   Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }
   Experiment const& data() const { return experiments[static_cast<std::size_t>(experiment)]; }
-  std::string name() const { return described().name + (experiments.size() > 1 ? " on " + data().name : ""); }
+  std::string name() const { return described().name + on_experiment(data().name, experiments.size() > 1); }
   std::vector<std::string> names() const { return {described().name, data().name}; }
   bool noise_is_estimated() const {
-    return std::any_of(described().noise.arguments.begin() + 1, described().noise.arguments.end(), [&](NodeId argument) {
-      return model().graph.depends(argument, [&](Node const& node) {
-        return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter &&
-               model().parameters[static_cast<std::size_t>(node.index)].prior.has_value();
-      });
-    });
+    return std::any_of(described().noise.arguments.begin() + 1, described().noise.arguments.end(),
+                       [&](NodeId argument) { return reads_estimated(model(), argument); });
   }
 };
 
@@ -229,7 +226,7 @@ std::string size_help(ScoredChannel const& of, Tested const& tested, bool larger
              "mean that was divided into several rows";
     if (coloured)
       return "the model is incomplete: the residuals are correlated in time, which overdispersed noise does not explain";
-    std::string const shape = free_name(channel.name + "_shape", text.mentions);
+    std::string const shape = free_name(channel.name + "_shape", taken_names(of.model(), text.mentions));
     return use_overdispersed(shape, text.overdispersed ? text.overdispersed(channel, shape) : std::nullopt);
   }
   return larger ? "the noise is larger than stated, or the model is incomplete: estimate the noise, then check the residuals"
@@ -297,7 +294,7 @@ void check_law(ScoredChannel const& of, Tested const& tested, int together, User
   LawWords const words{of.names(),
                        of.name(),
                        of.model().filtered(),
-                       text.mentions,
+                       taken_names(of.model(), text.mentions),
                        [&] { return text.heavy_tailed ? text.heavy_tailed(channel) : std::nullopt; },
                        [&](std::string const& relative) {
                          bool const interval = channel.unit && channel.unit->offset != 0;  // 0 degC is no zero

@@ -11,9 +11,6 @@
 
 namespace sysid {
 
-/// " on bench.train", where there is more than one experiment to tell apart.
-std::string on_experiment(ModelTarget const& target, int experiment);
-
 struct FitCheck {
   std::vector<FitLine> lines;  // per experiment and channel: nmse, rmse, chi_squared_per_sample, whiteness_p, input_correlation_p
   Findings findings;
@@ -28,8 +25,8 @@ struct StandardisedRows {
 /// Per experiment.
 FitCheck check_residuals(Model const& model, std::vector<Experiment> const& experiments, std::vector<StandardisedRows> const& rows);
 
-/// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input. statement:
-/// for the cure of an offset.
+/// At one parameter vector (declared units): scores and residual tests per experiment and channel, against every input. text:
+/// for the cures.
 FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& declared, UserText const& text = {});
 
 /// Where a fit explains little: adds to the help which parameters have kept the width of their prior, which may hold others where

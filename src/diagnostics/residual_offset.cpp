@@ -10,7 +10,10 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "diagnostics/law/noise_words.hpp"
+#include "diagnostics/law/round_number.hpp"
 #include "diagnostics/residual_tests.hpp"
+#include "result/experiment_words.hpp"
 
 namespace sysid {
 namespace {
@@ -53,14 +56,6 @@ double covariances(CorrelationTest const& test, std::span<double const> series) 
   return power * power * sum;
 }
 
-/// 1, 2 or 5 times a power of ten, not below `value`.
-double round_number_above(double value) {
-  double const power = std::pow(10.0, std::floor(std::log10(value)));
-  for (double const digit : {1.0, 2.0, 5.0})
-    if (digit * power >= value) return digit * power;
-  return 10 * power;
-}
-
 bool is_number(Model const& model, NodeId node) { return model.graph[node].operation == Operation::constant; }
 
 /// A parameter that already is added to what a node predicts, perhaps times a number: an offset that something holds.
@@ -100,21 +95,6 @@ WholeChannel whole_channel(Model const& model, std::string const& element) {
   return whole;
 }
 
-std::string free_parameter(Model const& model, std::string const& channel, UserText const& text) {
-  std::string wanted = channel + "_offset";
-  std::replace(wanted.begin(), wanted.end(), '.', '_');
-  auto const taken = [&](std::string const& name) {
-    auto const has = [&](auto const& quantities) {
-      return std::ranges::any_of(quantities, [&](auto const& each) { return each.name == name; });
-    };
-    return (text.mentions && text.mentions(name)) || has(model.parameters) || has(model.states) || has(model.inputs) ||
-           has(model.channels) || has(model.derived);
-  };
-  std::string name = wanted;
-  for (int number = 2; taken(name); ++number) name = fmt::format("{}_{}", wanted, number);
-  return name;
-}
-
 /// An offset of a temperature is an interval.
 std::string unit_of_offset(Channel const& channel) {
   if (!channel.unit || channel.unit_text().empty()) return {};
@@ -144,7 +124,7 @@ std::string cure(Model const& model, Channel const& channel, bool several, doubl
   NodeId const location = channel.noise.arguments.front();
   if (Parameter const* const held = added_parameter(model, location)) return cure_of_held(*held, several);
   WholeChannel const whole = whole_channel(model, channel.name);
-  std::string const name = free_parameter(model, whole.name, text);
+  std::string const name = free_name(whole.name + "_offset", taken_names(model, text.mentions));
   std::string const declaration =
       fmt::format("parameter {}{}{}{} ~ normal(0, sd = {:g})", name, whole.size, several ? " per experiment" : "",
                   unit_of_offset(channel), round_number_above(3 * size));
@@ -202,7 +182,7 @@ Finding residual_offset(Model const& model, Channel const& channel, std::string 
           {channel.name, experiment},
           fmt::format("the residuals of {} have a mean of {}{}, {} times its standard error; the square of this mean is {} of "
                       "their mean square",
-                      several ? channel.name + " on " + experiment : channel.name, significant(size, 3),
+                      channel.name + on_experiment(experiment, several), significant(size, 3),
                       channel.unit_text().empty() ? "" : " " + channel.unit_text(), significant(test.standard_errors, 2),
                       fmt::format("{:.3g} %", 100 * test.share)),
           cure(model, channel, several, largest, text)};

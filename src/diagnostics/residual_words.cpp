@@ -37,9 +37,4 @@ double as_bad_as_the_mean(std::size_t samples) {
   return 100 * (1 + excess / static_cast<double>(samples));
 }
 
-std::string on_experiment(ModelTarget const& target, int experiment) {
-  if (target.experiments().size() == 1) return {};
-  return " on " + target.experiments()[static_cast<std::size_t>(experiment)].name;
-}
-
 }  // namespace sysid

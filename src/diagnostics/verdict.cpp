@@ -118,11 +118,30 @@ std::string verdict_headline(Report const& report) {
   return report.verdict.empty() ? verdict_of(report.findings).headline : report.verdict;
 }
 
+std::string prediction_verdict(Report const& report, bool missed) {
+  auto const has = [&](FindingCode code, Severity severity) {
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [&](Finding const& each) { return each.code == code && each.severity == severity; });
+  };
+  if (has(FindingCode::from_doubtful_fit, Severity::error))
+    return "do not use these bands: the fit whose draws they use failed its checks";
+  if (has(FindingCode::worse_than_the_mean, Severity::error))
+    return "do not use these bands: the mean of the record predicts better";
+  if (grade(report) == Severity::error) return "do not use these bands: too many trajectories are left out";
+  if (report.ledger.failed() > 0) return "use with care: some trajectories do not stay finite";
+  if (has(FindingCode::worse_than_the_mean, Severity::warning)) return "use with care: the mean of the record predicts better";
+  if (missed) return "use with care: too many samples lie outside the bands";
+  if (has(FindingCode::from_doubtful_fit, Severity::warning)) return "use with care: the fit whose draws are used has warnings";
+  auto const warnings = std::count_if(report.findings.begin(), report.findings.end(),
+                                      [](Finding const& each) { return each.severity == Severity::warning; });
+  if (warnings > 0) return with_care(warnings);
+  return "the checks pass (all trajectories stay finite)";
+}
+
 Severity grade(CheckPage const& page) {
   Severity worst = Severity::note;
   for (TaskPage const& task : page.tasks)
-    for (Finding const& finding : task.all_findings())
-      if (static_cast<int>(finding.severity) < static_cast<int>(worst)) worst = finding.severity;
+    for (Finding const& finding : task.all_findings()) worst = std::min(worst, finding.severity);
   return worst;
 }
 

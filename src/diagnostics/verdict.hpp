@@ -48,6 +48,9 @@ bool has_verdict(Report const& report);
 /// As its task words it, else as verdict_of does.
 std::string verdict_headline(Report const& report);
 
+/// What a prediction's bands allow, from its findings and failures; missed: samples lie outside them (diagnostics/coverage.hpp).
+std::string prediction_verdict(Report const& report, bool missed);
+
 /// The worst of the tasks' findings; note when there are none.
 Severity grade(CheckPage const& page);
 

@@ -13,6 +13,7 @@
 #include "exchange/refused.hpp"
 #include "exchange/selection_data.hpp"
 #include "exchange/simulated_data.hpp"
+#include "report/file/result_files.hpp"
 #include "report/file/selection.hpp"
 #include "result/selection.hpp"
 
@@ -27,10 +28,10 @@ struct Export {
   InferenceData data;
 };
 
-fs::path fit_path(StoredResult const& stored) { return stored.folder / (stored.task() + ".nc"); }
+fs::path fit_path(StoredResult const& stored) { return stored.folder / exported_file(stored.task(), ".nc"); }
 
 fs::path candidate_path(StoredResult const& stored, std::string const& candidate) {
-  return stored.folder / fmt::format("{}_{}.nc", stored.task(), model_file_name(candidate));
+  return stored.folder / exported_file(stored.task(), ".nc", model_file_name(candidate));
 }
 
 /// The index of the task whose results these are. kind: "fit", "selection".

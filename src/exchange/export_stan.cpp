@@ -8,6 +8,7 @@
 #include "exchange/refused.hpp"
 #include "exchange/stan_program.hpp"
 #include "experiment/experiments.hpp"
+#include "report/file/result_files.hpp"
 
 namespace sysid {
 namespace {
@@ -54,8 +55,8 @@ class StanExport {
     try {
       StanProgram written = stan_program(session_, task, solver());
       std::filesystem::path const folder = session_.result_folder(task);
-      files_.push_back({folder / (task.name + ".stan"), std::move(written.program)});
-      files_.push_back({folder / (task.name + ".data.json"), std::move(written.data)});
+      files_.push_back({folder / exported_file(task.name, ".stan"), std::move(written.program)});
+      files_.push_back({folder / exported_file(task.name, ".data.json"), std::move(written.data)});
     } catch (UnusableData const& error) {
       for (Diagnostic const& each : error.diagnostics().all()) excluded_.add(each);
     } catch (UserError const& error) {

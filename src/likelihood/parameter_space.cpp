@@ -1,43 +1,16 @@
-// Rows, coordinates and the joint prior. The model's expressions speak of its own parameters; here each is read as the row that the
-// experiment has for it.
+// Rows, their values and draws of them. What is computed of the coordinates is compiled in parameter_space_kernels.cpp.
 #include "likelihood/parameter_space.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/numeric/not_finite.hpp"
 #include "core/text/diagnostic.hpp"
 #include "expression/pull_back.hpp"
-#include "function/primitive.hpp"
-#include "likelihood/output.hpp"
 
 namespace sysid {
-namespace {
-
-bool is_parameter(Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter; }
-
-/// The coordinates of the sampled rows that the scale of a prior reads, as an expression of rows.
-std::vector<int> population_of(Graph const& graph, Distribution const& prior, std::vector<int> const& coordinate_of) {
-  std::vector<int> read;
-  std::optional<NodeId> const scale = scale_argument(prior);
-  if (!scale) return read;
-  for (NodeId const node : graph.reachable({&*scale, 1}))
-    if (is_parameter(graph[node])) read.push_back(coordinate_of[static_cast<std::size_t>(graph[node].index)]);
-  return read;
-}
-
-/// The prior with every parameter of the model replaced.
-Distribution substituted(Graph& graph, Distribution use, std::function<std::optional<NodeId>(NodeId)> const& replacement) {
-  for (NodeId& argument : use.arguments) argument = graph.substitute(argument, replacement);
-  if (use.lower) use.lower = graph.substitute(*use.lower, replacement);
-  if (use.upper) use.upper = graph.substitute(*use.upper, replacement);
-  return use;
-}
-
-}  // namespace
 
 std::string member_name(std::string const& name, std::string const& experiment) {
   if (experiment.empty()) return name;
@@ -47,7 +20,15 @@ std::string member_name(std::string const& name, std::string const& experiment) 
 
 bool reads_own_parameters(Model const& model, NodeId root) {
   return model.graph.depends(root, [&](Node const& node) {
-    return is_parameter(node) && model.parameters[static_cast<std::size_t>(node.index)].per_experiment;
+    return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter &&
+           model.parameters[static_cast<std::size_t>(node.index)].per_experiment;
+  });
+}
+
+bool reads_estimated(Model const& model, NodeId root) {
+  return model.graph.depends(root, [&](Node const& node) {
+    return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter &&
+           model.parameters[static_cast<std::size_t>(node.index)].prior.has_value();
   });
 }
 
@@ -96,134 +77,6 @@ MemberCoordinate const* ParameterSpace::standardised(int coordinate) const {
   auto const found = std::find_if(standardised_.begin(), standardised_.end(),
                                   [&](MemberCoordinate const& each) { return each.coordinate == coordinate; });
   return found == standardised_.end() ? nullptr : &*found;
-}
-
-void ParameterSpace::compile() {
-  Graph graph = model_.graph;
-  std::vector<NodeId> value, leaves, coordinates, backward(sampled_.size());
-  std::vector<int> coordinate_of(rows_.size(), -1);
-  for (std::size_t k = 0; k < sampled_.size(); ++k) {
-    coordinate_of[static_cast<std::size_t>(sampled_[k])] = static_cast<int>(k);
-    coordinates.push_back(graph.leaf(LeafKind::unconstrained, static_cast<int>(k)));
-  }
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    leaves.push_back(graph.leaf(LeafKind::parameter, static_cast<int>(r)));
-    value.push_back(rows_[r].value ? graph.constant(*rows_[r].value) : leaves.back());
-  }
-  // A shared parameter's prior reads shared parameters only, whose rows are the same for every experiment.
-  auto const read_from = [&](std::vector<NodeId> const& nodes, FittedParameter const& row) {
-    return [&graph, &nodes, this, e = std::max(row.experiment, 0)](NodeId leaf) -> std::optional<NodeId> {
-      Node const& node = graph[leaf];
-      if (node.leaf_kind != LeafKind::parameter) return std::nullopt;
-      return nodes[static_cast<std::size_t>(this->row(e, node.index))];
-    };
-  };
-  NodeId with_jacobian = graph.constant(0), without = graph.constant(0), improper = graph.constant(0);
-  std::vector<Constrained> constrained;
-  std::vector<NodeId> scales;
-  infos_.resize(sampled_.size());
-  std::vector<bool> const sizes = sizes_alone(model_);
-  auto const add = [&](int r) {
-    FittedParameter const& row = rows_[static_cast<std::size_t>(r)];
-    if (row.value) return;
-    auto const k = static_cast<std::size_t>(coordinate_of[static_cast<std::size_t>(r)]);
-    Distribution const& prior = *model_.parameters[static_cast<std::size_t>(row.parameter)].prior;
-    Distribution const use = substituted(graph, prior, read_from(value, row));
-    MemberCoordinate const* const member = standardised(static_cast<int>(k));
-    Support const allowed = support(graph, use);
-    Coordinate const moved = member != nullptr
-                                 ? constrain_member(graph, allowed, location_scale(graph, use), *member, coordinates[k])
-                                 : sysid::constrain(graph, allowed, coordinates[k]);
-    value[static_cast<std::size_t>(r)] = moved.value;
-    // The declared density is per declared unit; d(declared)/du = d(SI)/du / scale.
-    NodeId const scale = graph.constant(elementary::log(row.to_si(1)));
-    NodeId const density = graph.add(
-        member != nullptr ? log_density_of_member(graph, use, *member, coordinates[k]) : log_density(graph, use, moved.value),
-        scale);
-    without = graph.add(without, density);
-    NodeId const on_line = graph.add(density, graph.subtract(moved.log_jacobian, scale));
-    with_jacobian = graph.add(with_jacobian, on_line);
-    if (!use.row->proper) improper = graph.add(improper, on_line);
-
-    std::vector<NodeId> known = leaves;
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      if (rows_[i].value) known[i] = value[i];
-    Distribution const by_rows = substituted(graph, prior, read_from(known, row));
-    Support const bounds = support(graph, by_rows);
-    NodeId const leaf = leaves[static_cast<std::size_t>(r)];
-    std::optional<LocationScale> population;
-    if (member != nullptr) population = location_scale(graph, by_rows);
-    backward[k] =
-        member != nullptr ? unconstrain_member(graph, bounds, *population, *member, leaf) : sysid::unconstrain(graph, bounds, leaf);
-    if (std::vector<int> of = population_of(graph, by_rows, coordinate_of); !of.empty()) {
-      members_.push_back({static_cast<int>(k), std::move(of)});
-      scales.push_back(*scale_argument(use));
-    }
-    auto const number = [&](std::optional<NodeId> const& bound, double fallback) {
-      auto const constant = bound ? graph.constant_value(*bound) : std::nullopt;
-      return constant ? row.from_si(*constant) : fallback;
-    };
-    constrained.push_back({r, static_cast<int>(k), bounds, moved.log_jacobian, member, population});
-    infos_[k] = {row.name,
-                 row.unit_text(),
-                 number(bounds.lower, -infinity),
-                 number(bounds.upper, infinity),
-                 model_.parameters[static_cast<std::size_t>(row.parameter)].coefficient,
-                 use.row->proper                ? Improper::no
-                 : bounds.lower || bounds.upper ? Improper::half_line
-                                                : Improper::line,
-                 sizes[static_cast<std::size_t>(row.parameter)]};
-  };
-  for (int const p : model_.sampling_order) {
-    if (!model_.parameters[static_cast<std::size_t>(p)].per_experiment)
-      add(row(0, p));
-    else
-      for (int e = 0; e < static_cast<int>(experiments_.size()); ++e) add(row(e, p));
-  }
-  constrain_ = compile_kernel(graph, coordinates, value);
-  unconstrain_ = compile_kernel(graph, leaves, backward);
-  scales_ = compile_kernel(graph, coordinates, scales);
-  NodeId const densities[] = {with_jacobian, without};
-  prior_ = compile_kernel(graph, coordinates, densities);
-  improper_ = compile_kernel(graph, coordinates, {&improper, 1});
-  densities_ = graph;
-  density_ = with_jacobian;
-  compile_slopes(graph, constrained, coordinates, value);
-}
-
-/// By its own coordinate a value's derivative is what the log Jacobian is the logarithm of, smooth at 0; by others it has one
-/// through its bounds, or through its population.
-void ParameterSpace::compile_slopes(Graph& graph, std::span<Constrained const> constrained, std::span<NodeId const> coordinates,
-                                    std::span<NodeId const> value) {
-  std::vector<std::map<int, NodeId>> slopes(rows_.size());  // by coordinate
-  for (auto const& [r, coordinate, bounds, log_jacobian, member, population] : constrained) {
-    std::map<int, NodeId>& here = slopes[static_cast<std::size_t>(r)];
-    NodeId const size = graph.call(exp_function, log_jacobian);
-    here.emplace(coordinate, bounds.upper && !bounds.lower ? graph.negate(size) : size);
-    NodeId const own = coordinates[static_cast<std::size_t>(coordinate)];
-    NodeId const moved = member != nullptr ? constrain_member(graph, bounds, *population, *member, own).value
-                                           : sysid::constrain(graph, bounds, own).value;
-    for (NodeId const leaf : graph.reachable({&moved, 1})) {
-      if (!is_parameter(graph[leaf])) continue;
-      NodeId const by_bound = graph.substitute(graph.differentiate(moved, leaf), [&](NodeId other) -> std::optional<NodeId> {
-        return is_parameter(graph[other]) ? std::optional(value[static_cast<std::size_t>(graph[other].index)]) : std::nullopt;
-      });
-      for (auto const& [through, slope] : slopes[static_cast<std::size_t>(graph[leaf].index)]) {
-        NodeId& sum = here.try_emplace(through, graph.constant(0)).first->second;
-        sum = graph.add(sum, graph.multiply(by_bound, slope));
-      }
-    }
-  }
-  std::vector<NodeId> values;
-  for (int r = 0; r < static_cast<int>(rows_.size()); ++r) {
-    std::vector<int>& read = coordinates_of_.emplace_back();
-    for (auto const& [coordinate, slope] : slopes[static_cast<std::size_t>(r)]) {
-      read.push_back(coordinate);
-      slopes_.push_back({r, coordinate});
-      values.push_back(slope);
-    }
-  }
-  slope_ = compile_kernel(graph, coordinates, values);
 }
 
 template <class Place>

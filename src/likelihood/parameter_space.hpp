@@ -33,6 +33,8 @@ std::string member_name(std::string const& name, std::string const& experiment);
 
 /// Whether an expression of the model reads a parameter that every experiment has for itself.
 bool reads_own_parameters(Model const& model, NodeId root);
+/// Whether it reads a parameter that has a prior.
+bool reads_estimated(Model const& model, NodeId root);
 
 /// normal(0, sd = 1) in every experiment: z of a hierarchy that is written as `mean + spread*z`. The data know the sums alone, and
 /// the priors of z how they divide.
@@ -114,7 +116,11 @@ class ParameterSpace {
 
  private:
   void lay_out();
+  struct Compilation;
+  Compilation begin_compilation() const;
   void compile();
+  void add_row(int row, Compilation& all);
+  void add_inverse(int row, Distribution const& use, NodeId log_jacobian, Compilation& all);
   ImproperReference const* reference_of(int row) const;
   MemberCoordinate const* standardised(int coordinate) const;
   /// A value between its bounds, expressions of the rows that they read.
@@ -154,5 +160,12 @@ class ParameterSpace {
   NodeId density_ = 0;
   Lazily<std::optional<Kernel>> prior_gradient_;  // u [D] -> log prior on R^D, its gradient
 };
+
+/// The index of the parameter of the model that a coordinate moves. Its name cannot be read from the row's: `c[2,bench]` is of the
+/// parameter `c[2]`, `c[2]` may be one of its own or the second experiment's `c`.
+inline int parameter_of(ParameterSpace const& space, int coordinate) {
+  int const row = space.sampled()[static_cast<std::size_t>(coordinate)];
+  return space.rows()[static_cast<std::size_t>(row)].parameter;
+}
 
 }  // namespace sysid

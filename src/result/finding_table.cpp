@@ -1,4 +1,4 @@
-// The rows, and looking them up.
+// The rows, with the severities that each may have: which one it has is decided where it is made.
 #include "result/finding_table.hpp"
 
 #include <algorithm>

@@ -8,6 +8,7 @@
 
 #include "linear_algebra/decompositions.hpp"
 #include "search/descent.hpp"
+#include "search/local_slopes.hpp"
 
 namespace sysid {
 namespace {
@@ -140,22 +141,21 @@ namespace {
 /// By the target's own derivatives. Where it has none of a place, nothing.
 std::vector<std::optional<Quadratic>> by_derivatives(Objective const& objective, Box const& box,
                                                      std::vector<Eigen::VectorXd> const& places, Ledger& ledger) {
-  int const n = objective.dimension(), width = static_cast<int>(places.size());
+  int const n = objective.dimension();
   std::vector<Eigen::VectorXd> outside;
   for (Eigen::VectorXd const& z : places) outside.push_back(box.outside(z));
-  LaneArray gradient(n, width), curvature(n * n, width);
   Eigen::VectorXd const steps = difference_width(objective.target) * objective.scale;  // of what the derivatives leave out
-  objective.target.gauss_newton(to_lanes(outside), {steps.data(), static_cast<std::size_t>(n)}, gradient, curvature, ledger);
+  std::vector<LikelihoodSlope> const slopes = local_slopes(objective.target, to_lanes(outside), steps, ledger);
   std::vector<std::optional<Quadratic>> quadratics(places.size());
-  for (int k = 0; k < width; ++k) {
-    Eigen::VectorXd const slope = box.slope(outside[static_cast<std::size_t>(k)]);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    Eigen::VectorXd const slope = box.slope(outside[k]);
     Quadratic made{Eigen::VectorXd(n), Eigen::MatrixXd(n, n)};
     for (int p = 0; p < n; ++p) {
-      made.gradient(p) = gradient(p, k) / slope(p);
-      for (int q = 0; q < n; ++q) made.curvature(p, q) = curvature(p * n + q, k) / (slope(p) * slope(q));
+      made.gradient(p) = slopes[k].gradient(p) / slope(p);
+      for (int q = 0; q < n; ++q) made.curvature(p, q) = slopes[k].curvature(p, q) / (slope(p) * slope(q));
     }
     bool const known = made.gradient.allFinite() && made.curvature.allFinite() && !made.curvature.isZero(0);
-    if (known) quadratics[static_cast<std::size_t>(k)] = std::move(made);
+    if (known) quadratics[k] = std::move(made);
   }
   return quadratics;
 }

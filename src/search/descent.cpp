@@ -6,6 +6,7 @@
 
 #include "linear_algebra/decompositions.hpp"
 #include "search/ascent.hpp"
+#include "search/local_slopes.hpp"
 #include "search/search_step.hpp"
 
 namespace sysid {
@@ -46,20 +47,13 @@ void add_prior(Objective const& objective, std::vector<Climber*> const& block, s
 /// Gradient and Gauss-Newton curvature of every climber of the block.
 std::vector<Slope> slopes_of(Objective const& objective, std::vector<Climber*> const& block, Ledger& ledger) {
   int const dimension = objective.dimension(), width = static_cast<int>(block.size());
-  LaneArray theta(dimension, width), gradient(dimension, width), curvature(dimension * dimension, width);
+  LaneArray theta(dimension, width);
   for (int k = 0; k < width; ++k)
     for (int p = 0; p < dimension; ++p) theta(p, k) = block[static_cast<std::size_t>(k)]->theta(p);
   Eigen::VectorXd const steps = difference_width(objective.target) * objective.scale;
-  objective.target.gauss_newton(theta, {steps.data(), static_cast<std::size_t>(dimension)}, gradient, curvature, ledger);
   std::vector<Slope> slopes;
-  for (int k = 0; k < width; ++k) {
-    Slope slope{Eigen::VectorXd(dimension), Eigen::MatrixXd(dimension, dimension)};
-    for (int p = 0; p < dimension; ++p) {
-      slope.gradient(p) = gradient(p, k);
-      for (int q = 0; q < dimension; ++q) slope.curvature(p, q) = curvature(p * dimension + q, k);
-    }
-    slopes.push_back(std::move(slope));
-  }
+  for (LikelihoodSlope& each : local_slopes(objective.target, theta, steps, ledger))
+    slopes.push_back({std::move(each.gradient), std::move(each.curvature)});
   add_prior(objective, block, slopes);
   return slopes;
 }

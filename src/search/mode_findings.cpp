@@ -11,6 +11,7 @@
 #include <span>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
@@ -137,9 +138,9 @@ Findings mode_findings(Target const& target, ObjectiveKind objective_kind, std::
   if (objective_kind == ObjectiveKind::likelihood) {
     auto const others = static_cast<std::size_t>(std::count_if(modes.begin() + 1, modes.end(), is_notable));
     if (others > 0) findings.push_back(second_optimum(target, modes, others));
+  } else if (auto others = other_modes(target, modes)) {
+    findings.push_back(std::move(*others));
   }
-  if (objective_kind != ObjectiveKind::likelihood)
-    if (auto others = other_modes(target, modes)) findings.push_back(std::move(*others));
   auto const parameters = static_cast<std::size_t>(target.dimension());
   std::vector<std::vector<std::string>> told;
   for (std::size_t at = 0; at < modes.front().flat.size(); at += parameters) {
@@ -154,6 +155,18 @@ Findings mode_findings(Target const& target, ObjectiveKind objective_kind, std::
     findings.push_back(std::move(*finding));
   }
   return findings;
+}
+
+void remove_mode_findings(Findings& findings) {
+  std::erase_if(findings, [](Finding const& each) {
+    return each.code == FindingCode::second_mode || each.code == FindingCode::flat_direction;
+  });
+}
+
+double highest(std::vector<Mode> const& modes) {
+  double most = -infinity;
+  for (Mode const& mode : modes) most = std::max(most, mode.log_density);
+  return most;
 }
 
 }  // namespace sysid

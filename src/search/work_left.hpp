@@ -14,6 +14,8 @@ class WorkLeft {
  public:
   /// usual: solves of the first part. Begins the job.
   WorkLeft(RunContext& context, std::string const& what, std::uint64_t usual);
+  WorkLeft(WorkLeft const&) = delete;  // `stop` holds on to it
+  WorkLeft& operator=(WorkLeft const&) = delete;
 
   /// The next part, and what usually comes after it.
   void part(std::uint64_t usual, std::uint64_t later);
@@ -34,6 +36,8 @@ class WorkLeft {
 class SearchBudget {
  public:
   SearchBudget(RunContext& context, std::string const& what, std::uint64_t announced);
+  SearchBudget(SearchBudget const&) = delete;  // `stop` holds on to it
+  SearchBudget& operator=(SearchBudget const&) = delete;
 
   /// Counts the solves of `part`, each as `share` of one, beside those of the context; null: the context's alone.
   void count(Ledger const* part, double share);

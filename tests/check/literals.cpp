@@ -290,7 +290,10 @@ TEST_CASE("a temperature without an initial value is given a parameter, other qu
   CHECK(said("degF").find("`parameter T_start [degF] ~ normal(68, sd = 36)`\n") != std::string::npos);
   CHECK(said("K").find("`parameter T_start [K] ~ normal(300, sd = 30)`; or, of a difference of temperatures, `initial T = 0`") !=
         std::string::npos);
-  CHECK(said("degC", "parameter T_start [s] ~ log_uniform(1, 2)\nderive u [s] = T_start\n").find("`initial T = T_start2`") !=
+  CHECK(said("mK").find("`parameter T_start [mK] ~ normal(3e+05, sd = 3e+04)`; or, of a difference of temperatures, ") !=
+        std::string::npos);
+  CHECK(said("delta_degC").find("write `initial T = 0`\n") != std::string::npos);
+  CHECK(said("degC", "parameter T_start [s] ~ log_uniform(1, 2)\nderive u [s] = T_start\n").find("`initial T = T_start_2`") !=
         std::string::npos);
   CHECK(said("m").find("write `initial T = 0`\n") != std::string::npos);
 }

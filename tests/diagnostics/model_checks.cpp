@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
@@ -110,16 +112,37 @@ TEST_CASE("chains that do not mix are told of their population, unless its membe
 }
 
 TEST_CASE("an idle parameter is warned of, unless arguments of the model may have switched its terms off") {
-  Model model = test::model_of(
+  Model const model = test::model_of(
       "state y\ninitial y = 1\nparameter k ~ normal(1, sd = 1)\nparameter k3 ~ normal(1, sd = 1)\ny' = -k*y - 0*k3*y^3\n"
       "observe d ~ normal(y, sd = 1)");
-  model.name = "osc";
-  Findings const idle = check_use(model, {});
-  REQUIRE(idle.size() == 1);
-  CHECK(idle[0].names == std::vector<std::string>{"k3"});
-  CHECK(idle[0].severity == Severity::warning);
-  model.name = "osc(cubic = 0)";
-  Findings const switched_off = check_use(model, {});
-  REQUIRE(switched_off.size() == 1);
-  CHECK(switched_off[0].severity == Severity::note);
+  auto const severity = [&](std::function<bool(std::string const&)> const& switched_off) {
+    Findings const idle = check_use(model, {}, switched_off);
+    REQUIRE(idle.size() == 1);
+    CHECK(idle[0].names == std::vector<std::string>{"k3"});
+    return idle[0].severity;
+  };
+  CHECK(severity(nullptr) == Severity::warning);
+  CHECK(severity([](std::string const& name) { return name == "k3"; }) == Severity::note);
+  CHECK(severity([](std::string const& name) { return name == "k"; }) == Severity::warning);
+}
+
+TEST_CASE("of a model with arguments a parameter that no term of its text reads is warned of, one that an argument idles noted") {
+  TemporaryFolder folder;
+  Stream stream({1, Purpose::test, 0, 0});
+  std::string table = "x,y\n";
+  for (int i = 0; i < 40; ++i) table += fmt::format("{},{}\n", i % 2 == 0 ? -1 : 1, stream.normal());
+  write_file(folder.path() / "record.csv", table);
+  RunOptions options;
+  options.output = folder.path() / "results";
+  run_text(folder.path() / "m.sysid",
+           "model line(cubic) {\n input x [-]\n parameter a [-] ~ normal(0, sd = 1)\n parameter b [-] ~ normal(0, sd = 1)\n"
+           " parameter spare [-] ~ normal(0, sd = 1)\n observe y ~ normal(a*x + cubic*b*x^3, sd = 1)\n}\n"
+           "data record { file \"record.csv\"; input x = x [-]; measure y = y [-] }\n"
+           "posterior = fit line(cubic = 0) to record with map, seed = 1\n",
+           options);
+  json const summary = json::parse(read_file(options.output / "posterior/summary.json"));
+  std::map<std::string, std::string> severities;
+  for (json const& each : summary.at("findings"))
+    if (each.at("code") == "unused_parameter") severities[each.at("message").get<std::string>().substr(0, 2)] = each.at("severity");
+  CHECK(severities == std::map<std::string, std::string>{{"b ", "note"}, {"sp", "warning"}});
 }

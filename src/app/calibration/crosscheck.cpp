@@ -20,20 +20,12 @@
 #include "core/system/interrupt.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/calibration/agreement.hpp"
+#include "diagnostics/convergence.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/table.hpp"
 
 namespace sysid {
 namespace {
-
-ChainValues column_of(Draws const& draws, std::size_t column) {
-  ChainValues values;
-  for (Chain const& chain : draws.chains) {
-    values.emplace_back();
-    for (auto const& draw : chain.values) values.back().push_back(draw[column]);
-  }
-  return values;
-}
 
 bool is_optimum(Report const& report) { return report.draws.total() == 1; }
 
@@ -53,8 +45,8 @@ std::vector<ComparedNumber> compared(Report const& first, Report const& second) 
     Summary const& one = first.summary[p];
     if (one.coefficient) continue;
     std::vector<ComparedNumber> numbers =
-        is_optimum(first) ? compare_optimum(one.name, one.unit, column_of(second.draws, p), one.mean, one.sd)
-                          : compare_draws(one.name, one.unit, column_of(first.draws, p), column_of(second.draws, p));
+        is_optimum(first) ? compare_optimum(one.name, one.unit, chains_of(second.draws, p), one.mean, one.sd)
+                          : compare_draws(one.name, one.unit, chains_of(first.draws, p), chains_of(second.draws, p));
     all.insert(all.end(), numbers.begin(), numbers.end());
   }
   return all;

@@ -117,20 +117,20 @@ class Fit {
 
   // What the checks read. All outlive it.
   FinishedFit finished_fit(FitResult const& result, Target const& target, Report& report) {
-    FinishedFit finished{session_,
-                         what_,
-                         likelihood_,
-                         target,
-                         data_,
-                         preparation_,
-                         result,
-                         sampling_.objective_kind(),
-                         sampling_.ledger(),
-                         sampling_.seed(),
-                         sampling_.accuracy(),
-                         report,
-                         {},
-                         sampling_.extra()};
+    FinishedFit finished{.session = session_,
+                         .what = what_,
+                         .likelihood = likelihood_,
+                         .target = target,
+                         .data = data_,
+                         .preparation = preparation_,
+                         .result = result,
+                         .objective_kind = sampling_.objective_kind(),
+                         .sampling = sampling_.ledger(),
+                         .seed = sampling_.seed(),
+                         .accuracy = sampling_.accuracy(),
+                         .report = report,
+                         .rows = {},
+                         .extra = sampling_.extra()};
     for (int e = 0; e < static_cast<int>(data_.size()) && !result.interrupted; ++e)
       finished.rows.push_back(likelihood_.fitted_rows(report.draws, e, report.forces));
     return finished;

@@ -10,8 +10,12 @@
 #include "app/fit/experiment_checks.hpp"
 #include "app/fit/hierarchies.hpp"
 #include "app/session/fit_end.hpp"
+#include "app/session/written_model.hpp"
+#include "core/system/lazily.hpp"
 #include "core/text/source.hpp"
+#include "data/scored_samples.hpp"
 #include "diagnostics/bound_check.hpp"
+#include "diagnostics/identifiability/influence_check.hpp"
 #include "diagnostics/inputs/input_checks.hpp"
 #include "diagnostics/law/disturbance_terms.hpp"
 #include "diagnostics/model_checks.hpp"
@@ -33,15 +37,14 @@ std::string without_proper_prior(FinishedFit const& fit) {
 
 // --- the model and the record
 Findings parameter_use(FinishedFit& fit) {
-  Findings findings = check_use(fit.likelihood.model(), fit.what.start);
+  Findings findings =
+      check_use(fit.likelihood.model(), fit.what.start, switched_off_by_arguments(fit.session, fit.likelihood.model().name));
   if (fit.result.interrupted) return findings;
-  std::vector<std::vector<double>> draws;
-  for (Chain const& chain : fit.result.draws.chains) draws.insert(draws.end(), chain.values.begin(), chain.values.end());
   auto const names = [](Findings const& of, FindingCode code, std::string const& parameter) {
     return std::ranges::any_of(
         of, [&](Finding const& each) { return each.code == code && std::ranges::find(each.names, parameter) != each.names.end(); });
   };
-  Findings flat = check_influence(fit.likelihood.model(), fit.target, draws);
+  Findings flat = check_influence(fit.likelihood.space(), fit.target, fit.result.draws);
   std::erase_if(flat, [&](Finding const& each) {
     return names(fit.report.findings, FindingCode::flat_direction, each.names.front()) ||
            names(findings, FindingCode::unused_parameter, each.names.front());
@@ -104,8 +107,7 @@ std::vector<LeftByFit> left_by(FinishedFit const& fit) {
              std::ranges::find(finding.names, experiment.name) != finding.names.end();
     });
     for (std::size_t c = 0; c < channels.size(); ++c) {
-      int scored = 0;
-      for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) scored += experiment.is_scored(c, i) ? 1 : 0;
+      int const scored = scored_count(experiment, c);
       for (FitLine const& line : fit.report.fit)
         for (Score const& score : line.scores)
           if (line.channel == channels[c].name && line.experiment == experiment.name && score.name == "chi_squared_per_sample")
@@ -142,14 +144,19 @@ Findings solver_accuracy(FinishedFit& fit) {
   std::size_t const draws = fit.result.draws.total();
   auto const weighty = std::count_if(preparation.modes.begin(), preparation.modes.end(),
                                      [](Mode const& each) { return each.share > weight_of_interest; });
-  auto const fine = fit.likelihood.make_target(experiments_of(fit.data), preparation.solver.finer(), fit.session.interruptible());
+  Lazily<std::unique_ptr<Target>> kept;  // it holds all experiments once more
+  auto const fine = [&]() -> Target const& {
+    return *kept.get([&] {
+      return fit.likelihood.make_target(experiments_of(fit.data), preparation.solver.finer(), fit.session.interruptible());
+    });
+  };
   SolverCheck check;
   if (fit.accuracy)
     check = *fit.accuracy;
   else if (draws > 1)
-    check = check_draws(fit.target, *fine, fit.result.draws, preparation.modes, fit.seed, fit.extra);
+    check = check_draws(fit.target, fine(), fit.result.draws, preparation.modes, fit.seed, fit.extra);
   if (check.holds() && !fit.what.refine_solver && (draws == 1 || weighty > 1) && !preparation.modes.empty())
-    check = check_modes(*fine, fit.objective_kind, preparation.modes, fit.seed, fit.extra);
+    check = check_modes(fine(), fit.objective_kind, preparation.modes, fit.seed, fit.extra);
   return tolerance_findings(check, preparation.solver, fit.what.refine_solver);
 }
 

@@ -12,6 +12,7 @@
 #include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/statistics.hpp"
 #include "criteria/scores.hpp"
+#include "data/scored_samples.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 
@@ -169,9 +170,7 @@ void score_draws(FinishedFit& fit, Criteria& criteria) {
 
 int scored_samples(FinishedFit const& fit) {
   int count = 0;
-  for (ExperimentData const& each : fit.data)
-    for (std::size_t c = 0; c < each.experiment.measured.size(); ++c)
-      for (std::size_t i = 0; i < each.experiment.time.size(); ++i) count += each.experiment.is_scored(c, i) ? 1 : 0;
+  for (ExperimentData const& each : fit.data) count += scored_count(each.experiment);
   return count;
 }
 

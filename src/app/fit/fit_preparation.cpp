@@ -43,12 +43,12 @@ std::unique_ptr<Target> FitPreparation::target(SolverSettings const& solver) con
 }
 
 SearchableRecord FitPreparation::searchable_record() const {
-  return {session_,
-          task_.name,
-          what_,
-          data_,
-          likelihood_.model(),
-          [this](std::vector<Experiment> experiments, SolverSettings const& solver) {
+  return {.session = session_,
+          .name = task_.name,
+          .what = what_,
+          .data = data_,
+          .model = likelihood_.model(),
+          .make = [this](std::vector<Experiment> experiments, SolverSettings const& solver) {
             return likelihood_.make_target(std::move(experiments), solver, session_.interruptible());
           }};
 }

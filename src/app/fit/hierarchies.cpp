@@ -11,8 +11,7 @@ namespace sysid {
 std::vector<std::string> parameters_of(ParameterSpace const& space, std::vector<MemberCoordinate> const& standardised) {
   std::vector<std::string> names;
   for (MemberCoordinate const& member : standardised) {
-    int const row = space.sampled()[static_cast<std::size_t>(member.coordinate)];
-    int const parameter = space.rows()[static_cast<std::size_t>(row)].parameter;
+    int const parameter = parameter_of(space, member.coordinate);
     std::string const& name = space.model().parameters[static_cast<std::size_t>(parameter)].name;
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
@@ -44,8 +43,7 @@ void excuse_hierarchies(ParameterSpace const& space, Findings& findings) {
     for (std::string const& name : each.names) {
       auto const info = std::find_if(infos.begin(), infos.end(), [&](ParameterInfo const& known) { return known.name == name; });
       if (info == infos.end()) continue;  // an unknown function
-      int const row = space.sampled()[static_cast<std::size_t>(info - infos.begin())];
-      int const parameter = space.rows()[static_cast<std::size_t>(row)].parameter;
+      int const parameter = parameter_of(space, static_cast<int>(info - infos.begin()));
       proper = proper && info->improper == Improper::no;
       members += is_standardised(space.model(), space.model().parameters[static_cast<std::size_t>(parameter)]);
     }

@@ -2,24 +2,18 @@
 #include "app/fit/higher_place.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "app/search/solver_refinement.hpp"
 #include "search/global/search.hpp"
 #include "search/laplace.hpp"
+#include "search/mode_findings.hpp"
 #include "search/objective.hpp"
 
 namespace sysid {
 namespace {
 
 constexpr double rise = 0.5;  // nats: less is what two searches to one mode may differ by on a rough density
-
-double highest(std::vector<Mode> const& modes) {
-  double most = -std::numeric_limits<double>::infinity();
-  for (Mode const& mode : modes) most = std::max(most, mode.log_density);
-  return most;
-}
 
 }  // namespace
 

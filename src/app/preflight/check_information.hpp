@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "diagnostics/identifiability.hpp"
+#include "diagnostics/identifiability/identifiability.hpp"
 #include "likelihood/output.hpp"
 #include "result/check_page.hpp"
 

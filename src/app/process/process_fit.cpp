@@ -6,6 +6,7 @@
 #include "app/session/fit_target.hpp"
 #include "core/system/memory.hpp"
 #include "core/system/progress_terminal.hpp"
+#include "data/scored_samples.hpp"
 #include "data/start_rule.hpp"
 #include "gaussian_process/regression.hpp"
 
@@ -32,11 +33,7 @@ void require_process_work(Session& session, ProcessModel const& model, std::vect
   constexpr double worth_saying = 2;  // s
   for (ProcessChannel const& channel : model.channels()) {
     Eigen::Index rows = 0;
-    for (ExperimentData const& each : data) {
-      auto const c = static_cast<std::size_t>(channel.channel);
-      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i)
-        if (each.experiment.is_scored(c, i)) ++rows;
-    }
+    for (ExperimentData const& each : data) rows += scored_count(each.experiment, static_cast<std::size_t>(channel.channel));
     if (gaussian_process::filters(channel.covariance, rows)) continue;
     auto const [bytes, seconds] = gaussian_process::dense_work(static_cast<double>(rows));
     std::string const what = fmt::format("a likelihood of {} rows with a Gaussian process", rows);

@@ -8,6 +8,7 @@
 
 #include "app/session/fit_end.hpp"
 #include "app/session/stored_draws.hpp"
+#include "data/cell/unit_text.hpp"
 
 namespace sysid {
 namespace {
@@ -16,13 +17,22 @@ constexpr int starts_where_all_is_known = 8;
 constexpr int starts_with_something_new = 48;
 constexpr std::uint64_t near_step = 3'000'000;  // a stream of its own among those of Purpose::start
 
+/// `N/m` and `N m^-1` are one unit: a number means the same in both.
+bool is_same_unit(std::string const& now, std::string const& then) {
+  if (now == then) return true;
+  auto const left = unit_of_text(now), right = unit_of_text(then);
+  return left && right && left->dimension == right->dimension && left->offset == right->offset &&
+         std::fabs(left->scale / right->scale - 1) < 1e-12 && !cycles_against_radians(*left, *right);
+}
+
 /// Per parameter of the target its column among the earlier draws; -1: it is new, or counts in another unit now.
 std::vector<int> columns_there(Target const& target, Draws const& earlier) {
   std::vector<int> columns;
   for (ParameterInfo const& parameter : target.parameters()) {
     auto const place = std::find(earlier.names.begin(), earlier.names.end(), parameter.name);
     auto const column = static_cast<std::size_t>(place - earlier.names.begin());
-    bool const known = place != earlier.names.end() && (column >= earlier.units.size() || earlier.units[column] == parameter.unit);
+    bool const known =
+        place != earlier.names.end() && (column >= earlier.units.size() || is_same_unit(parameter.unit, earlier.units[column]));
     columns.push_back(known ? static_cast<int>(column) : -1);
   }
   return columns;

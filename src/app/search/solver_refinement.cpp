@@ -54,9 +54,7 @@ Finding not_converged(RefinedSolver const& refined, bool optimum, Ledger const& 
 }  // namespace
 
 void replace_mode_findings(Findings& findings, Findings const& of_modes) {
-  std::erase_if(findings, [](Finding const& each) {
-    return each.code == FindingCode::second_mode || each.code == FindingCode::flat_direction;
-  });
+  remove_mode_findings(findings);
   findings.insert(findings.begin(), of_modes.begin(), of_modes.end());
 }
 

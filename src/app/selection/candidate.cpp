@@ -10,7 +10,8 @@
 #include "app/session/fit_target.hpp"
 #include "core/numeric/elementary.hpp"
 #include "core/text/diagnostic.hpp"
-#include "likelihood/simulated_parameters.hpp"
+#include "data/scored_samples.hpp"
+#include "model/simulated_parameters.hpp"
 
 namespace sysid {
 namespace {
@@ -147,8 +148,7 @@ double log_unit(Candidate const& candidate, Candidate const& first) {
     if (same == others.end() || !channel.unit || !same->unit || channel.unit->scale == same->unit->scale) continue;
     auto const c = static_cast<std::size_t>(&channel - candidate.compiled->model.channels.data());
     double samples = 0;
-    for (ExperimentData const& each : candidate.data)
-      for (std::size_t i = 0; i < each.experiment.measured[c].size(); ++i) samples += each.experiment.is_scored(c, i) ? 1 : 0;
+    for (ExperimentData const& each : candidate.data) samples += scored_count(each.experiment, c);
     term += samples * elementary::log(same->unit->scale / channel.unit->scale);
   }
   return term;

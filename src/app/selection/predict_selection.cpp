@@ -16,7 +16,6 @@
 #include "criteria/mixture.hpp"
 #include "data/start_rule.hpp"
 #include "diagnostics/bands.hpp"
-#include "diagnostics/coverage.hpp"
 #include "diagnostics/function_ranges.hpp"
 #include "diagnostics/scores.hpp"
 #include "diagnostics/verdict.hpp"

@@ -68,12 +68,12 @@ class CandidateSearch {
   std::string const& name() const { return candidate_.what->name; }
 
   SearchableRecord searchable_record() const {
-    return {session_,
-            name(),
-            candidate_.fit,
-            candidate_.data,
-            candidate_.compiled->model,
-            [this](std::vector<Experiment> experiments, SolverSettings const& solver) {
+    return {.session = session_,
+            .name = name(),
+            .what = candidate_.fit,
+            .data = candidate_.data,
+            .model = candidate_.compiled->model,
+            .make = [this](std::vector<Experiment> experiments, SolverSettings const& solver) {
               return likelihood_target(session_, candidate_, std::move(experiments), solver, session_.interruptible());
             }};
   }

@@ -31,7 +31,7 @@
 #include "diagnostics/bands.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/table.hpp"
-#include "likelihood/simulated_parameters.hpp"
+#include "model/simulated_parameters.hpp"
 #include "report/file/selection.hpp"
 
 namespace sysid {

@@ -14,9 +14,9 @@
 #include "diagnostics/bands.hpp"
 #include "diagnostics/function_ranges.hpp"
 #include "experiment/true_parameters.hpp"
-#include "likelihood/simulated_parameters.hpp"
 #include "likelihood/trajectory.hpp"
 #include "mechanics/restoring_force.hpp"
+#include "model/simulated_parameters.hpp"
 
 namespace sysid {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/session/posterior_trajectories.hpp"
 #include "app/session/stored_draws.hpp"
 #include "diagnostics/bands.hpp"
-#include "likelihood/simulated_parameters.hpp"
+#include "model/simulated_parameters.hpp"
 
 namespace sysid {
 namespace {

@@ -9,15 +9,18 @@
 namespace sysid {
 namespace {
 
-/// Rows that a name stands for in a model's parameters: itself, or one for each experiment.
-bool stands_for(std::string const& row, std::string const& name) { return row == name || row.starts_with(name + "["); }
-
-/// by_distance: parameters of the noise have no particles.
+/// Rows that a name stands for in a model's parameters: itself, or one for each experiment. by_distance: parameters of the noise
+/// have no particles.
 std::vector<std::string> rows_of(std::string const& name, std::vector<Candidate> const& candidates, bool by_distance) {
   std::vector<std::string> rows;
-  for (Candidate const& each : candidates)
-    for (ParameterInfo const& info : (by_distance ? each.simulated : each.space)->infos())
-      if (stands_for(info.name, name) && std::find(rows.begin(), rows.end(), info.name) == rows.end()) rows.push_back(info.name);
+  for (Candidate const& each : candidates) {
+    ParameterSpace const& space = by_distance ? *each.simulated : *each.space;
+    for (int k = 0; k < space.dimension(); ++k) {
+      std::string const& row = space.infos()[static_cast<std::size_t>(k)].name;
+      bool const stands_for = space.model().parameters[static_cast<std::size_t>(parameter_of(space, k))].name == name;
+      if (stands_for && std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(row);
+    }
+  }
   return rows;
 }
 
@@ -48,7 +51,7 @@ std::optional<SelectionReport::Unmoved> unmoved(Session const& session, std::str
                                                 std::vector<Candidate> const& candidates, std::string why) {
   for (Candidate const& each : candidates)
     for (PriorInfo const& prior : declared_priors(session, each.fit.model))
-      if (stands_for(prior.name, name)) return SelectionReport::Unmoved{name, prior.unit, prior.text, std::move(why)};
+      if (prior.name == name) return SelectionReport::Unmoved{name, prior.unit, prior.text, std::move(why)};
   return std::nullopt;
 }
 

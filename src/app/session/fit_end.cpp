@@ -13,7 +13,7 @@
 #include "diagnostics/convergence.hpp"
 #include "diagnostics/residual_checks.hpp"
 #include "diagnostics/verdict.hpp"
-#include "likelihood/simulated_parameters.hpp"
+#include "model/simulated_parameters.hpp"
 
 namespace sysid {
 

@@ -12,9 +12,9 @@
 #include "experiment/experiments.hpp"
 #include "inference/table.hpp"
 #include "likelihood/member_coordinate.hpp"
-#include "likelihood/simulated_parameters.hpp"
 #include "load/same_on_ranks.hpp"
 #include "model/lags.hpp"
+#include "model/simulated_parameters.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"
 

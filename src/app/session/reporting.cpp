@@ -13,6 +13,7 @@
 #include "app/session/resolved.hpp"
 #include "app/session/results.hpp"
 #include "app/session/task_rows.hpp"
+#include "app/session/written_model.hpp"
 #include "core/ranks/ranks.hpp"
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
@@ -30,20 +31,7 @@
 namespace sysid {
 namespace {
 
-ast::Model const* find_model(ast::File const& tree, std::string const& name) {
-  for (ast::Item const& item : tree.items)
-    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
-  return nullptr;
-}
-
 bool within(Span inner, Span outer) { return inner.begin >= outer.begin && inner.end <= outer.end; }
-
-// The model as the user wrote it; null when it stands in a module.
-ast::Model const* as_written(ast::File const& tree, Span span) {
-  for (ast::Item const& item : tree.items)
-    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->span == span) return model;
-  return nullptr;
-}
 
 /// The parameters of the model that are not estimated.
 std::vector<FixedValue> fixed_parameters(Report const& report) {

@@ -12,7 +12,7 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "experiment/experiments.hpp"
-#include "likelihood/simulated_parameters.hpp"
+#include "model/simulated_parameters.hpp"
 #include "report/file/csv.hpp"
 #include "report/file/number_table.hpp"
 #include "report/file/selection.hpp"

@@ -55,19 +55,11 @@ void blame_letters(ast::Model const& model, std::vector<ast::FunctionDefinition 
     ModelChecker(changed, shared, said).run();
     std::set<Mistake> const after = mistakes_from(0, said);
     if (after.size() >= before.size() || !std::includes(before.begin(), before.end(), after.begin(), after.end())) continue;
-    std::vector<Diagnostic> kept;
-    std::optional<Diagnostic> shown;
-    for (std::size_t i = 0; i < diagnostics.all().size(); ++i) {
-      Diagnostic const& each = diagnostics.all()[i];
-      bool const resolved = i >= first && before.contains(mistake_of(each)) && !after.contains(mistake_of(each));
-      if (!resolved)
-        kept.push_back(each);
-      else if (!shown || each.primary->span.begin < shown->primary->span.begin)
-        shown = each;
-    }
-    if (!shown) continue;
-    kept.push_back(errors::letter_taken_for_temperature(*std::move(shown), *place, letter));
-    diagnostics.replace(std::move(kept));
+    std::set<Mistake> resolved;
+    std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::inserter(resolved, resolved.end()));
+    replace_resolved(diagnostics, first, resolved, [&](Diagnostic earliest) {
+      return errors::letter_taken_for_temperature(std::move(earliest), *place, letter);
+    });
     return;
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -19,6 +20,9 @@ using Mistake = std::tuple<std::string, std::uint32_t, std::uint32_t>;
 Mistake mistake_of(Diagnostic const& each);
 /// About names, numbers and units: what may follow from a unit. Mistakes of structure come to light when those before are gone.
 std::set<Mistake> mistakes_from(std::size_t first, Diagnostics const& diagnostics);
+/// Takes these mistakes out, of those from `first` on, and adds one in their place that is made of the earliest of them.
+void replace_resolved(Diagnostics& diagnostics, std::size_t first, std::set<Mistake> const& resolved,
+                      std::function<Diagnostic(Diagnostic earliest)> const& in_their_place);
 
 template <class Visit>
 void each_declared(ast::Model& model, Visit const& visit) {

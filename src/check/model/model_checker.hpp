@@ -46,7 +46,19 @@ class ModelChecker {
 
   // --- model_declarations.cpp
   void declare();
-  void declare_step(ast::DiscreteTimeDeclaration const& discrete);
+  void declare_in(ast::TimeDeclaration const& time);
+  void declare_in(ast::DiscreteTimeDeclaration const& discrete);
+  void declare_in(ast::InputDeclaration const& inputs);
+  void declare_in(ast::StateDeclaration const& states);
+  void declare_in(ast::DisturbanceDeclaration const& disturbance);
+  void declare_in(ast::ParameterDeclaration const& parameter);
+  void declare_in(ast::Definition const& definition);
+  void declare_in(ast::FunctionDefinition const& function);
+  void declare_in(ast::ProcessDefinition const& process);
+  template <class Other>
+  void declare_in(Other const&) {}  // declares no name
+  // Of an unknown function that is a finite sum.
+  void declare_coefficients(Scope::ProcessName& process);
   StateInfo* find_state(std::string const& name);
   std::size_t index_of(StateInfo const& info) const;
   std::vector<std::string> state_names() const;
@@ -143,6 +155,8 @@ class ModelChecker {
   Model model_;
   Scope scope_;
   std::vector<std::pair<std::string, StateInfo>> states_;
+  ast::TimeDeclaration const* first_time_ = nullptr;
+  ast::DiscreteTimeDeclaration const* first_discrete_ = nullptr;
   std::vector<ast::ParameterDeclaration const*> parameter_trees_;
   std::vector<NodeId> highest_;                      // solutions for the unknowns; none for an implicit model
   std::vector<Invariant> constraints_;               // of every differentiation

@@ -9,6 +9,7 @@
 #include "check/expression/distributions.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_disturbances.hpp"
+#include "core/text/free_name.hpp"
 #include "model/invariant.hpp"
 #include "syntax/walk.hpp"
 
@@ -83,12 +84,12 @@ errors::StartValue ModelChecker::start_of_temperature(State const& state, std::s
   kelvin.dimension[4] = {1, 1};
   Unit const unit = state.unit.value_or(Unit{});
   bool const counts_from_zero_point = unit.offset != 0;
-  if (unit.dimension != kelvin.dimension || (!counts_from_zero_point && unit.text != "K")) return {"0"};
-  std::string const bare = state.name.substr(0, state.name.find_first_of("[."));
-  std::string name = bare + "_start";
-  for (int number = 2; read.contains(name) || scope_.find(name) != nullptr; ++number)
-    name = fmt::format("{}_start{}", bare, number);
-  double const typical = counts_from_zero_point ? convert(293.15, kelvin, unit) : 300;
+  // Of a difference 0 is usual. Its units differ from those of temperatures by their names alone.
+  if (unit.dimension != kelvin.dimension || unit.text.find("delta_") != std::string::npos) return {"0"};
+  std::string const name =
+      free_name(state.name.substr(0, state.name.find_first_of("[.")) + "_start",
+                [&](std::string const& taken) { return read.contains(taken) || scope_.find(taken) != nullptr; });
+  double const typical = counts_from_zero_point ? convert(293.15, kelvin, unit) : 300 / unit.scale;
   double const spread = (counts_from_zero_point ? 20 : 30) / unit.scale;
   return {name, fmt::format("parameter {} [{}] ~ normal({:.3g}, sd = {:.3g})", name, unit.text, typical, spread),
           !counts_from_zero_point};

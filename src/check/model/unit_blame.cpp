@@ -15,19 +15,6 @@
 
 namespace sysid {
 
-Mistake mistake_of(Diagnostic const& each) {
-  return {each.code, each.primary ? each.primary->span.begin : 0, each.primary ? each.primary->span.end : 0};
-}
-
-std::set<Mistake> mistakes_from(std::size_t first, Diagnostics const& diagnostics) {
-  std::set<Mistake> places;
-  for (std::size_t i = first; i < diagnostics.all().size(); ++i) {
-    Diagnostic const& each = diagnostics.all()[i];
-    if (each.severity == Severity::error && each.code.starts_with("E2")) places.insert(mistake_of(each));
-  }
-  return places;
-}
-
 namespace {
 
 // A conflict of which a declaration is to blame says by which factor, up to the power with which the name enters.
@@ -143,17 +130,9 @@ void blame_declaration(ast::Model const& model, std::vector<ast::FunctionDefinit
   if (conflicts.size() < 2 || model.statements.size() > most_statements) return;
   auto const blame = Search(model, shared, before).run();
   if (!blame) return;
-  std::vector<Diagnostic> kept = diagnostics.all(), resolved;
-  std::erase_if(kept, [&](Diagnostic const& each) {
-    bool const gone = static_cast<std::size_t>(&each - kept.data()) >= first && blame->resolved.contains(mistake_of(each));
-    if (gone) resolved.push_back(each);
-    return gone;
+  replace_resolved(diagnostics, first, blame->resolved, [&](Diagnostic earliest) {
+    return errors::blamed(std::move(earliest), blame->name, blame->unit, static_cast<int>(blame->resolved.size()));
   });
-  auto const earliest = std::min_element(resolved.begin(), resolved.end(), [](Diagnostic const& a, Diagnostic const& b) {
-    return a.primary->span.begin < b.primary->span.begin;
-  });
-  kept.push_back(errors::blamed(std::move(*earliest), blame->name, blame->unit, static_cast<int>(blame->resolved.size())));
-  diagnostics.replace(std::move(kept));
 }
 
 }  // namespace sysid

@@ -29,7 +29,7 @@ inline constexpr double doubtful_p = 0.01, wrong_p = 0.001;
 /// The sd of a share among n.
 double share_error(double share, int n);
 
-/// "too narrow: true values lie in the tails too often".
+/// "posteriors too narrow: true values lie in their tails too often".
 std::string_view shape_words(RankShape shape);
 
 }  // namespace sysid

@@ -29,7 +29,7 @@ double ecdf_p_value(std::span<int const> ranks, int values);
 /// The ranks in `bins` groups of equal size (bins divides values): P(chi-square(bins - 1) > what is seen). 1 of none.
 double chi_squared_p_value(std::span<int const> ranks, int values, int bins);
 
-/// As many groups as leave five ranks in each, at most 20, a divisor of `values`; at least 2.
+/// As many groups as leave ten ranks in each, at most 20, a divisor of `values`; at least 2.
 int rank_bins(int n, int values);
 
 }  // namespace sysid

@@ -10,9 +10,11 @@
 
 #include "data/input_rule.hpp"
 #include "data/input_spectrum.hpp"
+#include "data/scored_samples.hpp"
 #include "diagnostics/inputs/input_leaves.hpp"
 #include "diagnostics/inputs/input_words.hpp"
 #include "diagnostics/inputs/steady_gain.hpp"
+#include "result/experiment_words.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
@@ -29,14 +31,6 @@ constexpr double noticeable = 1;                          // sds, of a parameter
 constexpr int most_samples = 5;                           // of a shift in whole samples
 constexpr int refit_rounds = 12, refit_evaluations = 60;  // by residuals; by gradients
 constexpr std::uint64_t refit_stream = 2;
-
-/// Over all channels, as a likelihood reads them.
-int scored_samples(Experiment const& experiment) {
-  int count = 0;
-  for (std::size_t c = 0; c < experiment.measured.size(); ++c)
-    for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) count += experiment.is_scored(c, i) ? 1 : 0;
-  return count;
-}
 
 /// Whether a sample says little of the next one.
 bool changes_at_once(InputSignal const& input) {
@@ -117,7 +111,7 @@ class InputCheck {
     if (!changes(input)) return std::nullopt;
     std::vector<Alternative> all = rules(input, static_cast<int>(i));
     for (double const shift : {-0.5, 0.5}) all.push_back({std::nullopt, shift, input.shifted(shift)});
-    int const scored = scored_samples(experiments_[e]);
+    int const scored = scored_count(experiments_[e]);
     for (Alternative& each : all) weigh(each, e, i, scored);
     add_whole_samples(all, e, i, scored);
     if (std::none_of(all.begin(), all.end(), [](Alternative const& each) { return each.clear; })) return undecided(all, e, i);
@@ -177,7 +171,7 @@ class InputCheck {
       if (rows.size() < 4 * most_samples) return std::nullopt;
       std::fill_n(rows.begin(), most_samples, 0);
       std::fill_n(rows.rbegin(), most_samples, 0);
-      scored += scored_samples(cut[e]);
+      scored += scored_count(cut[e]);
       moves = moves || changes(cut[e].inputs[i]);
     }
     if (!moves || scored == 0) return std::nullopt;
@@ -308,7 +302,7 @@ class InputCheck {
     return squared;
   }
 
-  std::string on(std::size_t e) const { return experiments_.size() == 1 ? "" : " on " + experiments_[e].name; }
+  std::string on(std::size_t e) const { return on_experiment(experiments_[e].name, experiments_.size() > 1); }
   InputOf input_of(std::size_t e, std::size_t i) const { return {model_, experiments_[e], i, on(e)}; }
 
   FitOfExperiments const& fit_;

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <functional>
 
+#include "core/numeric/elementary.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/law/noise_words.hpp"
+#include "diagnostics/law/round_number.hpp"
 
 namespace sysid {
 namespace {
@@ -173,7 +175,7 @@ std::vector<Term> powers(Model const& model, Smoothed const& of) {
     if (small > 0)
       add(fmt::format("tanh({}/{})", name(a),
                       unit.empty() ? significant(small, 1) : fmt::format("({} [{}])", significant(small, 1), unit)),
-          {}, [&](std::size_t i) { return std::tanh(x[i] / small); });
+          {}, [&](std::size_t i) { return elementary::tanh(x[i] / small); });
     for (std::size_t b = 0; b < count && count <= most_crossed; ++b) {
       std::vector<double> const& z = of.columns[b];
       if (b > a) add(fmt::format("{}*{}", name(a), name(b)), {a, b}, [&](std::size_t i) { return x[i] * z[i]; });
@@ -234,18 +236,10 @@ Sized sized(Model const& model, Disturbance const& disturbance, Smoothed const& 
   return {value, text == "1" ? "-" : text};
 }
 
-/// 1, 2 or 5 times a power of ten, three times the value or more.
-double wide_sd(double value) {
-  double const least = 3 * std::abs(value), power = std::pow(10.0, std::floor(std::log10(least)));
-  for (double const digit : {1.0, 2.0, 5.0})
-    if (digit * power >= least) return digit * power;
-  return 10 * power;
-}
-
 Finding finding(Model const& model, Disturbance const& disturbance, Smoothed const& of, Found const& found,
                 std::function<bool(std::string const& name)> const& taken) {
   auto const [value, unit] = sized(model, disturbance, of, found);
-  std::string const name = free_name("extra", taken), bracket = unit.empty() ? "" : fmt::format(" [{}]", unit);
+  std::string const name = free_name("extra", taken_names(model, taken)), bracket = unit.empty() ? "" : fmt::format(" [{}]", unit);
   std::string const times = found.term.text.empty() ? "" : "*" + found.term.text;
   std::string const shown = found.term.text.empty() ? fmt::format("the constant {}{}", significant(value, 3), bracket)
                                                     : fmt::format("{}{}{}", significant(value, 3), bracket, times);
@@ -258,7 +252,7 @@ Finding finding(Model const& model, Disturbance const& disturbance, Smoothed con
                   disturbance.name, shown, 100 * found.followed.share, significant(std::abs(found.followed.standard_errors), 2)),
       fmt::format("add `{0}{1}` beside `{2}` in its equation, with `parameter {0}{3} ~ normal(0, sd = {4})`, and fit "
                   "again; while a term is missing, the disturbance depends on the states, and the other parameters are biased",
-                  name, times, disturbance.name, bracket, shortest(wide_sd(value)))};
+                  name, times, disturbance.name, bracket, shortest(round_number_above(3 * std::abs(value))))};
 }
 
 }  // namespace

@@ -4,15 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <utility>
 
 namespace sysid {
 
-std::string free_name(std::string wanted, std::function<bool(std::string const& name)> const& taken) {
-  std::ranges::replace_if(
-      wanted, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  while (taken && taken(wanted)) wanted += "_2";
-  return wanted;
+std::function<bool(std::string const& name)> taken_names(Model const& model,
+                                                         std::function<bool(std::string const& name)> mentions) {
+  return [&model, mentions = std::move(mentions)](std::string const& name) {
+    auto const has = [&](auto const& quantities) {
+      return std::ranges::any_of(quantities, [&](auto const& each) { return each.name == name; });
+    };
+    return (mentions && mentions(name)) || has(model.parameters) || has(model.states) || has(model.inputs) || has(model.channels) ||
+           has(model.derived);
+  };
 }
 
 std::string use_heavy_tails(std::optional<std::string> const& line) {

@@ -4,10 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "core/text/free_name.hpp"
+#include "model/model.hpp"
+
 namespace sysid {
 
-/// A name that does not stand in the text: the wanted one, with what cannot be part of a name replaced, or that with numbers.
-std::string free_name(std::string wanted, std::function<bool(std::string const& name)> const& taken);
+/// Names that a cure may not give to something new: those of the model, which outlives the answer, and those that stand in the
+/// user's text. mentions: of the latter; may be empty.
+std::function<bool(std::string const& name)> taken_names(Model const& model, std::function<bool(std::string const& name)> mentions);
 
 /// line: the statement of the channel's noise with heavy tails; nothing where it is not in the text.
 std::string use_heavy_tails(std::optional<std::string> const& line);

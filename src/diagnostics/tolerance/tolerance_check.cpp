@@ -27,14 +27,7 @@ using Moved = SolverCheck::Moved;
 /// Of the mean of each parameter, over all draws; what has none is not counted as fewer.
 std::vector<double> effective_draws(Draws const& draws, int parameters) {
   std::vector<double> all;
-  for (int p = 0; p < parameters; ++p) {
-    ChainValues values;
-    for (Chain const& chain : draws.chains) {
-      values.emplace_back();
-      for (auto const& draw : chain.values) values.back().push_back(draw[static_cast<std::size_t>(p)]);
-    }
-    all.push_back(ess_mean(values));
-  }
+  for (int p = 0; p < parameters; ++p) all.push_back(ess_mean(chains_of(draws, static_cast<std::size_t>(p))));
   return all;
 }
 

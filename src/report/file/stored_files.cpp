@@ -8,6 +8,7 @@
 
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
+#include "report/file/result_files.hpp"
 
 namespace sysid {
 namespace {
@@ -50,12 +51,8 @@ void throw_damaged(fs::path const& path) {
 }
 
 bool is_stored_table(std::string const& name) {
-  if (!name.ends_with(".csv")) return false;
-  if (name == "predict.csv" || name == "states.csv" || name == "free_run.csv" || name == "pointwise.csv" || name == "ranks.csv")
-    return true;
-  for (char const* begin : {"draws_", "particles_", "polished_", "predict_", "states_", "free_run_", "function_"})
-    if (name.starts_with(begin)) return true;
-  return false;
+  ResultFileRow const* const row = result_file_row(name);
+  return row != nullptr && row->sealed;
 }
 
 std::string unsealed() { return std::string(digest_size, '0'); }

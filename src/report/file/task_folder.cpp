@@ -15,6 +15,7 @@
 #include "report/file/discovery.hpp"
 #include "report/file/function.hpp"
 #include "report/file/report_cbor.hpp"
+#include "report/file/result_files.hpp"
 #include "report/file/selection.hpp"
 #include "report/file/summary_json.hpp"
 #include "report/page/html.hpp"
@@ -25,24 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of exports, which belong to the result that they were made of: TASK.nc, TASK_MODEL.nc, TASK.stan, TASK.data.json.
-bool is_exported_file(std::string const& name, std::string const& task) {
-  return name == task + ".nc" || (name.starts_with(task + "_") && name.ends_with(".nc")) || name == task + ".stan" ||
-         name == task + ".data.json";
-}
-
-/// Names that `write_result` gives, and those of exports.
 bool is_result_file(std::string const& name, std::string const& task) {
-  if (is_exported_file(name, task)) return true;
-  auto const between = [&](std::string_view begin, std::string_view end) {
-    return name.size() >= begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);
-  };
-  return name == "summary.json" || name == "timing.json" || name == "report.html" || name == "report.cbor" ||
-         name == "resolved.sysid" || name == "predict.csv" || name == "terms.csv" || name == "found.sysid" ||
-         name == "structures.csv" || name == "pointwise.csv" || name == "refit.csv" || name == "ranks.csv" ||
-         name == "populations.csv" || name == "states.csv" || name == "free_run.csv" || between("free_run_", ".csv") ||
-         between("states_", ".csv") || between("draws_", ".csv") || between("function_", ".csv") || between("predict_", ".csv") ||
-         between("particles_", ".csv") || between("polished_", ".csv") || between("resolved_", ".sysid");
+  return result_file_row(name) != nullptr || is_exported_file(name, task);
 }
 
 bool is_figure_file(std::string const& name) {
@@ -119,7 +104,7 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   }
   FileDigests digests;
   auto const write = [&](std::string const& name, std::string const& content) {
-    write_file(folder / name, content);
+    write_file(folder / known_result_file(name), content);
     if (is_stored_table(name)) digests[name] = sha256(content);
   };
   for (std::size_t c = 0; c < report.draws.chains.size(); ++c) write(draws_file(c), draws_csv(report, static_cast<int>(c)));
@@ -144,7 +129,7 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
   std::vector<std::string> undrawn = write_figures(drawn, folder, pictures);
   write_file(folder / "report.html", page);
   write_file(folder / "report.cbor", record);
-  for (auto const& [name, content] : report.resolved_files) write_file(folder / name, content);
+  for (auto const& [name, content] : report.resolved_files) write_file(folder / known_result_file(name), content);
   write_file(folder / "timing.json", timing_json(report));
   write_file(folder / "summary.json", summary_json(report, digests));
   return undrawn;

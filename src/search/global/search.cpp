@@ -105,6 +105,7 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
     ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
     if (stop()) break;
     if (!ended.empty()) modes = modes_of(*objective, ended, context.ledger, stop, context.journal);
+    // One end is of one start, the only draw of the pass that could be solved: more passes would hardly have others.
     if (!modes.empty() && (ended.size() == 1 || !may_be_missed(modes, ended.size()))) break;
     if (pass + 1 < passes)
       work.next(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), of_draws, early + last_part);

@@ -9,6 +9,7 @@
 #include "core/numeric/order.hpp"
 #include "core/numeric/statistics.hpp"
 #include "search/local_searches.hpp"
+#include "search/mode_findings.hpp"
 #include "search/refit.hpp"
 #include "search/search_step.hpp"
 
@@ -17,12 +18,6 @@ namespace {
 
 constexpr double clearly_higher = 3;  // nats
 constexpr int finer_at_second_look = 2;
-
-double highest(std::vector<Mode> const& modes) {
-  double best = -infinity;
-  for (Mode const& each : modes) best = std::max(best, each.log_density);
-  return best;
-}
 
 }  // namespace
 

@@ -10,6 +10,7 @@
 #include "linear_algebra/decompositions.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
+#include "search/local_slopes.hpp"
 #include "search/mode_findings.hpp"
 
 namespace sysid {
@@ -97,9 +98,7 @@ bool alike(std::vector<MemberCoordinate> const& a, std::vector<MemberCoordinate>
 
 /// The findings of a search with those about its modes replaced.
 Findings with_modes_of(Findings findings, Target const& target, std::vector<Mode> const& modes) {
-  std::erase_if(findings, [](Finding const& each) {
-    return each.code == FindingCode::second_mode || each.code == FindingCode::flat_direction;
-  });
+  remove_mode_findings(findings);
   for (Finding& each : mode_findings(target, ObjectiveKind::posterior, modes)) findings.push_back(std::move(each));
   return findings;
 }
@@ -109,19 +108,14 @@ Findings with_modes_of(Findings findings, Target const& target, std::vector<Mode
 MemberInformation member_information(Target const& declared, ParameterSpace const& space, std::vector<double> const& mode,
                                      std::uint64_t seed) {
   Objective const objective = make_objective(declared, ObjectiveKind::posterior, seed, standardising_step);
-  int const dimension = declared.dimension();
   LaneArray const theta = unconstrained(declared, mode);
-  LaneArray gradient(dimension, 1), curvature(dimension * dimension, 1);
-  Eigen::VectorXd const steps = difference_width(declared) * objective.scale;
   Ledger looked;
-  declared.gauss_newton(theta, {steps.data(), static_cast<std::size_t>(dimension)}, gradient, curvature, looked);
-  Eigen::MatrixXd precision(dimension, dimension);
-  for (int p = 0; p < dimension; ++p)
-    for (int q = 0; q < dimension; ++q) precision(p, q) = curvature(p * dimension + q, 0);
+  LikelihoodSlope const slope = local_slopes(declared, theta, difference_width(declared) * objective.scale, looked).front();
+  Eigen::MatrixXd precision = slope.curvature;
   Eigen::VectorXd const of_prior = objective.scale.cwiseAbs2().cwiseInverse();
   precision.diagonal() += of_prior;
   Eigen::MatrixXd const covariance = inverse(precision);
-  Eigen::VectorXd const step = covariance * column(gradient, 0);
+  Eigen::VectorXd const step = covariance * slope.gradient;
 
   std::vector<MemberCoordinate> members;
   for (ParameterSpace::Member const& member : space.members()) {

@@ -119,7 +119,7 @@ class Walk {
     }
   }
 
-  std::vector<Ray> const& run() {
+  std::vector<Ray> run() && {
     Eigen::MatrixXd const at_mode = free_slopes(objective_, {mode_}, untold_).front().curvature;
     curvature_.assign(rays_.size(), at_mode);
     for (int step = 0; step <= most_half_decades && !(stop_ && stop_()); ++step) {
@@ -129,7 +129,7 @@ class Walk {
       if (open.empty()) break;
       go(open, step);
     }
-    return rays_;
+    return std::move(rays_);
   }
 
  private:
@@ -255,7 +255,7 @@ std::string direction_of(Target const& target, Ray const& ray) {
   return fmt::format("as `{}` {} {}", info.name, rising ? "rises, up to" : "falls, down to", place);
 }
 
-std::string const help_for_improper =
+constexpr char const* help_for_improper =
     "give it a proper prior, bound it by `lower` and `upper` where the physics does, fix one of the parameters, or measure more";
 
 /// The coordinate, and what the ray drags along: others that change by a third at least on the way.

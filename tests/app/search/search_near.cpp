@@ -150,6 +150,39 @@ class Population : public testing::TestTarget {
 
 }  // namespace
 
+TEST_CASE("a value that was in the same unit, written otherwise, is where a search near it begins") {
+  class InUnit : public testing::TestTarget {
+   public:
+    explicit InUnit(std::string const& unit)
+        : TestTarget({"k"}, {{testing::Prior::uniform, 0, 5}}, 1, 0,
+                     [](std::vector<double> const&, std::vector<double>& rows) { rows[0] = 0; }),
+          own_{{"k", unit, 0, 5}} {}
+    std::span<ParameterInfo const> parameters() const override { return own_; }
+
+   private:
+    std::vector<ParameterInfo> own_;
+  };
+  Draws earlier;
+  earlier.names = {"k"};
+  earlier.parameter_count = 1;
+  earlier.chains = {{{{3.25}}, {0}, {0}, {0}, {}}};
+  auto const begins_there = [&](std::string const& then, std::string const& now) {
+    earlier.units = {then};
+    InUnit const target(now);
+    LaneArray const starts = starts_near(target, earlier, 1);
+    LaneArray declared(1, starts.width());
+    target.constrain(starts, declared);
+    return std::fabs(declared(0, 0) - 3.25) < 1e-9;
+  };
+  CHECK(begins_there("N/m", "N m^-1"));
+  CHECK(begins_there("1/mm", "mm^-1"));
+  CHECK(begins_there("", ""));
+  CHECK_FALSE(begins_there("N/m", "N/mm"));
+  CHECK_FALSE(begins_there("Hz", "rad/s"));
+  CHECK_FALSE(begins_there("degC", "K"));
+  CHECK_FALSE(begins_there("", "N/m"));
+}
+
 TEST_CASE("members keep their earlier values where the prior no longer allows the earlier spread") {
   Population const target;
   Draws earlier;

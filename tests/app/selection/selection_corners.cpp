@@ -211,6 +211,19 @@ TEST_CASE("a shared parameter that only the noise reads is listed with its prior
   CHECK(answer.out.find("log_uniform(0.01, 0.5)") != std::string::npos);
 }
 
+TEST_CASE("elements of a shared vector that every experiment has for itself are summarised for each") {
+  Line const line(0.1, 0.5);
+  Printed const answer = line.run(
+      "model a { input u; parameter c(2) per experiment ~ uniform(0, 10); observe d ~ normal(c[1]*u + 0.05*c[2], sd = 0.5) }\n"
+      "model b { input u; parameter c(2) per experiment ~ uniform(0, 10); parameter g ~ uniform(0, 1)\n"
+      "observe d ~ normal(c[1]*u + 0.05*c[2] + g, sd = 0.5) }\ncandidates both { a; b; shared c }\n"
+      "answer = select both to line with abc_smc(particles = 200), seed = 1");
+  json const& shared = answer.summary.at("populations").at("shared");
+  CHECK(shared.at("c[1,line]").contains("sd"));
+  CHECK(shared.at("c[2,line]").contains("sd"));
+  CHECK(answer.out.find("only the noise uses it") == std::string::npos);
+}
+
 TEST_CASE("a shared value that is fixed in all models has no prior to stay at, and is not listed") {
   Line const line(0.1, 0.5);
   Printed const answer = line.run(

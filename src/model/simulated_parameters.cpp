@@ -1,5 +1,5 @@
 // Reachability from what a simulation computes.
-#include "likelihood/simulated_parameters.hpp"
+#include "model/simulated_parameters.hpp"
 
 #include <algorithm>
 

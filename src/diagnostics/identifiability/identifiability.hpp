@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnostics/sensitivity.hpp"
+#include "diagnostics/identifiability/sensitivity.hpp"
 
 namespace sysid {
 

@@ -1,5 +1,5 @@
 // Null spaces of scaled slopes, and which of their directions are the same at every draw.
-#include "diagnostics/identifiability.hpp"
+#include "diagnostics/identifiability/identifiability.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,9 @@
 // One batch of sixteen lanes per parameter; columns are kept only until their triangular factor is computed.
-#include "diagnostics/sensitivity.hpp"
+#include "diagnostics/identifiability/sensitivity.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "linear_algebra/decompositions.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnostics/identifiability.hpp"
+#include "diagnostics/identifiability/identifiability.hpp"
 
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"

@@ -1,5 +1,5 @@
 // Slopes of functions whose derivatives are known, and null spaces of matrices made to have them.
-#include "diagnostics/identifiability.hpp"
+#include "diagnostics/identifiability/identifiability.hpp"
 
 #include <doctest/doctest.h>
 #include <Eigen/Core>
