@@ -104,6 +104,11 @@ std::string elsewhere_clause(ValidationReport const& validation) {
   return fmt::format("the equation fails on {} (rms error of a free run: {} % of the sd)", validation.held_out, size);
 }
 
+/// A term of the target is shown as "m, in the target".
+bool is_term(DiscoveredTerm const& shown, std::string const& term) {
+  return shown.text == term || (shown.fate.kind == TermFate::Kind::known && shown.text.starts_with(term + ","));
+}
+
 }  // namespace
 
 bool is_settled(ValidationReport const& validation) {
@@ -115,7 +120,7 @@ void temper_by_terms(DiscoveredEquation const& equation, Finding& finding) {
   if (finding.code != FindingCode::terms_collinear || finding.names.empty()) return;
   auto const kept = [&](std::string const& term) {
     return std::any_of(equation.terms.begin(), equation.terms.end(),
-                       [&](DiscoveredTerm const& each) { return each.kept && each.text == term; });
+                       [&](DiscoveredTerm const& each) { return each.kept && is_term(each, term); });
   };
   if (!std::all_of(finding.names.begin() + 1, finding.names.end(), kept)) finding.severity = Severity::note;
 }
@@ -161,7 +166,7 @@ Findings undecided_form(ValidationReport const& validation) {
 Findings undecided_terms(DiscoveredEquation const& equation) {
   std::vector<std::string> kept;
   for (DiscoveredTerm const& each : equation.terms)
-    if (each.kept) kept.push_back(each.text);
+    if (each.kept && each.fate.kind != TermFate::Kind::known) kept.push_back(each.text);
   double own = 0, sum = 0, known = 0;
   std::vector<std::string> names, listed;
   for (DiscoveredSupport const& each : equation.supports) {

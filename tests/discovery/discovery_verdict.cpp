@@ -114,6 +114,11 @@ TEST_CASE("sets of terms that share the probability of a regression are one warn
   CHECK(found.front().names.size() == 3);
   equation.supports.front().probability = 0.9;
   CHECK(undecided_terms(equation).empty());
+  // A term of the target is in every equation, and in none of the sets.
+  equation.terms.emplace_back().text = "m, in the target";
+  equation.terms.back().kept = true;
+  equation.terms.back().fate = {TermFate::Kind::known};
+  CHECK(undecided_terms(equation).empty());
   // What is kept is not the most probable.
   equation.terms[2].kept = true;
   CHECK(undecided_terms(equation).size() == 1);

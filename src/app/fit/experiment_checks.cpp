@@ -8,13 +8,15 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
+#include <numeric>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "search/laplace.hpp"
+#include "search/objective.hpp"
 #include "search/refit.hpp"
 
 namespace sysid {
@@ -24,7 +26,7 @@ constexpr std::size_t most_experiments = 12;  // each takes a local search of it
 constexpr double far_apart = 6;               // sds: by chance alone it does not happen
 constexpr double least_gain = 20;             // nats, beyond what parameters of their own would gain by chance
 constexpr std::size_t least_members = 5;
-constexpr double rare = 1e-4;
+constexpr double rare = 1e-4, rare_power = 1e-3;  // the latter where a member is off by a power of ten, as by a unit
 
 /// Findings by which experiments, or disturbances in their place, may differ.
 bool may_disagree(FinishedFit const& fit) {
@@ -35,11 +37,69 @@ bool may_disagree(FinishedFit const& fit) {
          });
 }
 
+/// Coordinates that all experiments read and that the response depends on: sizes of noises and disturbances are not the cause.
 std::vector<std::size_t> shared_coordinates(ParameterSpace const& space) {
   std::vector<std::size_t> shared;
   for (std::size_t c = 0; c < space.sampled().size(); ++c)
-    if (space.rows()[static_cast<std::size_t>(space.sampled()[c])].experiment < 0) shared.push_back(c);
+    if (space.rows()[static_cast<std::size_t>(space.sampled()[c])].experiment < 0 && !space.infos()[c].size_alone)
+      shared.push_back(c);
   return shared;
+}
+
+/// How many samples one independent sample is worth: 1 + 2 sum of the autocorrelations, up to the first pair of lags whose sum is
+/// not positive (Geyer 1992); 1 at least. Residuals that are not white make sds of estimates too small by its root.
+double samples_of_one(std::span<double const> residuals) {
+  double const middle = mean(residuals);
+  auto const covariance = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t i = lag; i < residuals.size(); ++i) sum += (residuals[i] - middle) * (residuals[i - lag] - middle);
+    return sum;
+  };
+  double const variance = covariance(0);
+  if (!(variance > 0)) return 1;
+  double sum = 1;
+  for (std::size_t lag = 1; lag + 1 < residuals.size() / 2; lag += 2) {
+    double const pair = covariance(lag) + covariance(lag + 1);
+    if (!(pair > 0)) break;
+    sum += 2 * pair / variance;
+  }
+  return std::max(1.0, sum);
+}
+
+/// The fit of one experiment by itself.
+struct Alone {
+  Mode mode;
+  double gain = 0;      // of its log likelihood over that at the mode of the whole fit, counted in independent samples
+  double widening = 1;  // of the sds, for the same reason
+  bool found = false;
+};
+
+double sd_of(Alone const& alone, std::size_t coordinate) {
+  std::size_t const n = alone.mode.theta.size();
+  return alone.widening * std::sqrt(alone.mode.covariance[coordinate * n + coordinate]);
+}
+
+/// All experiments but one are not scored, so that parameters keep their places and their priors.
+Alone fitted_alone(FinishedFit& fit, std::vector<Experiment> experiments, std::size_t which) {
+  for (std::size_t k = 0; k < experiments.size(); ++k)
+    if (k != which) experiments[k].scored.assign(experiments[k].scored.size(), 0);
+  auto const target = fit.likelihood.make_target(std::move(experiments), fit.preparation.solver, fit.session.interruptible());
+  Mode const& together = fit.preparation.modes.front();
+  auto const stop = [&] { return fit.session.interrupted(); };
+  Alone alone{refit(*target, fit.objective_kind, {together}, fit.seed, fit.extra, stop).front()};
+  if (stop() || !std::isfinite(alone.mode.log_density)) return alone;
+  std::vector<double> value(2);
+  LaneArray const both = to_lanes({theta_of(together), theta_of(alone.mode)});
+  target->log_likelihood(both, value, fit.extra);
+  LaneArray residuals(target->residual_count(), 1);
+  target->residuals(to_lanes({theta_of(alone.mode)}), residuals, fit.extra);
+  std::vector<double> series(static_cast<std::size_t>(residuals.rows()));
+  for (int r = 0; r < residuals.rows(); ++r) series[static_cast<std::size_t>(r)] = residuals(r, 0);
+  double const worth = samples_of_one(series);
+  alone.gain = (value[1] - value[0]) / worth;
+  alone.widening = std::sqrt(worth);
+  alone.found = std::isfinite(alone.gain);
+  return alone;
 }
 
 /// Two experiments and the estimates of one parameter from them.
@@ -48,21 +108,21 @@ struct Apart {
   double sds = 0;
 };
 
-/// For one parameter the two experiments that are farthest apart.
-Apart farthest(std::vector<Mode> const& alone, std::size_t coordinate) {
+/// For one parameter the two experiments that are farthest apart, on the unbounded scale.
+Apart farthest(std::vector<Alone> const& alone, std::size_t coordinate) {
   Apart most{.coordinate = coordinate};
   for (std::size_t a = 0; a < alone.size(); ++a)
     for (std::size_t b = a + 1; b < alone.size(); ++b) {
-      double const width = hypotenuse(alone[a].sd[coordinate], alone[b].sd[coordinate]);
-      double const sds = std::fabs(alone[a].declared[coordinate] - alone[b].declared[coordinate]) / width;
+      double const width = hypotenuse(sd_of(alone[a], coordinate), sd_of(alone[b], coordinate));
+      double const sds = std::fabs(alone[a].mode.theta[coordinate] - alone[b].mode.theta[coordinate]) / width;
       if (std::isfinite(sds) && sds > most.sds) most = {coordinate, a, b, sds};
     }
   return most;
 }
 
-std::string value_text(Mode const& mode, std::size_t coordinate, std::string const& unit) {
-  return fmt::format("{} ± {}{}", significant(mode.declared[coordinate], 5), significant(mode.sd[coordinate], 2),
-                     unit_after_number(unit));
+std::string value_text(Alone const& alone, std::size_t coordinate, std::string const& unit) {
+  return fmt::format("{} ± {}{}", significant(alone.mode.declared[coordinate], 5),
+                     significant(alone.widening * alone.mode.sd[coordinate], 2), unit_after_number(unit));
 }
 
 /// Of a member: where its draws lie, on the scale on which they are compared.
@@ -93,30 +153,46 @@ std::vector<MemberPlace> places_of(ParameterSpace const& space, std::vector<std:
   return places;
 }
 
-/// How many sds of the others, without it, a member lies off, where that is rarer than one in ten thousand fits; else nothing.
-std::optional<double> off_the_others(std::vector<MemberPlace> const& places, std::size_t which) {
-  std::vector<double> others;
-  for (std::size_t m = 0; m < places.size(); ++m)
-    if (m != which) others.push_back(places[m].mean);
-  auto const n = static_cast<double>(others.size());
-  double const spread = sample_variance(others);
-  double const t = std::fabs(places[which].mean - mean(others)) / std::sqrt(spread * (1 + 1 / n) + places[which].variance);
-  double const freedom = n - 1;
-  if (!std::isfinite(t) || !(spread > 0)) return std::nullopt;
-  double const chance = boost::math::ibeta(freedom / 2, 0.5, freedom / (freedom + t * t));
-  if (chance * static_cast<double>(places.size()) > rare) return std::nullopt;
-  return std::fabs(places[which].mean - mean(others)) / std::sqrt(spread);
+/// The members that lie farthest from the median, by falling distance.
+std::vector<std::size_t> by_distance(std::vector<MemberPlace> const& places) {
+  std::vector<double> means;
+  for (MemberPlace const& each : places) means.push_back(each.mean);
+  double const middle = upper_median(means);
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(
+      order, [&](std::size_t a, std::size_t b) { return std::fabs(places[a].mean - middle) > std::fabs(places[b].mean - middle); });
+  return order;
 }
 
-/// ", about 10 times their mean": a power of ten suggests a unit; empty where it is none.
-std::string power_of_ten(std::vector<MemberPlace> const& places, std::size_t which) {
+double binomial(std::size_t n, std::size_t k) {
+  double all = 1;
+  for (std::size_t i = 0; i < k; ++i) all *= static_cast<double>(n - i) / static_cast<double>(i + 1);
+  return all;
+}
+
+/// The chance that the nearest of the first `out` members of `order` lies as far from those that remain, of all choices of so many.
+/// Posterior means of others are drawn together by their population; their variances make up for it.
+double chance_of(std::vector<MemberPlace> const& places, std::vector<std::size_t> const& order, std::size_t out) {
+  std::vector<double> others;
+  double unsure = 0;
+  for (std::size_t k = out; k < order.size(); ++k) others.push_back(places[order[k]].mean), unsure += places[order[k]].variance;
+  auto const n = static_cast<double>(others.size());
+  double const spread = sample_variance(others) + unsure / n;
+  MemberPlace const& nearest = places[order[out - 1]];
+  double const t = std::fabs(nearest.mean - mean(others)) / std::sqrt(spread * (1 + 1 / n) + nearest.variance);
+  if (!std::isfinite(t)) return 1;
+  return boost::math::ibeta((n - 1) / 2, 0.5, (n - 1) / (n - 1 + t * t)) * binomial(order.size(), out);
+}
+
+/// The power of ten that a member is of the mean of the others, which suggests a unit; 1 where it is none.
+double power_of_ten(std::vector<MemberPlace> const& places, std::vector<std::size_t> const& order, std::size_t out) {
   double sum = 0;
-  for (std::size_t m = 0; m < places.size(); ++m) sum += m == which ? 0 : places[m].declared;
-  double const ratio = places[which].declared * static_cast<double>(places.size() - 1) / sum;
-  if (!(ratio > 0)) return "";
+  for (std::size_t k = out; k < order.size(); ++k) sum += places[order[k]].declared;
+  double const ratio = places[order.front()].declared * static_cast<double>(order.size() - out) / sum;
+  if (!(ratio > 0)) return 1;
   double const decades = elementary::log(ratio) / elementary::log(10.0), power = std::round(decades);
-  if (power == 0 || std::fabs(decades - power) > 0.1) return "";
-  return fmt::format(", about {} times their mean", shortest(std::pow(10.0, power)));
+  return std::fabs(decades - power) > 0.1 ? 1 : std::pow(10.0, power);
 }
 
 }  // namespace
@@ -124,6 +200,7 @@ std::string power_of_ten(std::vector<MemberPlace> const& places, std::size_t whi
 std::string without_shared_parameters(FinishedFit const& fit) {
   if (fit.data.size() < 2) return "there is one experiment";
   if (fit.data.size() > most_experiments) return fmt::format("there are more than {} experiments", most_experiments);
+  if (!fit.likelihood.space().members().empty()) return "the experiments have a population";
   if (shared_coordinates(fit.likelihood.space()).empty()) return "no parameter is shared by the experiments";
   if (fit.objective_kind == ObjectiveKind::likelihood) return "the likelihood of one experiment need not have a maximum";
   if (!fit.likelihood.model().processes.empty()) return "the model has a Gaussian process";
@@ -134,23 +211,16 @@ std::string without_shared_parameters(FinishedFit const& fit) {
 
 Findings check_shared_parameters(FinishedFit& fit) {
   ParameterSpace const& space = fit.likelihood.space();
-  Mode const& together = fit.preparation.modes.front();
   std::vector<Experiment> const experiments = experiments_of(fit.data);
-  std::vector<Mode> alone;
+  std::vector<Alone> alone;
   double gain = 0;
-  for (std::size_t e = 0; e < experiments.size() && !fit.session.interrupted(); ++e) {
-    std::vector<Experiment> one = experiments;
-    for (std::size_t k = 0; k < one.size(); ++k)
-      if (k != e) one[k].scored.assign(one[k].scored.size(), 0);
-    auto const target = fit.likelihood.make_target(std::move(one), fit.preparation.solver, fit.session.interruptible());
-    std::vector<double> gains;
-    alone.push_back(refit(*target, fit.objective_kind, {together}, fit.seed, fit.extra, {}, &gains).front());
-    if (!std::isfinite(alone.back().log_density)) return {};
-    gain += gains.front();
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    alone.push_back(fitted_alone(fit, experiments, e));
+    if (!alone.back().found) return {};
+    gain += alone.back().gain;
   }
   std::vector<std::size_t> const shared = shared_coordinates(space);
-  double const by_chance = static_cast<double>(shared.size() * (experiments.size() - 1));
-  if (alone.size() < experiments.size() || gain < least_gain + by_chance) return {};
+  if (gain < least_gain + static_cast<double>(shared.size() * (experiments.size() - 1))) return {};
   std::vector<Apart> apart;
   for (std::size_t const c : shared)
     if (Apart const most = farthest(alone, c); most.sds > far_apart) apart.push_back(most);
@@ -184,26 +254,31 @@ Findings check_members(ParameterSpace const& space, Draws const& draws) {
   for (auto const& [parameter, members] : parameters) {
     if (members.size() < least_members || draws.total() < 2) continue;
     std::vector<MemberPlace> const places = places_of(space, members, draws);
-    std::size_t worst = 0;
-    double most = 0;
-    for (std::size_t m = 0; m < places.size(); ++m)
-      if (auto const sds = off_the_others(places, m); sds && *sds > most) worst = m, most = *sds;
-    if (most == 0) continue;
+    std::vector<std::size_t> const order = by_distance(places);
+    // Two that are off alike hide each other.
+    std::size_t out = 0;
+    for (std::size_t k = 1; k <= std::max<std::size_t>(1, members.size() / 4) && out == 0; ++k)
+      if (chance_of(places, order, k) < (power_of_ten(places, order, k) == 1 ? rare : rare_power)) out = k;
+    if (out == 0) continue;
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t m = 0; m < places.size(); ++m)
-      if (m != worst) low = std::min(low, places[m].declared), high = std::max(high, places[m].declared);
+    for (std::size_t k = out; k < order.size(); ++k)
+      low = std::min(low, places[order[k]].declared), high = std::max(high, places[order[k]].declared);
+    std::vector<std::string> names, where, values;
+    for (std::size_t k = 0; k < out; ++k) {
+      names.push_back(space.infos()[members[order[k]]].name);
+      where.push_back(places[order[k]].experiment);
+      values.push_back(significant(places[order[k]].declared, 4));
+    }
     std::string const& name = space.model().parameters[static_cast<std::size_t>(parameter)].name;
-    std::string const unit = unit_after_number(space.infos()[members[worst]].unit);
+    std::string const unit = unit_after_number(space.infos()[members.front()].unit);
+    double const power = power_of_ten(places, order, out);
     findings.push_back(
-        {FindingCode::member_far_off,
-         Severity::warning,
-         {space.infos()[members[worst]].name, places[worst].experiment},
-         fmt::format("`{}` of {} is {}{}, far from those of the other experiments, {} to {}{}{}: it widens the population", name,
-                     places[worst].experiment, significant(places[worst].declared, 4), unit, significant(low, 4),
-                     significant(high, 4), unit, power_of_ten(places, worst)),
-         fmt::format(
-             "check the units, columns and set-up of {}; if its `{}` does differ, fit it without this experiment and compare",
-             places[worst].experiment, name)});
+        {FindingCode::member_far_off, Severity::warning, std::move(names),
+         fmt::format("`{}` of {} is {}{}, far from those of the other experiments, {} to {}{}{}: the population is wider for it",
+                     name, listed(where), listed(values), unit, significant(low, 4), significant(high, 4), unit,
+                     power == 1 ? "" : fmt::format(", about {} times their mean", shortest(power))),
+         fmt::format("check the units, columns and set-up of {}; if its `{}` does differ, fit the others without it and compare",
+                     listed(where), name)});
   }
   return findings;
 }

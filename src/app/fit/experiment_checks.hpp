@@ -11,12 +11,12 @@ std::string without_shared_parameters(FinishedFit const& fit);
 
 /// The mode of the fit is followed to the target of each experiment alone, under the same prior. Where estimates of a shared
 /// parameter lie more than six of their sds apart, and all experiments alone are clearly better described than together, they
-/// disagree: a parameter that is not the same in all, a clock, a unit or a sensor that is another. The most distant parameter is
-/// named first.
+/// disagree: a parameter that is not the same in all, a clock, a unit or a sensor that is another. Sds and likelihoods count
+/// residuals that are not white as the independent ones that they are worth. The most distant parameter is named first.
 Findings check_shared_parameters(FinishedFit& fit);
 
-/// A member that no other member resembles, by its draws against those of the others, without it: one that is far off widens the
-/// population until it looks usual there. At least five members; by the tail of Student's t distribution.
+/// Members that the others do not resemble, up to a quarter of them, by draws of theirs against those of the others: such members
+/// widen the population until they look usual in it. At least five members; by the tail of Student's t distribution.
 Findings check_members(ParameterSpace const& space, Draws const& draws);
 
 }  // namespace sysid

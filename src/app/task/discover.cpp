@@ -102,7 +102,8 @@ class Discover {
     }
     CheckedDictionary noisy = dictionary_;
     noisy.numbers = numbers();
-    InnerSearch const search = search_inner(noisy, records_, method, most_inner_modes);
+    bool const final_values = !what_.refit || dictionary_.numbers.discrete;
+    InnerSearch const search = search_inner(noisy, records_, method, most_inner_modes, final_values);
     if (search.interrupted) throw Interrupted();
     for (InnerSearch::Mode const& mode : search.modes) attempts.push_back(attempt(mode.values, method));
     return attempts;

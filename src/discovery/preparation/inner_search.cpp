@@ -10,6 +10,8 @@ namespace {
 
 constexpr int prior_draws = 1023;
 constexpr double finest = 1.0 / 512;  // of a prior's probability: a fit by simulation goes on from there
+constexpr double final_step = 1.0 / (1 << 20);
+constexpr std::size_t most_refined = 3;
 constexpr double far_behind = 20;
 constexpr std::size_t most_climbs = 16;
 
@@ -25,14 +27,19 @@ class InnerSearcher {
     for (InnerParameter const& each : dictionary.inner) draws_.push_back(sorted_draws(each, prior_draws));
   }
 
-  InnerSearch run(int most) {
+  InnerSearch run(int most, bool final_values) {
     std::vector<double> const grid = evaluate_grid();
     std::vector<std::size_t> tops;
     for (std::size_t i = 0; i < grid.size(); ++i)
       if (is_top(grid, i)) tops.push_back(i);
     std::stable_sort(tops.begin(), tops.end(), [&](std::size_t a, std::size_t b) { return grid[a] > grid[b]; });
     if (tops.size() > most_climbs) tops.resize(most_climbs);
-    for (std::size_t const top : tops) climb(place(top), grid[top]);
+    for (std::size_t const top : tops) climbed_.push_back(climb({place(top), grid[top]}, 0.5 / points_, finest));
+    std::ranges::stable_sort(climbed_, [](Climb const& a, Climb const& b) { return a.log_evidence > b.log_evidence; });
+    for (std::size_t k = 0; final_values && k < std::min(climbed_.size(), most_refined); ++k)
+      if (climbed_[k].log_evidence > climbed_.front().log_evidence - far_behind)
+        climbed_[k] = climb(climbed_[k], finest / 2, final_step);
+    for (Climb const& each : climbed_) add_mode(each);
     if (out_.modes.empty()) out_.modes.push_back({values(Place(size(), 0.5)), -std::numeric_limits<double>::infinity()});
     std::stable_sort(out_.modes.begin(), out_.modes.end(),
                      [](auto const& a, auto const& b) { return a.log_evidence > b.log_evidence; });
@@ -71,8 +78,14 @@ class InnerSearcher {
     return true;
   }
 
-  void climb(Place at, double best) {
-    for (double step = 0.5 / points_; step >= finest && !out_.interrupted;) {
+  struct Climb {
+    Place at;
+    double log_evidence;
+  };
+
+  Climb climb(Climb from, double step, double last) {
+    auto& [at, best] = from;
+    while (step >= last && !out_.interrupted) {
       Place const before = at;
       if (!explore(at, best, step)) {
         step /= 2;
@@ -88,9 +101,13 @@ class InnerSearcher {
         if (better) at = ahead, best = found;
       }
     }
-    std::vector<double> const found = values(at);
-    if (std::none_of(out_.modes.begin(), out_.modes.end(), [&](auto const& each) { return each.values == found; }))
-      out_.modes.push_back({found, best});
+    return from;
+  }
+
+  void add_mode(Climb const& found) {
+    std::vector<double> const at = values(found.at);
+    if (std::none_of(out_.modes.begin(), out_.modes.end(), [&](auto const& each) { return each.values == at; }))
+      out_.modes.push_back({at, found.log_evidence});
   }
 
   /// A step along each parameter to where it is better. Whether there was one.
@@ -141,14 +158,15 @@ class InnerSearcher {
   regression::Method const& method_;
   int points_;
   std::vector<std::vector<double>> draws_;  // [inner], sorted
+  std::vector<Climb> climbed_;
   InnerSearch out_;
 };
 
 }  // namespace
 
 InnerSearch search_inner(CheckedDictionary const& dictionary, std::span<Experiment const> experiments,
-                         regression::Method const& method, int most) {
-  return InnerSearcher(dictionary, experiments, method).run(most);
+                         regression::Method const& method, int most, bool final_values) {
+  return InnerSearcher(dictionary, experiments, method).run(most, final_values);
 }
 
 }  // namespace sysid

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -69,12 +70,15 @@ double rounding_sd(std::span<double const> samples) {
 }
 
 bool are_levels(std::span<double const> samples) {
-  constexpr std::size_t few = 32;
+  constexpr std::size_t switched = 4, few = 32;
   std::set<double> values;
   for (double const each : samples)
     if (std::isfinite(each) && values.size() <= few) values.insert(each);
-  if (values.size() <= few) return true;
+  if (values.size() <= switched) return true;
   double const unit = std::sqrt(12.0) * rounding_sd(samples);
+  int neighbours = 0;
+  for (auto each = values.begin(); std::next(each) != values.end(); ++each) neighbours += *std::next(each) - *each < 1.5 * unit;
+  if (values.size() <= few && 4 * neighbours <= static_cast<int>(values.size())) return true;
   int stays = 0, moves = 0, jumps = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
     double const change = std::fabs(samples[i] - samples[i - 1]);

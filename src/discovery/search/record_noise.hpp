@@ -12,9 +12,9 @@ std::vector<double> rounding_sds(std::span<double const> samples);
 /// The root mean square of these, over samples that are neither 0 nor missing.
 double rounding_sd(std::span<double const> samples);
 
-/// Whether samples are levels that were set, as of a switch, so that the digits they lack are zeros: of at most 32 values, or of
-/// values that mostly stay for several samples and then change by more than the unit of the last place. What was measured and
-/// rounded wanders.
+/// Whether samples are levels that were set, as of a switch, so that the digits they lack are zeros: of at most four values, of at
+/// most 32 that are seldom neighbours in the last place, or of values that mostly stay for several samples and then change by more
+/// than its unit. What was measured and rounded wanders from one value to its neighbours.
 bool are_levels(std::span<double const> samples);
 
 /// Noise of a channel whose sd is in proportion to sqrt(signal^2 + offset^2).

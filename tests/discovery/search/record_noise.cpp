@@ -49,6 +49,13 @@ TEST_CASE("an input of set levels has no rounding error, one that was measured a
     measured.push_back(std::round(100 * stream.normal()) / 100);
     slow.push_back(std::round(100 * std::sin(0.01 * i)) / 100);
   }
+  std::vector<double> coarse, spread;
+  for (int i = 0; i < 400; ++i) {
+    coarse.push_back(std::round(9 * std::sin(0.3 * i)) / 10);  // 19 values, a measured sine
+    spread.push_back(std::round(4 * stream.normal()) * 2.5);
+  }
+  CHECK_FALSE(are_levels(coarse));
+  CHECK(are_levels(spread));
   CHECK(are_levels(switched));
   CHECK(are_levels(stairs));
   CHECK_FALSE(are_levels(measured));
