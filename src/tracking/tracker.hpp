@@ -100,7 +100,8 @@ class Tracker {
   int rows_ = 0;                               // taken so far
   int settling_ = 0;                           // rows left
   int left_out_row_ = 0;                       // the row of the file that has samples left out, as row_.left_out says; 0: none yet
-  int left_out_in_a_row_ = 0;                  // rows before the next one
+  std::vector<int> left_out_in_a_row_;         // per channel, of its samples before the next one
+  int block_ = 32;                             // rows that are simulated at once
   std::vector<std::pair<int, double>> times_;  // of the rows that a jump may have come after: row of the file, time
   TrackedRow row_;
   std::vector<double> scratch_;

@@ -270,11 +270,13 @@ TEST_CASE("products, quotients, powers and roots of quantities count in SI, what
 
 TEST_CASE("a channel without a unit, of a product, has that of the size of its noise, where this is a name") {
   std::string const text =
-      "input S [mmol/l], e [mmol/s], n [mol^2/s^2], t0 [s]\nparameter V [mmol/s] ~ log_uniform(0.01, 100)\n"
+      "input S [mmol/l], e [mmol/s], n [mol^2/s^2], p [percent]\nparameter V [mmol/s] ~ log_uniform(0.01, 100)\n"
       "parameter K [mmol/l] ~ log_uniform(0.01, 100)\nobserve v ~ ";
   auto const channel = [&](std::string const& noise) { return model_of(text + noise).channels.at(0); };
   CHECK(channel("normal(V*S/(K + S), sd = e)").unit_text() == "mmol/s");
   CHECK(channel("normal(V*S/(K + S), sd = e)").from_si(7) == near(7000));
+  CHECK(channel("student_t(V*S/(K + S), 4, scale = e)").unit_text() == "mmol/s");
+  CHECK(channel("normal(S/K, sd = p)").unit_text() != "percent");
   // Of another dimension, or computed, it says nothing of readings.
   CHECK(channel("normal(V*S/(K + S), variance = n)").from_si(7) == near(7));
   CHECK(channel("normal(V*S/(K + S), sd = 2*e)").from_si(7) == near(7));

@@ -193,19 +193,22 @@ std::string model_text(StoredSummary const& result) {
 /// A model, how its likelihood reads the record, and the inputs that it is given: fits that agree in it are of one and the same
 /// model.
 struct Identity {
-  std::string text, start, prediction_rule, inputs;
+  std::string text, start, prediction_rule, files, inputs;
 
   friend bool operator==(Identity const&, Identity const&) = default;
-  std::string whole() const { return json({text, start, prediction_rule, inputs}).dump(); }
+  std::string whole() const { return json({text, start, prediction_rule, files, inputs}).dump(); }
 };
 
 Identity identity(StoredSummary const& result) {
-  std::vector<std::string> records;  // in any order
-  for (json const& data : result.summary.at("data"))
-    records.push_back(data.value("sha256", "") + " " + data.value("inputs_sha256", ""));
-  std::sort(records.begin(), records.end());
+  std::vector<std::string> files, inputs;  // in any order
+  for (json const& data : result.summary.at("data")) {
+    files.push_back(data.value("sha256", ""));
+    inputs.push_back(data.value("inputs_sha256", ""));
+  }
+  std::sort(files.begin(), files.end());
+  std::sort(inputs.begin(), inputs.end());
   return {model_text(result), result.summary.value("settings", json::object()).value("start_state", ""),
-          result.summary.value("prediction_rule", ""), json(records).dump()};
+          result.summary.value("prediction_rule", ""), json(files).dump(), json(inputs).dump()};
 }
 
 /// In what they differ.
@@ -216,8 +219,8 @@ std::string difference_of(std::vector<Identity> const& identities) {
   };
   std::vector<std::string> parts;
   for (Part const& part : {Part{&Identity::text, "the text of the model"}, Part{&Identity::start, "the start"},
-                           Part{&Identity::prediction_rule, "the prediction rule"},
-                           Part{&Identity::inputs, "the inputs or the rule between their samples"}})
+                           Part{&Identity::prediction_rule, "the prediction rule"}, Part{&Identity::files, "the data files"},
+                           Part{&Identity::inputs, "the inputs, constants or the rule between samples"}})
     if (std::ranges::any_of(identities, [&](Identity const& each) { return each.*part.member != identities.front().*part.member; }))
       parts.emplace_back(part.words);
   return listed(parts);

@@ -110,9 +110,10 @@ ReportTable innovation_table(GatheredTrack const& gathered) {
                              : "smaller than expected"}}};
 }
 
-/// "d of row 450 is 101 expected sds off its prediction, and was left out".
+/// "3 samples far from the predictions were left out: d at row 450 (101 expected sds off), ...".
 Finding far_off_samples(GatheredTrack const& gathered) {
   constexpr std::size_t most_told = 3;
+  constexpr double many = 0.01;
   std::vector<std::string> told, names;
   for (GatheredTrack::LeftOut const& each : gathered.left_out) {
     if (told.size() < most_told)
@@ -121,11 +122,15 @@ Finding far_off_samples(GatheredTrack const& gathered) {
     if (std::find(names.begin(), names.end(), each.channel) == names.end()) names.push_back(each.channel);
   }
   auto const more = gathered.left_out_samples - static_cast<std::int64_t>(told.size());
-  return {FindingCode::samples_far_off, Severity::warning, std::move(names),
-          fmt::format("{} far from the predictions {} left out: {}{}", counted(gathered.left_out_samples, "sample"),
-                      gathered.left_out_samples == 1 ? "was" : "were", fmt::join(told, ", "),
-                      more > 0 ? fmt::format(" and {} more", more) : ""),
-          "check the sensor at these rows; if such samples are usual, nothing else is to be done"};
+  return {
+      FindingCode::samples_far_off, Severity::warning, std::move(names),
+      fmt::format("{} far from the predictions {} left out: {}{}", counted(gathered.left_out_samples, "sample"),
+                  gathered.left_out_samples == 1 ? "was" : "were", fmt::join(told, ", "),
+                  more > 0 ? fmt::format(" and {} more", more) : ""),
+      static_cast<double>(gathered.left_out_samples) > many * static_cast<double>(gathered.samples)
+          ? "so many are no single outliers: check the sensor and the units of the record, and whether the model and its noise are "
+            "those of these rows"
+          : "check the sensor at these rows"};
 }
 
 void add_findings(GatheredTrack const& gathered, Report& report) {
@@ -145,7 +150,10 @@ void add_findings(GatheredTrack const& gathered, Report& report) {
          fmt::format("{}{}", fmt::join(told, "; "), changes > most_told ? fmt::format("; and {} more", changes - most_told) : ""),
          "look for the cause at these rows; to predict later rows, fit the rows after the last change and use that fit"});
   }
-  if (gathered.left_out_samples > 0) report.findings.push_back(far_off_samples(gathered));
+  if (gathered.left_out_samples > 0) {
+    report.verdict += fmt::format("; {} left out", counted(gathered.left_out_samples, "sample"));
+    report.findings.push_back(far_off_samples(gathered));
+  }
   if (!size.odd()) return;
   report.verdict += fmt::format("; the innovations are {} than expected", size.ratio > 1 ? "larger" : "smaller");
   report.findings.push_back(

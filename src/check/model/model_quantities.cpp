@@ -131,10 +131,12 @@ std::optional<Unit> ModelChecker::location_unit(ast::Call const& noise, Scope& q
   auto const value = quiet.expression(*location);
   if (!value || value->kind != Typed::Kind::known) return std::nullopt;
   Unit unit = with_own_unit(*value).unit;
-  // A product has no unit that the user wrote. The size of the noise is stated in that of the readings.
+  // A product has no unit that the user wrote. The size of the noise is stated in that of the readings; not so of shares, which may
+  // be in percent of something else, and of temperatures, whose differences have units of their own.
+  bool const by_size = unit.text.empty() && unit.dimension != Dimension{} && unit.dimension != unit_atom("K")->dimension;
   for (ast::Argument const& argument : noise.arguments) {
-    if (!unit.text.empty()) break;
-    if (&argument.value == location || !std::holds_alternative<ast::Reference>(argument.value.node)) continue;
+    bool const is_size = argument.name && (argument.name->text == "sd" || argument.name->text == "scale");
+    if (!by_size || !is_size || !std::holds_alternative<ast::Reference>(argument.value.node)) continue;
     auto const size = quiet.expression(argument.value);
     if (size && size->kind == Typed::Kind::known && !size->unit.text.empty() && size->unit.dimension == unit.dimension)
       return size->unit;

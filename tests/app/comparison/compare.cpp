@@ -164,10 +164,10 @@ b_self = fit still to self.train with map, seed = 1
   CHECK(*found.fits[0].probability + *found.fits[1].probability == doctest::Approx(1));
   CHECK((*found.fits[0].probability > *found.fits[1].probability) == (*found.fits[0].log_evidence > *found.fits[1].log_evidence));
   REQUIRE(found.notes.size() == 1);
-  CHECK(found.notes[0] == "the fits of `still` differ in the inputs or the rule between their samples: a_input; b_self");
+  CHECK(found.notes[0] == "the fits of `still` differ in the inputs, constants or the rule between samples: a_input; b_self");
   auto const page = run.folder.path() / "page.html";
   report_results(run.folder.path() / "results", page, false);
-  CHECK(read_file(page).find("differ in the inputs or the rule between their samples: a_input; b_self") != std::string::npos);
+  CHECK(read_file(page).find("differ in the inputs, constants or the rule between samples: a_input; b_self") != std::string::npos);
 }
 
 TEST_CASE("fits to different samples are refused, also where only the models' own lags make the difference") {

@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> benches(double unit) {
   return files;
 }
 
-std::vector<json> found(json const& summary, std::string const& code) {
+std::vector<json> findings_named(json const& summary, std::string const& code) {
   std::vector<json> all;
   for (json const& each : summary.at("findings"))
     if (each.at("code") == code) all.push_back(each);
@@ -72,7 +72,7 @@ std::vector<json> found(json const& summary, std::string const& code) {
 TEST_CASE("a clock that runs at another rate in one of two experiments is a parameter about which they disagree") {
   auto const disagreements = [](double clock) {
     CaseRun const run(swings, {{"one.csv", swing(1, 1)}, {"two.csv", swing(clock, 2)}});
-    return found(run.summary("both"), "experiments_disagree");
+    return findings_named(run.summary("both"), "experiments_disagree");
   };
   std::vector<json> const said = disagreements(1 / 1.02);
   REQUIRE(said.size() == 1);
@@ -89,7 +89,7 @@ TEST_CASE("a disturbance does not hide that experiments disagree") {
   for (double const clock : {1 / 1.02, 1.0}) {
     CAPTURE(clock);
     CaseRun const run(text, {{"one.csv", swing(1, 1)}, {"two.csv", swing(clock, 2)}});
-    CHECK(found(run.summary("both"), "experiments_disagree").size() == (clock == 1 ? 0 : 1));
+    CHECK(findings_named(run.summary("both"), "experiments_disagree").size() == (clock == 1 ? 0 : 1));
   }
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("a member in another unit is far from the other members, although it h
   for (double const unit : {0.1, 1.0}) {
     CAPTURE(unit);
     CaseRun const run(springs, benches(unit));
-    std::vector<json> const said = found(run.summary("b"), "member_far_off");
+    std::vector<json> const said = findings_named(run.summary("b"), "member_far_off");
     REQUIRE(said.size() == (unit == 1 ? 0 : 1));
     if (said.empty()) continue;
     CHECK(said.front().at("names").at(0) == "k[e7]");
