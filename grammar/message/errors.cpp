@@ -53,6 +53,11 @@ Diagnostic comma_missing(Token const& before, Token const& behind) {
                   fmt::format("write a comma before it: `{}, {}`", before.text, behind.text));
 }
 
+Diagnostic two_tasks_on_a_line(Token const& behind) {
+  return expected(behind.span, "the end of the task", fmt::format("`{}`", behind.text),
+                  fmt::format("begin a new line before `{}`", behind.text));
+}
+
 Diagnostic unclosed(Token const& opener, Span noticed) {
   Diagnostic out = error("E1102", noticed, fmt::format("the {} opened with `{}` is not closed", noun(opener.text), opener.text),
                          fmt::format("close it with `{}`", closer(opener.text)));

@@ -15,6 +15,8 @@ Diagnostic expected(Span where, std::string_view wanted, std::string_view found,
 Diagnostic semicolon_in_brackets(Span where);
 /// E1101: `with mh(samples = 100) seed = 1`, `normal(y sd = 1)`.
 Diagnostic comma_missing(Token const& before, Token const& behind);
+/// E1101. behind: the name of the second one.
+Diagnostic two_tasks_on_a_line(Token const& behind);
 /// E1102: a bracket never closed; `noticed` is where it had to be closed at the latest.
 Diagnostic unclosed(Token const& opener, Span noticed);
 /// E1103

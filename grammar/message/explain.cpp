@@ -309,6 +309,7 @@ class Failure {
       if (!equation || declares || foreign || !nearest(word.text, words::list(words::model_statements)).empty())
         return unknown_model_statement(word);
     }
+    if (begins_task()) return errors::two_tasks_on_a_line(found());
     if (names_argument()) {
       Diagnostic missing = errors::comma_missing(word, found());
       std::string const settings = previous(2) != nullptr && previous(2)->is("with") ? hint(gap()) : std::string();
@@ -322,6 +323,18 @@ class Failure {
     bool const no_factor = word.kind == TokenKind::number && is_word(found()) && !here.declares(found().text);
     if (no_factor && !instead.empty()) missing.help = instead;
     return missing;
+  }
+
+  /// `seed = 1 forecast = predict ...`: behind the options of a task.
+  bool begins_task() const {
+    if (found_ + 2 >= tokens_.size() || !is_word(found()) || !tokens_[found_ + 1].is("=")) return false;
+    int depth = 0;
+    bool options = false;
+    for (std::size_t i = first_; i < found_; ++i) {
+      depth += tokens_[i].is("(") ? 1 : tokens_[i].is(")") ? -1 : 0;
+      options = options || tokens_[i].is("with");
+    }
+    return depth == 0 && options && words::contains(words::verbs, tokens_[found_ + 2].text);
   }
 
   /// `mh(samples = 100) seed = 1`, `normal(y sd = 1)`: named things in a list, which begins in brackets or behind `with`.

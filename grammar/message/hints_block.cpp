@@ -119,6 +119,11 @@ std::string in_column(Gap const& gap) {
   if (std::string help = in_name_of_column(gap); !help.empty()) return help;
   constexpr std::array<std::string_view, 4> operators{"*", "/", "+", "-"};
   bool const operates = words::contains(operators, gap.found->text), behind_unit = operates && gap.before()->is("]");
+  bool const counted = gap.wanted == wanted::column && is_number(gap.found) &&
+                       (gap.next() == nullptr || gap.next()->is("[") || gap.next()->is("hold"));
+  if (counted)
+    return fmt::format("a column is named, not counted: write its name from the header of the file, `{} {} = NAME{}{}`", word, name,
+                       gap.next() == nullptr ? "" : " ", gap.text(gap.at + 1, gap.statement.size()));
   bool const computed = gap.wanted == wanted::column ? !gap.found->is("[") : operates && (gap.at == equals + 2 || behind_unit);
   if (computed) {
     std::string_view column = behind_unit ? gap.text(equals + 1, gap.at) : std::string_view();

@@ -1,4 +1,6 @@
 // calibrate, crosscheck: whether the posteriors of a file's fits are right for records that its model makes.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "app/calibration/calibrate.hpp"
@@ -77,7 +79,8 @@ Work declare_crosscheck(CLI::App& verb) {
   for (BackendRow const& each : backends()) names.emplace_back(each.name);
   verb.add_option("--against", options->crosscheck.against, "the other back end (default: nuts for a fit by mh, else mh)")
       ->type_name("NAME")
-      ->check(CLI::IsMember(names));
+      ->check([names](std::string const& name) { return refuse_other_name(name, names); },
+              fmt::format("{{{}}}", fmt::join(names, ",")));
   return [options](Messages const& messages) {
     return with_session(messages, *options, [&](Session& session) { return crosscheck(session, options->crosscheck); });
   };

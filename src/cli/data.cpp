@@ -1,9 +1,13 @@
 // data: a look at a record before there is a model.
+#include <fmt/format.h>
 #include <unistd.h>
+
+#include <filesystem>
 
 #include "app/record/record_text.hpp"
 #include "cli/command.hpp"
 #include "core/system/files.hpp"
+#include "core/text/words.hpp"
 #include "core/text/wrapped.hpp"
 #include "report/figure/gnuplot.hpp"
 
@@ -15,7 +19,22 @@ struct DataOptions {
   bool json = false;
 };
 
+/// A file of models in place of a record: the records that it names are meant.
+ExitCode model_in_place_of_record(Messages const& messages, std::string const& path) {
+  Diagnostics ignored;
+  std::vector<std::string> commands;
+  Source source = read_source(path);
+  if (auto const file = load(source, ignored))
+    for (DataBlock const& block : file->data)
+      commands.push_back(fmt::format("sysid data {}", (std::filesystem::path(path).parent_path() / block.path).string()));
+  messages.complain(fmt::format("`{}` is a file of models, not a record", path),
+                    commands.empty() ? fmt::format("give a record, such as a CSV file; `sysid check {}` checks this file", path)
+                                     : fmt::format("describe the record that it reads: {}", quoted(commands, "or")));
+  return ExitCode::user_error;
+}
+
 ExitCode look(Messages const& messages, DataOptions const& options) {
+  if (std::filesystem::path(options.file).extension() == ".sysid") return model_in_place_of_record(messages, options.file);
   RecordLook const look = look_at_record(options.file);
   if (options.json)
     std::cout << record_json(look);

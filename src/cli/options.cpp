@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text/diagnostic.hpp"
+#include "core/text/words.hpp"
 #include "report/figure/figure_format.hpp"
 
 namespace sysid::cli {
@@ -43,6 +45,13 @@ std::string refuse_seed(std::string const& text) {
 }  // namespace
 
 std::string refuse_no_path(std::string const& path) { return path.empty() ? "the path is empty; `.` is the current folder" : ""; }
+
+std::string refuse_other_name(std::string const& text, std::vector<std::string> const& names) {
+  if (std::find(names.begin(), names.end(), text) != names.end()) return "";
+  std::vector<std::string> const near = nearest(text, names);
+  if (near.empty()) return fmt::format("`{}` is none of {}", text, quoted(names));
+  return fmt::format("`{}` is none of {}; the nearest is `{}`", text, quoted(names), near.front());
+}
 
 std::string refuse_no_duration(std::string const& text) {
   double seconds = 0;

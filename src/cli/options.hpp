@@ -23,6 +23,8 @@ void add_result_options(CLI::App& verb, ResultOptions& options);
 
 // Checks of values: why one is refused, or empty.
 std::string refuse_no_path(std::string const& path);
+/// Where `text` is none of `names`, with a near one.
+std::string refuse_other_name(std::string const& text, std::vector<std::string> const& names);
 std::string refuse_no_duration(std::string const& text);
 
 }  // namespace sysid::cli

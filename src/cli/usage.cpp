@@ -5,9 +5,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
+
+#include "core/text/words.hpp"
 
 namespace sysid::cli {
 namespace {
+
+constexpr std::size_t most_named = 3;  // commands in a message
 
 std::vector<std::string> verb_names(CLI::App const& app) {
   std::vector<std::string> names;
@@ -25,6 +30,28 @@ std::vector<std::string> option_names(CLI::App const& verb) {
   return names;
 }
 
+/// Other verbs with an option of this name.
+std::vector<std::string> verbs_with(CLI::App const& app, CLI::App const& but, std::string const& option) {
+  std::vector<std::string> names;
+  for (CLI::App const* verb : app.get_subcommands({}))
+    for (CLI::Option const* each : verb->get_options())
+      if (verb != &but && !each->get_group().empty() && each->check_name(option)) names.push_back("sysid " + verb->get_name());
+  return names;
+}
+
+/// The argument before these, if all of them joined by blanks are the path of something: a name that has blanks.
+std::string path_with_blanks(CLI::App const& verb, std::vector<std::string> const& unread) {
+  for (CLI::Option const* option : verb.get_options()) {
+    if (!option->get_positional() || option->results().empty()) continue;
+    std::string path = option->results().back();
+    for (std::string const& word : unread) {
+      path += " " + word;
+      if (std::error_code ignored; std::filesystem::exists(path, ignored)) return path;
+    }
+  }
+  return {};
+}
+
 /// CLI11's words in our manner.
 std::string reason(CLI::ParseError const& error) {
   std::string text = error.what();
@@ -36,7 +63,25 @@ std::string reason(CLI::ParseError const& error) {
   return text;
 }
 
+/// `sysid --seed 1 run FILE` and the like: an option that stands where a command should.
+ExitCode no_verb_but_option(Messages const& messages, CLI::App const& app, std::string const& word) {
+  std::vector<std::string> known;
+  for (CLI::App const* verb : app.get_subcommands({}))
+    for (std::string const& name : option_names(*verb))
+      if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+  bool const exact = std::find(known.begin(), known.end(), word) != known.end();
+  std::string const guess = exact ? std::string() : did_you_mean(word, known);
+  std::string const order = "the command comes first, then its file and its options: `sysid run FILE";
+  messages.complain(fmt::format("`{}` stands before a command{}", word, exact ? "" : ", and is no option of `sysid`"),
+                    exact           ? fmt::format("{} {}`", order, word)
+                    : guess.empty() ? order + "`"
+                                    : fmt::format("{} {}`", guess, order));
+  return ExitCode::usage;
+}
+
 ExitCode no_verb(Messages const& messages, CLI::App const& app) {
+  if (auto const words = app.remaining(); !words.empty() && words.front().starts_with("--"))
+    return no_verb_but_option(messages, app, words.front().substr(0, words.front().find('=')));
   for (std::string const& word : app.remaining()) {
     if (word.starts_with('-')) continue;
     std::string const guess = did_you_mean(word, verb_names(app));
@@ -62,7 +107,14 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
   }
   std::string const word = unread.front().substr(0, unread.front().find('='));
   if (!word.starts_with('-')) {
-    messages.complain(fmt::format("`sysid {}` takes no argument `{}`", verb.get_name(), word), see);
+    std::string const path = path_with_blanks(verb, unread);
+    messages.complain(fmt::format("`sysid {}` takes no argument `{}`", verb.get_name(), word),
+                      path.empty() ? see : fmt::format("write the name of a file with blanks in quotes: `\"{}\"`", path));
+    return ExitCode::usage;
+  }
+  if (std::vector<std::string> const others = verbs_with(app, verb, word); !others.empty() && others.size() <= most_named) {
+    messages.complain(fmt::format("`sysid {}` has no option `{}`", verb.get_name(), word),
+                      fmt::format("it is an option of {}", quoted(others)));
     return ExitCode::usage;
   }
   std::string const guess = did_you_mean(word, option_names(verb));

@@ -128,7 +128,7 @@ class Columns {
       time_unit_ = column.unit;
       note_unit(column, unit_atom("s"));
       // Rows that arrive one by one cannot be read with `stamp`.
-      if (whole && !request_.independent_rows) refuse_no_seconds(written, column);
+      if (whole && (!request_.independent_rows || request_.uses_times)) refuse_no_seconds(written, column);
     }
     auto const in_seconds = [&](std::vector<double>& time) {
       if (!file_.has_stamps()) to_si(time, column);
@@ -213,7 +213,9 @@ class Columns {
       throw UserError(data_errors::times_are_counts(file_.place(0, column.column), column.mention));
   }
   void refuse_counts_since_a_date(std::vector<double> const& written, ColumnRequest const& column) const {
-    SerialTime const* const counts = seems_serial(written, column.column);
+    std::vector<double> rising = written;
+    if (request_.independent_rows) std::sort(rising.begin(), rising.end());
+    SerialTime const* const counts = seems_serial(rising, column.column);
     if (counts == nullptr || (column.unit && column.unit->scale != 1)) return;
     bool const is_text = file_.row_count().has_value();
     // Seconds since 1970 are seconds; a text has digits of them that a number loses.

@@ -36,6 +36,7 @@ struct RecordRequest {
   std::optional<ColumnRequest> time;                   // in seconds unless it has a unit
   double step = 0;                                     // [s] > 0 when there is no time column; row 1 is then at time 0
   bool independent_rows = false;                       // no dynamics: times in any order, and row numbers where there are none
+  bool uses_times = true;                              // independent rows: whether the model reads their times
   std::vector<InputRequest> inputs;                    // in the order of the model's inputs
   std::vector<std::optional<ColumnRequest>> measured;  // in the order of its channels; nothing: not in this data
   std::string shown_path{};                            // what messages name in place of the path; empty: the path

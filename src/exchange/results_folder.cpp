@@ -46,7 +46,7 @@ ResultsFolder find_results(fs::path const& folder) {
   if (fs::is_regular_file(folder))
     throw refused(fmt::format("`{}` is a file, not a folder of results", folder.string()),
                   "run the file and give the folder of its results, or add --stan or --latex");
-  if (!fs::is_directory(folder)) throw IoError(fmt::format("there is no folder `{}`", folder.string()));
+  if (!fs::is_directory(folder)) throw no_results_folder(folder);
   fs::path const given = named(folder);
   if (fs::exists(given / "summary.json")) return one_task(given);
   ResultsFolder found;

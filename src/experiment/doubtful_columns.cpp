@@ -8,6 +8,7 @@
 
 #include "core/text/number.hpp"
 #include "data/table/reading_rules.hpp"
+#include "experiment/record_request.hpp"
 
 namespace sysid {
 
@@ -63,16 +64,10 @@ Findings find_other_units(ExperimentData const& data) {
 
 namespace {
 
-bool reads_time(Graph const& graph) {
-  for (NodeId id = 0; id < graph.size(); ++id)
-    if (graph[id].operation == Operation::leaf && graph[id].leaf_kind == LeafKind::time) return true;
-  return false;
-}
-
 /// What a rate in place of times does to the origin of the time, which is 0 then. first: s.
 std::string origin_words(double first, Model const& model) {
   if (first == 0) return "";
-  if (!reads_time(model.graph)) return " (the time then begins at 0)";
+  if (!reads_time(model)) return " (the time then begins at 0)";
   return fmt::format("; the time then begins at 0: add {} [s] to it where the model reads it", shortest(first));
 }
 

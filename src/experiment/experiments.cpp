@@ -171,6 +171,13 @@ std::string data_name(DataBlock const& block, int part) {
   return part < 0 ? block.name : block.name + "." + block.parts[static_cast<std::size_t>(part)].name;
 }
 
+bool reads_time(Model const& model) {
+  Graph const& graph = model.graph;
+  for (NodeId id = 0; id < graph.size(); ++id)
+    if (graph[id].operation == Operation::leaf && graph[id].leaf_kind == LeafKind::time) return true;
+  return false;
+}
+
 RecordRequest record_request(DataBlock const& block, Model const& model, std::filesystem::path const& folder) {
   RecordRequest request;
   request.path = (folder / block.path).string();
@@ -179,6 +186,7 @@ RecordRequest record_request(DataBlock const& block, Model const& model, std::fi
   request.rules = block.rules;
   request.step = block.step > 0 ? block.step : model.step.value_or(0);
   request.independent_rows = model.dynamics == Dynamics::none;
+  request.uses_times = reads_time(model);
   if (block.time) request.time = ColumnRequest{block.time->column, block.time->unit, std::nullopt, block.time->span};
   for (Quantity const& input : model.inputs) {
     auto const bound =

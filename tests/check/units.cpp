@@ -181,6 +181,13 @@ TEST_CASE("the help names what is missing") {
   CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter k3 [N/m^2] = 1\nparameter sigma [m] = 1\ninput x [N]\n"
                 "initial y = 0\n1 [N s/m]*y' + k*y + k3*y^3 = x\nobserve d ~ normal(y, sd = sigma)\n}\n")
             .help == "declare `k3` in [N/m^3], or divide this term by a length, such as `y` or `sigma`");
+  // In the names that the declaration is written with.
+  CHECK(said_of("model a {\nstate y [mm]\nparameter k [N/mm] = 1\nparameter k3 [N/mm^2] = 1\ninput x [N]\n"
+                "initial y = 0\n1 [N s/m]*y' + k*y + k3*y^3 = x\nobserve d ~ normal(y, sd = 1)\n}\n")
+            .help == "declare `k3` in [N/mm^3], or divide this term by a length, such as `y`");
+  // A measured number beside a coefficient is a quantity, 1/2 is none.
+  CHECK(with_equation("m*y'' + c*y' + k*y = x + 9.81*m").help == "a number as a factor has no unit: write `9.81 [m/s^2]`");
+  CHECK(with_equation("m*y'' + c*y' + k*y = x + 0.5*m").help == "make this a quantity in [N]");
   // A reciprocal coefficient takes the inverse factor; one inside a function or a sum is not a factor of the term.
   CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter h [m/N] = 1\ninput x [N]\n"
                 "initial y = 0\n1 [N s/m]*y' + k*y + y^2/h = x\nobserve d ~ normal(y, sd = 1)\n}\n")

@@ -25,6 +25,20 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
   refused("document springs", "sysid: error: there is no module springs\nhelp: `sysid list modules` lists them all\n");
   refused("export x.sysid -o y",
           "sysid: error: --output requires --stan\nhelp: `sysid export --help` lists its arguments and options\n");
+  refused("run x.sysid --with-disturbance",
+          "sysid: error: `sysid run` has no option `--with-disturbance`\nhelp: it is an option of `sysid fit`\n");
+  refused("--sed 1",
+          "sysid: error: `--sed` stands before a command, and is no option of `sysid`\n"
+          "help: did you mean `--seed`? the command comes first, then its file and its options: `sysid run FILE`\n");
+  refused("--seed 1",
+          "sysid: error: `--seed` stands before a command\n"
+          "help: the command comes first, then its file and its options: `sysid run FILE --seed`\n");
+  desk.save("my rig.sysid", "");
+  refused("run my rig.sysid",
+          "sysid: error: `sysid run` takes no argument `rig.sysid`\n"
+          "help: write the name of a file with blanks in quotes: `\"my rig.sysid\"`\n");
+  CHECK(desk.ask("crosscheck x.sysid --against mhh").text.find("`mhh` is none of") != std::string::npos);
+  CHECK(desk.ask("crosscheck x.sysid --against mhh").text.find("the nearest is `mh`") != std::string::npos);
   CHECK(desk.ask("--error-format json fit").text.starts_with("{\"file\":\"sysid\",\"severity\":\"error\",\"code\":\"\""));
 }
 
@@ -42,6 +56,29 @@ TEST_CASE("a file to write says that its folder is not there, and not that the d
   said = desk.ask("fit line.sysid -o line.sysid/results");
   CHECK(said.exit == 74);
   CHECK(said.text.ends_with("help: a part of the path is a file, not a folder: give another path\n"));
+}
+
+TEST_CASE("a model in place of a record, and a folder of results that is not there, are answered with what to give") {
+  LineDesk const desk;
+  Said said = desk.ask("data line.sysid");
+  CHECK(said.exit == 65);
+  CHECK(said.text ==
+        "sysid: error: `line.sysid` is a file of models, not a record\n"
+        "help: describe the record that it reads: `sysid data bench.csv`\n");
+  for (char const* const verb : {"report", "compare", "export"}) {
+    CAPTURE(verb);
+    said = desk.ask(std::string(verb) + " results");
+    CHECK(said.exit == 74);
+    CHECK(said.text.starts_with("sysid: error: there is no folder `results`\nhelp: run the tasks first, `sysid run FILE`"));
+  }
+  REQUIRE(desk.ask("fit line.sysid --quiet --no-figures").exit <= 1);
+  for (char const* const verb : {"report", "compare"}) {
+    CAPTURE(verb);
+    CHECK(desk.ask(std::string(verb) + " resuls").text ==
+          "sysid: error: there is no folder `resuls`\nhelp: did you mean `results`?\n");
+    CHECK(desk.ask(std::string(verb) + " results/posterio/").text.ends_with("help: did you mean `results/posterior`?\n"));
+    CHECK(desk.ask(std::string(verb) + " line.sysid").text.starts_with("sysid: error: `line.sysid` is a file, not a folder"));
+  }
 }
 
 TEST_CASE("results that are there are an error of the program, not of the text") {

@@ -364,6 +364,27 @@ TEST_CASE("a unit in the name of a column goes against another one of the data b
   CHECK(loaded(request(file.path(), {}, {"F [kN]"})).measured[0][1] == 2);
 }
 
+TEST_CASE("times of independent rows that are no seconds are refused where the model reads them") {
+  TemporaryFile const days("t,y\n46166.5000001157,1\n46166.5,2\n46166.5000002315,3\n"), counts("RECORD,y\n1,1\n2,2\n3,3\n");
+  for (bool const reads : {false, true}) {
+    CAPTURE(reads);
+    RecordRequest wanted = request(days.path(), {}, {"y"});
+    wanted.independent_rows = true;
+    wanted.uses_times = reads;
+    RecordRequest counted = request(counts.path(), {}, {"y"});
+    counted.time = column("RECORD");
+    counted.independent_rows = true;
+    counted.uses_times = reads;
+    if (reads) {
+      CHECK(errors(wanted).at(0).code == "E4029");
+      CHECK(errors(counted).at(0).code == "E4029");
+    } else {
+      CHECK(loaded(wanted).rows() == 3);
+      CHECK(loaded(counted).rows() == 3);
+    }
+  }
+}
+
 TEST_CASE("who states seconds means seconds, unless they would be older than the earth") {
   auto const file_of = [](double first, double step) {
     std::string text = "t,y\n";

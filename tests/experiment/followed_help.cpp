@@ -117,6 +117,24 @@ TEST_CASE("the rate of a record is that of its clock, not of its last digits") {
   CHECK(look_at_record(file.path()).time.unequal > 100);
 }
 
+TEST_CASE("durations in the column of times are read with the line that the message gives") {
+  TemporaryFile const file("t,y\n0.00 s,0.5\n0.01 s,1.5\n0.02 s,2.5\n");
+  Followed const asked = answer_to(file.path(), "");
+  CHECK(asked.code == "E4010");
+  CHECK(answer_to(file.path(), statement_in(asked.help, "read ")).record->time[2] == 0.02);
+  TemporaryFile const units("t,y\n0.00 s,0.5 mm\n0.01 s,1.5 mm\n0.02 s,2.5 mm\n");
+  Followed const first = answer_to(units.path(), "");
+  CHECK(statement_in(first.help, "read ") == "read stamp = duration");
+  CHECK(answer_to(units.path(), "read stamp = duration").help.find("`y [mm]`") != std::string::npos);
+}
+
+TEST_CASE("a file that ends within a line is read with the line that the message gives") {
+  TemporaryFile const file("t,x,y\n0,1,0.5\n1,1,1.5\n2,1,2.5\n3,1");
+  Followed const asked = answer_to(file.path(), "");
+  CHECK(asked.code == "E4005");
+  CHECK(answer_to(file.path(), statement_in(asked.help, "read ")).record->rows() == 3);
+}
+
 TEST_CASE("frames are no fraction of a second: nothing is proposed that would read them so") {
   TemporaryFile const file("t,y\n10:00:00:00,1\n10:00:00:01,2\n10:00:00:23,3\n10:00:01:00,4\n");
   Followed const asked = answer_to(file.path(), "");

@@ -69,7 +69,7 @@ StoredSummary read_summary(fs::path const& folder) {
 
 /// Those of one folder: its own, or of a whole run those of its tasks, by name.
 std::vector<StoredSummary> results_in(fs::path const& folder) {
-  if (!fs::is_directory(folder)) throw IoError(fmt::format("there is no folder `{}`", folder.string()));
+  if (!fs::is_directory(folder)) throw no_results_folder(folder);
   std::vector<StoredSummary> found;
   if (fs::exists(folder / "summary.json")) {
     found.push_back(read_summary(folder));

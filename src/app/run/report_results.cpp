@@ -50,7 +50,7 @@ struct StoredRun {
 
 /// Of a task's folder, or of a whole run's.
 StoredRun stored_run(fs::path const& folder) {
-  if (!fs::is_directory(folder)) throw IoError(fmt::format("there is no folder `{}`", folder.string()));
+  if (!fs::is_directory(folder)) throw no_results_folder(folder);
   StoredRun run;
   if (is_result(folder)) {
     run.tasks.push_back({folder, whole_result(folder)});

@@ -258,7 +258,7 @@ class FitForTracking {
 }  // namespace
 
 Task const& task_of_result(Session const& session, std::filesystem::path const& folder) {
-  if (!std::filesystem::is_directory(folder)) throw IoError(fmt::format("there is no folder `{}`", folder.string()));
+  if (!std::filesystem::is_directory(folder)) throw no_results_folder(folder);
   auto const summary = nlohmann::json::parse(read_summary(folder));
   std::string const name = interpreted(folder / "summary.json", [&] { return summary.at("task").get<std::string>(); });
   std::vector<std::string> fits;

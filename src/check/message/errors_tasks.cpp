@@ -10,6 +10,14 @@
 namespace sysid::errors {
 namespace {
 
+constexpr Synonym solver_synonyms[] = {
+    {"rk45", "dopri5"},     {"ode45", "dopri5"},   {"dopri", "dopri5"},  {"rkdp", "dopri5"},  {"dp5", "dopri5"},
+    {"tsit5", "dopri5"},    {"rkf45", "dopri5"},   {"dop853", "dopri5"}, {"rk23", "dopri5"},  {"ode23", "dopri5"},
+    {"vode", "cvode"},      {"bdf", "cvode"},      {"ode15s", "cvode"},  {"ode23s", "cvode"}, {"ode23t", "cvode"},
+    {"radau", "cvode"},     {"lsoda", "cvode"},    {"cvodes", "cvode"},  {"adams", "cvode"},  {"rosenbrock", "cvode"},
+    {"runge_kutta", "rk4"}, {"rungekutta", "rk4"}, {"ode4", "rk4"},      {"ode1", "euler"},   {"ode2", "heun"},
+    {"dassl", "ida"},       {"daspk", "ida"},      {"idas", "ida"},      {"ode15i", "ida"},   {"expm", "exponential"}};
+
 constexpr Synonym option_synonyms[] = {
     {"iter", "samples"},
     {"iterations", "samples"},
@@ -212,7 +220,7 @@ Diagnostic option_choice(Span span, std::string const& option, std::string const
   Names names{option};
   if (!given.empty()) names.push_back(given);
   return about(names, error("E6006", span, fmt::format("`{}` cannot be {}", option, given.empty() ? "this" : "`" + given + "`"),
-                            guess_or(given, choices, fmt::format("choose {}", quoted(choices, "or")))));
+                            guess_or(solver_synonyms, given, choices, fmt::format("choose {}", quoted(choices, "or")))));
 }
 
 Diagnostic backend_missing(ast::Task const& task, Names const& known) {

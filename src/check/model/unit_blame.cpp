@@ -10,6 +10,7 @@
 
 #include "check/model/mistakes.hpp"
 #include "check/model/model_checker.hpp"
+#include "check/units/changed_power.hpp"
 #include "check/units/unit_errors.hpp"
 #include "check/units/units.hpp"
 
@@ -93,8 +94,10 @@ class Search {
         Unit unit;
         unit.dimension = product(now->dimension, factor, power);
         std::set<Mistake> resolved = resolved_by(declared, written(unit.dimension, declared.unit->span));
-        if (resolved.size() >= 2 && (!best || resolved.size() > best->resolved.size()))
-          best = Blame{declared.name, units.words(unit), std::move(resolved)};
+        if (resolved.size() >= 2 && (!best || resolved.size() > best->resolved.size())) {
+          std::string const kept = with_changed_power(now->text, quotient(unit.dimension, now->dimension));
+          best = Blame{declared.name, kept.empty() ? units.words(unit) : kept, std::move(resolved)};
+        }
       }
     return best;
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "check/units/changed_power.hpp"
 #include "check/units/unit_errors.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
@@ -48,6 +49,23 @@ std::vector<std::string> names_in(ast::Expression const& tree) {
   std::vector<std::string> names;
   each_reference(tree, [&](ast::Reference const& reference) { names.push_back(reference.name.text); });
   return names;
+}
+
+// A declared unit times a factor, in the names that it is written with where they have one for it.
+Unit changed(Unit const& unit, Dimension const& missing) {
+  Unit factor;
+  factor.dimension = missing;
+  Unit result = multiply(plain(unit), factor);
+  result.text = with_changed_power(unit.text, missing);
+  return result;
+}
+
+// Whether it is what somebody measured, and no factor of a formula such as 2, 0.5 or 3/4.
+bool is_measured_number(ast::Expression const& tree) {
+  auto const* number = std::get_if<ast::Number>(&tree.node);
+  auto const fraction = number == nullptr ? std::nullopt : to_rational(number->value);
+  constexpr int of_formulas = 4;
+  return number != nullptr && (!fraction || fraction->denominator > of_formulas);
 }
 
 // The one declared name in an expression that does not move and is no pure number: what its unit depends on, beside the states.
@@ -164,9 +182,7 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
       auto const coefficient = only_coefficient(*odd, declared_);
       auto const power = coefficient ? factor_power(*odd, coefficient->name) : std::nullopt;
       bool const may_differ = power && std::abs(*power) == 1;
-      Unit factor;
-      factor.dimension = power == -1 ? inverse(missing) : missing;
-      std::string const other = may_differ ? words(multiply(plain(coefficient->unit), factor)) : "";
+      std::string const other = may_differ ? words(changed(coefficient->unit, power == -1 ? inverse(missing) : missing)) : "";
       return errors::primes_wrong(moving->name.text, moving->primes, moving->primes + (missing == time ? -primes : primes),
                                   may_differ ? coefficient->name : "", other);
     }
@@ -177,6 +193,13 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
       std::string const other = errors::declare_in(declared->name, words(declared->unit));
       return is_term && is_power_of_moving(*odd, missing) ? errors::or_else(other, cure) : other;
     }
+  // `x + 9.81*m`: the number is a quantity.
+  if (ast::Expression const* number = odd == nullptr || pure ? nullptr : bare_factor(*odd);
+      number != nullptr && number != odd && is_measured_number(*number)) {
+    Unit unit;
+    unit.dimension = missing;
+    return errors::tag_the_number(unparse(*number), words(unit));
+  }
   return cure;
 }
 
@@ -231,9 +254,7 @@ std::optional<DeclaredUnit> DeclaredUnits::declared_otherwise(ast::Expression co
   std::optional<DeclaredUnit> coefficient = only_coefficient(odd, declared_);
   std::optional<int> const power = coefficient ? factor_power(odd, coefficient->name) : std::nullopt;
   if (!power || std::abs(*power) != 1) return std::nullopt;
-  Unit factor;
-  factor.dimension = *power == 1 ? missing : inverse(missing);
-  coefficient->unit = multiply(plain(coefficient->unit), factor);
+  coefficient->unit = changed(coefficient->unit, *power == 1 ? missing : inverse(missing));
   if (coefficient->unit.dimensionless()) return std::nullopt;
   return coefficient;
 }

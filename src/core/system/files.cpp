@@ -205,6 +205,22 @@ IoError path_error(std::filesystem::filesystem_error const& error) {
                  error.code().value() == ENAMETOOLONG ? "use a shorter name" : "check the path and the permissions");
 }
 
+IoError no_results_folder(std::filesystem::path const& path) {
+  std::error_code ignored;
+  std::filesystem::path const bare = path.has_filename() ? path : path.parent_path();
+  if (std::filesystem::is_regular_file(bare, ignored))
+    return IoError(fmt::format("`{}` is a file, not a folder of results", path.string()),
+                   "give the folder of its results, which `sysid run` writes: `results`, unless `-o` names another");
+  std::vector<std::string> folders;
+  for (auto const& entry : std::filesystem::directory_iterator(bare.has_parent_path() ? bare.parent_path() : ".", ignored))
+    if (entry.is_directory(ignored)) folders.push_back((bare.parent_path() / entry.path().filename()).string());
+  std::sort(folders.begin(), folders.end());
+  std::string const guess = did_you_mean(bare.string(), folders);
+  return IoError(
+      fmt::format("there is no folder `{}`", path.string()),
+      !guess.empty() ? guess : "run the tasks first, `sysid run FILE`: results go to the folder `results`, or to that of `-o`");
+}
+
 void remove_file(std::filesystem::path const& path) {
   if (left) return;
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail("remove", path, errno);

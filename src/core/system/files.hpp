@@ -44,6 +44,9 @@ void make_folder(std::filesystem::path const& path);
 /// What the file system has refused to a call of the library, such as a name that is too long, in our words.
 IoError path_error(std::filesystem::filesystem_error const& error);
 
+/// Of a folder of results that is not there, or is a file: a near name, else how there come to be results.
+IoError no_results_folder(std::filesystem::path const& path);
+
 /// Removes a file if it is there. IoError when it is there and cannot be removed.
 void remove_file(std::filesystem::path const& path);
 

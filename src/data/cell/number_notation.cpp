@@ -30,6 +30,28 @@ CellKind parse_plain(std::string_view cell, double& value) {
   return std::isfinite(value) ? CellKind::number : CellKind::not_finite;
 }
 
+/// With `-` for the sign U+2212 that word processors write, and `e` for the letter of Fortran's `1.5D-03`; nothing where neither is
+/// there. Without a point before the letter it may be a code, as in `12D3`.
+std::optional<std::string> with_usual_signs(std::string_view cell) {
+  constexpr std::string_view minus = "\u2212";
+  if (cell.find_first_of("dD\xe2") == std::string_view::npos) return std::nullopt;
+  std::string text(cell);
+  for (std::size_t at; (at = text.find(minus)) != std::string::npos;) text.replace(at, minus.size(), "-");
+  std::size_t const letter = text.find_first_of("dD");
+  if (letter != std::string::npos && letter > 0 && text.find_first_of(".,") < letter &&
+      text.find_first_not_of("0123456789+-.,' ") == letter) {
+    std::size_t const digit = text.find_first_of("+-", letter) == letter + 1 ? letter + 2 : letter + 1;
+    if (digit < text.size() && text.find_first_not_of("0123456789", digit) == std::string::npos) text[letter] = 'e';
+  }
+  return text == cell ? std::nullopt : std::optional(text);
+}
+
+CellKind parse_in(NumberNotation const& notation, std::string_view cell, double& value) {
+  if (notation.plain()) return parse_plain(cell, value);
+  std::optional<std::string> const plain = in_plain_notation(cell, notation);
+  return plain ? parse_plain(*plain, value) : CellKind::text;
+}
+
 }  // namespace
 
 std::optional<std::string> in_plain_notation(std::string_view cell, NumberNotation const& notation) {
@@ -88,13 +110,9 @@ CellKind parse_cell(std::string_view cell, NumberNotation const& notation, doubl
   if (cell.empty() || cell == "NA") return CellKind::missing;
   for (std::string const& word : notation.missing)
     if (cell == word) return CellKind::missing;
-  CellKind kind;
-  if (notation.plain()) {
-    kind = parse_plain(cell, value);
-  } else {
-    std::optional<std::string> const plain = in_plain_notation(cell, notation);
-    kind = plain ? parse_plain(*plain, value) : CellKind::text;
-  }
+  CellKind kind = parse_in(notation, cell, value);
+  if (kind == CellKind::text)
+    if (auto const usual = with_usual_signs(cell)) kind = parse_in(notation, *usual, value);
   if (kind == CellKind::number)
     for (std::string const& word : notation.missing)
       if (same_number(word, notation, value)) return CellKind::missing;
@@ -110,7 +128,8 @@ std::string text_of_number(double value, NumberNotation const& notation) {
 NotationEvidence notation_of(std::string_view cell) {
   cell = trimmed(cell, cell_blanks);
   if (is_quoted_cell(cell)) cell = trimmed(cell.substr(1, cell.size() - 2), cell_blanks);
-  std::string const text = with_plain_blanks(cell);
+  std::string text = with_plain_blanks(cell);
+  if (auto usual = with_usual_signs(text)) text = std::move(*usual);
   NotationEvidence evidence;
   std::size_t at = text.empty() || (text[0] != '+' && text[0] != '-') ? 0 : 1;
   std::vector<std::size_t> digits{0};

@@ -23,7 +23,8 @@ struct NumberNotation {
 std::optional<std::string> in_plain_notation(std::string_view cell, NumberNotation const& notation);
 
 /// The number of a cell, quoted or not, with blanks and a + around; missing where the cell is empty, NA or one of the words. Groups
-/// of digits have three digits each, and stand before the decimal sign.
+/// of digits have three digits each, and stand before the decimal sign. The minus sign U+2212 is one, and `1.5D-03` has an
+/// exponent.
 CellKind parse_cell(std::string_view cell, NumberNotation const& notation, double& value);
 
 /// As the file would write it, without groups.

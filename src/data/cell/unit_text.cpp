@@ -167,6 +167,27 @@ std::optional<Unit> unit_of_text(std::string_view text, Unit const& wanted) {
   return unit;
 }
 
+std::optional<NumberWithUnit> split_number(std::string_view cell) {
+  constexpr std::string_view digits = "0123456789";
+  cell = trimmed(cell);
+  std::size_t at = cell.find_first_not_of("+-");
+  std::size_t const first = at == std::string_view::npos || at > 1 ? std::string_view::npos : cell.find_first_of(digits, at);
+  if (first == std::string_view::npos || cell.substr(at, first - at).find_first_not_of(".,") != std::string_view::npos)
+    return std::nullopt;
+  at = std::min(cell.find_first_not_of("0123456789.,", first), cell.size());
+  if (at < cell.size() && (cell[at] == 'e' || cell[at] == 'E')) {  // an exponent, where digits follow
+    std::size_t const digit = std::min(cell.find_first_not_of("+-", at + 1), cell.size());
+    if (digit < cell.size() && digit <= at + 2 && digits.find(cell[digit]) != std::string_view::npos)
+      at = std::min(cell.find_first_not_of(digits, digit), cell.size());
+  }
+  std::string_view const behind = trimmed(cell.substr(at));
+  if (behind.empty() || behind == "-" || behind == "e" || behind == "E" || digits.find(behind.front()) != std::string_view::npos)
+    return std::nullopt;
+  auto const unit = unit_of_text(behind);
+  if (!unit) return std::nullopt;
+  return NumberWithUnit{std::string(cell.substr(0, at)), unit->text};
+}
+
 std::optional<NameWithUnit> split_name(std::string_view text) {
   text = trimmed(text);
   auto const made = [](std::string_view name, std::string_view unit) -> std::optional<NameWithUnit> {

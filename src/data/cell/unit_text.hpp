@@ -15,6 +15,13 @@ std::optional<Unit> unit_of_text(std::string_view text);
 /// language.
 std::optional<Unit> unit_of_text(std::string_view text, Unit const& wanted);
 
+/// `2.041 N`, `0.57346 mm`: the number and what stands behind it as its unit; nothing for any other text.
+struct NumberWithUnit {
+  std::string number;
+  std::string unit;  // as the language writes it
+};
+std::optional<NumberWithUnit> split_number(std::string_view cell);
+
 /// `Force (N)`, `Force [N]`, `Force / N`, `Force in N`: the name and what stands there as its unit.
 struct NameWithUnit {
   std::string name;

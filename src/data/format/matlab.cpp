@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "data/format/hdf5_links.hpp"
@@ -101,12 +102,37 @@ void check_elements(std::string const& path) {
   if (older && !matlab_elements_are_whole(bytes)) throw std::runtime_error("cut or damaged");
 }
 
+/// Other programs than MATLAB write structs of version 7.3 without the list of their fields, and the library then finds none or a
+/// part of them. Each object of such a file has its class as an attribute.
+void tell_unlisted(std::string const& path, std::vector<Variable>& all) {
+  std::string const bytes = read_record_bytes(path);
+  bool const by_hdf5 = bytes.size() > 125 && (bytes[124] == 2 || bytes[125] == 2);
+  if (!by_hdf5 || bytes.find("MATLAB_fields") != std::string::npos || bytes.find("#refs#") != std::string::npos) return;
+  std::size_t objects = 0;
+  for (std::size_t at = bytes.find("MATLAB_class"); at != std::string::npos; at = bytes.find("MATLAB_class", at + 1)) ++objects;
+  std::set<std::string> listed;  // and the structs around them
+  for (Variable const& each : all) {
+    listed.insert(each.path);
+    for (std::size_t dot = each.path.find('.'); dot != std::string::npos; dot = each.path.find('.', dot + 1))
+      listed.insert(each.path.substr(0, dot));
+  }
+  if (!all.empty() && objects <= listed.size()) return;
+  all.push_back({all.empty() ? "variables" : "structs",
+                 {},
+                 "cannot all be found, as another program than MATLAB wrote this file: save the columns as vectors outside of "
+                 "structs, or as an HDF5 file (`.h5`) without the header of MATLAB",
+                 {}});
+}
+
 std::vector<Variable> list_matlab(std::string const& path) {
   check_elements(path);
-  MatFile const file = opened(path);
   std::vector<Variable> all;
-  while (Read const variable{matio().var_read_next_info(file.get())})
-    if (variable->name != nullptr) describe(variable.get(), variable->name, 0, all);
+  {  // one file at a time is open in this process
+    MatFile const file = opened(path);
+    while (Read const variable{matio().var_read_next_info(file.get())})
+      if (variable->name != nullptr) describe(variable.get(), variable->name, 0, all);
+  }
+  tell_unlisted(path, all);
   return all;
 }
 

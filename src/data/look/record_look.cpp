@@ -152,7 +152,7 @@ class Looking {
       bool const marked = has_utf16_mark(bytes);
       auto const text = encoding ? to_utf8(bytes, *encoding) : std::nullopt;
       if (text) chosen_ = choose_rules(path_, *text, look_);
-      if (encoding && *encoding != Encoding::utf8 && !marked) {
+      if (text && *encoding != Encoding::utf8 && !marked) {
         chosen_.rules.encoding = *encoding;
         look_.reading = reading_statement(chosen_.rules);
         if (!look_.readings.empty()) look_.readings.front() = look_.reading;

@@ -8,6 +8,8 @@
 #include "core/text/words.hpp"
 #include "data/cell/cells.hpp"
 #include "data/cell/time_stamp.hpp"
+#include "data/cell/unit_text.hpp"
+#include "data/table/reading_rules.hpp"
 
 namespace sysid::data_errors {
 namespace {
@@ -85,6 +87,11 @@ Diagnostic not_a_number(Cell const& cell, std::string_view text, bool quote, Men
   else if (std::size_t const d = text.find_first_of("dD");
            d != std::string_view::npos && text.find_first_not_of("0123456789+-.dD") == std::string_view::npos)
     help = fmt::format("write the exponent with `e`: `{}e{}`", text.substr(0, d), text.substr(d + 1));
+  else if (auto const split = split_number(text); split && cell.row == 1)
+    help = fmt::format("save the numbers without their units, and write the unit in the data block: `{}`",
+                       column_text(cell.column, split->unit));
+  else if (split)
+    help = fmt::format("write the number without its unit: `{}`", split->number);
   else if (decimal_comma)
     help = "write a decimal point instead of the comma";
   if (!grouped.empty())

@@ -29,6 +29,14 @@ Diagnostic not_text(std::string const& file, std::optional<std::string> const& p
                proposed ? *proposed : "records are text, MATLAB files (.mat), NetCDF and HDF5; save a spreadsheet as CSV");
 }
 
+Diagnostic nul_bytes(std::string const& file, int line, std::size_t count, Mention mention) {
+  return error("E4003", mention,
+               fmt::format("`{}` has {} among its text, {} in line {}", file, counted(count, "NUL byte"),
+                           count == 1 ? "it is" : "the first", line),
+               "delete them and the line that they cut, if there is one: a recorder that loses power leaves them in place of the "
+               "last rows");
+}
+
 Diagnostic not_in_encoding(std::string const& file, std::string const& encoding, Mention mention) {
   return error("E4003", mention, fmt::format("`{}` is not text in {}", file, encoding),
                "remove `encoding` from the data block if the file is in UTF-8");
@@ -86,6 +94,13 @@ Diagnostic unknown_separator(std::string const& file, int line, std::string_view
 Diagnostic open_quote(std::string const& file, int line, Mention mention) {
   return error("E4004", mention, fmt::format("a quoted cell is not closed correctly on line {} of `{}`", line, file),
                "close it with `\"` on the same line, followed by a separator; a quote inside is written `\"\"`");
+}
+
+Diagnostic cut_row(std::string const& file, int row, int line, int cells, int columns, Mention mention) {
+  return error("E4005", mention,
+               fmt::format("{} has {}, but the header names {}: the file ends within this line", place(file, row, line),
+                           counted(cells, "cell"), counted(columns, "column")),
+               "delete this line");
 }
 
 Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention) {

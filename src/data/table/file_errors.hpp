@@ -14,6 +14,8 @@ Diagnostic no_header(std::string const& file, Mention mention);
 Diagnostic header_of_numbers(std::string const& file, int line, bool after_comment, Mention mention);
 /// proposed: the advice that reads it in another encoding, where one does.
 Diagnostic not_text(std::string const& file, std::optional<std::string> const& proposed, Mention mention);
+/// E4003: text but for zeros, the first of them in `line`, from 1.
+Diagnostic nul_bytes(std::string const& file, int line, std::size_t count, Mention mention);
 Diagnostic not_in_encoding(std::string const& file, std::string const& encoding, Mention mention);
 /// E4008 of a file of variables; known: those that are columns.
 Diagnostic missing_variable(std::string const& file, std::string const& variable, std::vector<std::string> const& known,
@@ -37,6 +39,8 @@ Diagnostic linked_elsewhere(std::string const& file, std::string const& target, 
 Diagnostic unknown_separator(std::string const& file, int line, std::string_view separator, Mention mention);
 Diagnostic open_quote(std::string const& file, int line, Mention mention);
 Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
+/// E4005 of the last line of a file, which has no end of a line.
+Diagnostic cut_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
 /// E4010: a line between the rows that is none.
 Diagnostic broken_table(std::string const& file, int line, Mention mention);
 Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention);

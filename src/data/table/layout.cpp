@@ -41,6 +41,17 @@ Cells cells_of(std::string const& line, char separator) {
   return cells;
 }
 
+/// `---- ----` or `|---|---|` between the names and the values.
+bool is_ruled(std::string const& line) {
+  return line.find("--") != std::string::npos && line.find_first_not_of("|+-=: \t\r") == std::string::npos;
+}
+
+/// Comments that may hold names and units.
+bool begins_named_comment(std::string const& line) {
+  std::string_view const bare = trimmed(line, cell_blanks);
+  return !bare.empty() && (bare.front() == '#' || bare.front() == '%');
+}
+
 bool begins_comment(std::string const& line) {
   std::string_view const bare = trimmed(line, cell_blanks);
   return !bare.empty() && comment_signs.find(bare.front()) != std::string_view::npos;
@@ -66,19 +77,21 @@ class Cut {
   }
   std::size_t width() const { return width_; }
 
-  Layout layout(bool all) const {
+  /// all: these are all lines of the file. open: its last one has no end.
+  Layout layout(bool all, bool open) const {
     Layout layout;
+    std::size_t const end = all && open && ends_within_row() ? end_ - 1 : end_;
     layout.separator = separator_;
     layout.first = static_cast<int>(begin_) + 1;
-    layout.last = all ? static_cast<int>(end_) : 0;
+    layout.last = all ? static_cast<int>(end) : 0;
     layout.looks = column_looks_;
-    std::size_t below = end_;
+    std::size_t below = end;
     while (below < lines_.size() && trimmed(lines_[below]).empty()) ++below;
     layout.more_below = below < lines_.size();
     layout.broken = broken_line();
     find_names(layout);
     std::size_t const wide = layout.columns.size();
-    for (std::size_t i = begin_; i < end_; ++i) {
+    for (std::size_t i = begin_; i < end; ++i) {
       if (cells_[i].empty() || !is_row(i)) {
         if (begins_comment(lines_[i])) layout.comments = trimmed(lines_[i], cell_blanks).front();
         continue;
@@ -93,6 +106,13 @@ class Cut {
   }
 
  private:
+  /// Whether the last line of the file is the only row that lacks cells.
+  bool ends_within_row() const {
+    if (end_ != lines_.size() || cells_[end_ - 1].size() >= width_) return false;
+    for (std::size_t i = begin_; i + 1 < end_; ++i)
+      if (is_row(i) && cells_[i].size() < width_) return false;
+    return true;
+  }
   bool holds_numbers(std::size_t i) const {
     std::vector<CellLook> const& looks = looks_[i];
     auto const is = [&](CellLook look) { return std::count(looks.begin(), looks.end(), look); };
@@ -195,8 +215,7 @@ class Cut {
   Cells heading(std::size_t i, bool above_units) const {
     std::string line = lines_[i];
     Cells cells = cells_[i];
-    if (begins_comment(line) && line.find_first_not_of(" \t") != std::string::npos &&
-        (trimmed(line, cell_blanks).front() == '#' || trimmed(line, cell_blanks).front() == '%')) {
+    if (begins_named_comment(line)) {
       line = line.substr(line.find_first_of("#%") + 1);
       cells = cells_of(line, separator_);
     }
@@ -214,18 +233,24 @@ class Cut {
     constexpr std::size_t most_headings = 6;
     std::vector<std::pair<std::size_t, Cells>> headings;  // from below
     for (std::size_t i = begin_; i-- > 0 && headings.size() < most_headings;) {
-      if (trimmed(lines_[i]).empty()) continue;
+      if (trimmed(lines_[i]).empty() || is_ruled(lines_[i])) continue;
       bool const comment = trimmed(lines_[i], cell_blanks).starts_with('#');
       if (comment && !headings.empty()) break;
-      Cells cells = heading(i, !headings.empty() && are_units(headings.back().second));
+      // Above names that are no comment, a comment is a remark: `% t in s`.
+      if (!headings.empty() && begins_named_comment(lines_[i]) && !begins_named_comment(lines_[headings.back().first])) break;
+      Cells cells =
+          heading(i, !headings.empty() && (are_units(headings.back().second, false) || holds_settings(headings.back().second)));
       if (cells.empty()) break;
       headings.emplace_back(i, std::move(cells));
     }
     std::size_t chosen = headings.size();
     for (std::size_t h = 0; h + 1 < headings.size() && chosen == headings.size(); ++h)
-      if (are_units(headings[h].second)) {
+      if (are_units(headings[h].second, begins_comment(lines_[headings[h].first]))) {
         layout.units = static_cast<int>(headings[h].first) + 1;
         chosen = h + 1;
+        // Lines of settings may stand between the names and the units: `wf_increment 0.01 0.01`.
+        for (std::size_t above = headings.size(); above-- > h + 1;)
+          if (!holds_settings(headings[above].second)) chosen = above;
       }
     for (std::size_t h = 0; h < headings.size() && chosen == headings.size(); ++h) {
       Cells const& cells = headings[h].second;
@@ -242,13 +267,23 @@ class Cut {
     }
     for (std::size_t c = 0; c < width_; ++c) layout.columns.push_back(fmt::format("column_{}", c + 1));
   }
-  static bool are_units(Cells const& cells) {
+  /// Numbers that name no channels: they have decimals, or one is there twice.
+  static bool holds_settings(Cells const& cells) {
+    std::set<std::string> numbers;
+    for (std::string const& cell : cells) {
+      if (look_of(cell) != CellLook::number) continue;
+      if (cell.find_first_of(".,") != std::string::npos || !numbers.insert(cell).second) return true;
+    }
+    return false;
+  }
+  /// all: each of them; else half of them are enough.
+  static bool are_units(Cells const& cells, bool all) {
     long filled = 0, units = 0;
     for (std::string const& cell : cells) {
       filled += !cell.empty();
       units += unit_of_text(cell).has_value();
     }
-    return filled > 0 && units * 2 >= filled;
+    return filled > 0 && (all ? units == filled : units * 2 >= filled);
   }
 
   std::vector<std::string> const& lines_;
@@ -289,7 +324,7 @@ std::optional<Layout> find_layout(std::string const& bytes) {
       if (best_width > 1 && cut.width() < 2) continue;
       best_score = cut.score();
       best_width = cut.width();
-      best = cut.layout(all);
+      best = cut.layout(all, !bytes.ends_with('\n') && !bytes.ends_with('\r'));
     }
   }
   return best;

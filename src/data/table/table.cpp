@@ -14,6 +14,7 @@
 #include "data/cell/doubtful_number.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_stamp.hpp"
+#include "data/cell/unit_text.hpp"
 #include "data/table/cell_errors.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/file_errors.hpp"
@@ -31,12 +32,28 @@ constexpr int rows_between_looks = 1 << 16;  // rows between two looks at the si
 /// Such as `1,5` or `3.2 V`: a number in another notation, and no word of a text.
 bool like_a_number(std::string_view cell) {
   std::size_t const digit = cell.find_first_of("0123456789");
+  if (split_number(cell)) return true;
   return digit != cell.npos && digit == cell.find_first_not_of("+-.,( ") &&
          cell.find_first_not_of("0123456789+-.,eE:/%() ") >= cell.size() - std::min<std::size_t>(3, cell.size());
 }
 
 /// Such as `n/a` or `#REF!`, which stand in the place of a number. A file without numbers may hold anything in as few characters.
 bool like_a_gap(std::string_view cell) { return cell.size() <= 5; }
+
+/// Zeros in bytes that are UTF-8 otherwise: their number, and the line of the first. Nothing where there are none, or where other
+/// bytes are no text.
+std::optional<std::pair<std::size_t, int>> zeros_in(std::string const& bytes) {
+  std::size_t const first = bytes.find('\0');
+  if (first == std::string::npos) return std::nullopt;
+  std::string text = bytes;
+  std::size_t const count = std::erase(text, '\0');
+  auto const controls = [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; };
+  if (text.empty() || !is_utf8(text) || std::any_of(text.begin(), text.end(), controls)) return std::nullopt;
+  Lines line(bytes);
+  while (line.next() && line.end < first) {
+  }
+  return std::pair(count, line.number);
+}
 
 /// A quote that does not end and a row that is too short may as well be mistakes of the file: what to do about them stays.
 std::string beside_proposal(Diagnostic const& diagnostic) {
@@ -68,8 +85,12 @@ Table Table::parse(std::string name, std::string bytes, std::optional<Span> ment
   table.digest_ = sha256(bytes);
   table.rules_ = rules;
   table.notation_ = {rules.decimal, rules.thousands, rules.missing};
-  if (!has_utf16_mark(bytes) && rules.encoding == Encoding::utf8 && !is_utf8(bytes))
-    throw UserError(data_errors::not_text(table.name_, proposed_encoding(bytes, rules, needs), mention));
+  if (!has_utf16_mark(bytes) && rules.encoding == Encoding::utf8 && !is_utf8(bytes)) {
+    auto const proposed = proposed_encoding(bytes, rules, needs);
+    if (auto const zeros = proposed ? std::nullopt : zeros_in(bytes))
+      throw UserError(data_errors::nul_bytes(table.name_, rows_before + zeros->second, zeros->first, mention));
+    throw UserError(data_errors::not_text(table.name_, proposed, mention));
+  }
   auto text = to_utf8(std::move(bytes), rules.encoding);
   if (!text)
     throw UserError(data_errors::not_in_encoding(table.name_, rules.encoding == Encoding::latin1 ? "latin1" : "utf16", mention));
@@ -209,6 +230,8 @@ std::vector<double> Table::numbers_as_told(std::string const& column, std::optio
       throw UserError(data_errors::row_of_units(where, shown, mention));
     // A model of unknown origin may name any file as data: what is no number of a record is not repeated.
     bool const shows = any || like_a_number(shown) || (like_a_gap(shown) && is_record());
+    if (kind == CellKind::text && !any && column == needs_.time && read_duration(unquoted_cell(text)))
+      throw UserError(data_errors::durations(where, shown, mention));
     if (kind == CellKind::text && any && is_time_stamp(shown))
       throw UserError(data_errors::stamp_among_numbers(where, shown, mention));
     throw UserError(kind == CellKind::not_finite     ? data_errors::not_finite(where, shown, mention)

@@ -72,6 +72,9 @@ class TableParser::Rows {
         });
     int const before = table_.rows_before_;
     if (!closed) throw UserError(data_errors::open_quote(table_.name_, before + number, parser_.mention_));
+    bool const cut = cells < columns_ && columns_ > 1 && end == table_.bytes_.size() && before == 0 && table_.rows_ > 1;
+    if (cut && !table_.rules_.ragged)
+      throw UserError(data_errors::cut_row(table_.name_, table_.rows_, number, cells, columns_, parser_.mention_));
     if (cells != columns_ && (!table_.rules_.ragged || filled))
       throw UserError(
           data_errors::ragged_row(table_.name_, before + table_.rows_, before + number, cells, columns_, parser_.mention_));

@@ -18,6 +18,11 @@ Diagnostic stamp_among_numbers(Cell const& cell, std::string_view text, Mention 
       "line");
 }
 
+Diagnostic durations(Cell const& cell, std::string_view text, Mention mention) {
+  return error("E4010", mention, fmt::format("{}: `{}` is a number with its unit", place(cell), shown(text)),
+               "add this line to the data block: `read stamp = duration`");
+}
+
 Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, bool is_text, Mention mention) {
   std::string help =
       fmt::format("add this line to the data block: `read stamp = {}`; times then begin with 0 at the first row", word);
@@ -86,7 +91,9 @@ Diagnostic time_not_increasing(Cell const& cell, double before, double now, std:
   return error("E4014", mention,
                fmt::format("{}: time does not increase, {}{} comes after {}{}", place(cell), now, unit_after_number(unit), before,
                            unit_after_number(unit)),
-               "sort the rows and remove repeated ones; if the file contains two runs, divide it into two files");
+               now == before ? "if the sampling was regular and the times were rounded, write `rate` or `step` in place of `time`; "
+                               "otherwise remove repeated rows"
+                             : "sort the rows and remove repeated ones; if the file contains two runs, divide it into two files");
 }
 
 Diagnostic unequal_steps(int row, double step, double usual, Mention mention) {

@@ -10,6 +10,8 @@ namespace sysid::data_errors {
 
 /// E4010: a date or a time of day below numbers.
 Diagnostic stamp_among_numbers(Cell const& cell, std::string_view text, Mention mention);
+/// E4010: `0.01 s` in a column of times that is read without `stamp`.
+Diagnostic durations(Cell const& cell, std::string_view text, Mention mention);
 /// word: what `stamp` would say of them. is_text: `read` can be said of the file.
 Diagnostic times_are_dates(Cell const& cell, double value, std::string_view word, bool is_text, Mention mention);
 /// `115958, 115959, 120000`: a time of day as one number. patterns: of `stamp`, those that may be meant.

@@ -505,6 +505,38 @@ TEST_CASE("damaged MATLAB and NetCDF files are refused or read, and end no progr
   damage(four.path, 24);
 }
 
+TEST_CASE("structs of version 7.3 that another program than MATLAB wrote are missed, and this is said") {
+  Scratch const scratch("foreign.mat");
+  hid_t const settings = H5Pcreate(H5P_FILE_CREATE);
+  H5Pset_userblock(settings, 512);
+  hid_t const file = H5Fcreate(scratch.path.c_str(), H5F_ACC_TRUNC, settings, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  hsize_t const count = 3;
+  hid_t const space = H5Screate_simple(1, &count, nullptr), one = H5Screate(H5S_SCALAR), word = H5Tcopy(H5T_C_S1);
+  H5Tset_size(word, 6);
+  hid_t const group = H5Gcreate2(file, "data", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t const force = H5Dcreate2(group, "force", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  for (auto const& [object, name] : {std::pair{group, "struct"}, {force, "double"}}) {
+    hid_t const attribute = H5Acreate2(object, "MATLAB_class", word, one, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(attribute, word, name);
+    H5Aclose(attribute);
+  }
+  H5Dclose(force);
+  H5Gclose(group);
+  H5Tclose(word);
+  H5Sclose(one);
+  H5Sclose(space);
+  H5Fclose(file);
+  H5Pclose(settings);
+  std::string bytes = read_file(scratch.path), header = "MATLAB 7.3 MAT-file, Platform: GLNXA64";
+  header.resize(124, ' ');
+  bytes.replace(0, 128, header + std::string("\0\2IM", 4));
+  write_file(scratch.path, bytes);
+  RecordLook const look = look_at_record(scratch.path);
+  REQUIRE(look.left_out.size() == 1);
+  CHECK(contains(look.left_out[0].reason, "another program than MATLAB wrote this file"));
+}
+
 TEST_CASE("MATLAB's days and milliseconds since a date are no seconds: the unit that is asked for reads them") {
   struct Count {
     char const* unit;

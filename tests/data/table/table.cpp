@@ -147,7 +147,7 @@ TEST_CASE("what spreadsheets and Fortran write is named, with the number as it i
                            {"-12'345", "`read thousands = \"'\"`"},
                            {"1 234 567", "`read thousands = blank`"},
                            {"1,234", "may be 1.234 or 1234: choose"},
-                           {"1.5D-3", "`1.5e-3`"},
+                           {"15D-3", "`15e-3`"},
                            {"2024-05-01 12:00:00", "the cells above it are numbers"},
                            {"12:00:01.5", "the cells above it are numbers"},
                            {"01.05.2024", "the cells above it are numbers"},
@@ -155,9 +155,27 @@ TEST_CASE("what spreadsheets and Fortran write is named, with the number as it i
     CAPTURE(each.text);
     CHECK(error_of(std::string("a;b\n1;2\n") + each.text + ";3\n", "a").help.find(each.said) != std::string::npos);
   }
-  for (char const* text : {"4 N", "1.2.3", "--1", "12 34", "x", "1e"}) {
+  for (char const* text : {"1.2.3", "--1", "12 34", "x", "1e"}) {
     CAPTURE(text);
     CHECK(error_of(std::string("a;b\n1;2\n") + text + ";3\n", "a").help.starts_with("a missing sample"));
+  }
+}
+
+TEST_CASE("a number with its unit is answered with the number, or with the unit in the data block where all are so") {
+  CHECK(error_of("a;b\n1;2\n4 N;3\n", "a").help == "write the number without its unit: `4`");
+  CHECK(error_of("a;b\n4.5 kN/m;2\n4 N;3\n", "a").help ==
+        "save the numbers without their units, and write the unit in the data block: `a [kN/m]`");
+}
+
+TEST_CASE("the minus sign of word processors and the exponent of Fortran are read") {
+  CHECK(parse("t,x\n0,−2.5\n1,1.25D+01\n2,−1.5d-02\n3,1e−3\n").numbers("x") == Numbers{-2.5, 12.5, -0.015, 1e-3});
+  ReadingRules comma;
+  comma.decimal = ',';
+  CHECK(Table::parse("run.csv", "t;x\n0;−2,5\n1;1,25D+01\n", std::nullopt, 0, comma).numbers("x") == Numbers{-2.5, 12.5});
+  // Without a point it may be a code.
+  for (char const* const code : {"12D3", "1D", "D3", "1.5D", "1.5D+", "1.5DD3"}) {
+    CAPTURE(code);
+    CHECK(error_of(std::string("a\n") + code + "\n", "a").code == "E4010");
   }
 }
 
@@ -266,6 +284,24 @@ TEST_CASE("bytes that are no UTF-8 text are an error") {
   CHECK(error_of("a\n\xed\xa0\x80\n").code == "E4003");  // a surrogate
   CHECK(error_of("a\n\xc0\xaf\n").code == "E4003");      // an overlong slash
   CHECK(parse("Weg_µm,\xf0\x9f\x98\x80\n1,2\n").numbers("Weg_µm") == Numbers{1});
+}
+
+TEST_CASE("zeros among text are named with their line") {
+  Diagnostic const zeros = error_of(std::string("a,b\n1,2\n3,4\n\0\0\0", 15));
+  CHECK(zeros.code == "E4003");
+  CHECK(zeros.message == "`run.csv` has 3 NUL bytes among its text, the first in line 4");
+  CHECK(error_of(std::string("\1\2\0a\n", 5)).message == "`run.csv` is not UTF-8 text");
+}
+
+TEST_CASE("a file that ends within a line is answered with this line") {
+  Diagnostic const cut = error_of("a,b,c\n1,2,3\n4,5,6\n7,8");
+  CHECK(cut.code == "E4005");
+  CHECK(cut.message == "`run.csv` row 3 (line 4) has 2 cells, but the header names 3 columns: the file ends within this line");
+  CHECK(cut.help ==
+        "delete this line; or add this line to the data block: `read values = 2..3`; 1 line below line 3 is then left out");
+  // Other lines lack cells, too: this is how the file is written.
+  CHECK(error_of("a,b,c\n1,2,3\n1,2,3\n1,2,3\n4,5\n7,8").help.ends_with("`read ragged = yes`"));
+  CHECK(error_of("a,b,c\n1,2,3\n4,5,6\n7,8\n").help.ends_with("`read ragged = yes`"));
 }
 
 TEST_CASE("a quote that does not end is an error on its line") {

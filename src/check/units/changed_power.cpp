@@ -1,0 +1,96 @@
+// The text is cut into its names and their powers, one power is changed, and they are written again.
+#include "check/units/changed_power.hpp"
+
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+namespace sysid {
+namespace {
+
+struct PoweredName {
+  std::string name;
+  int power = 1;
+};
+
+/// `N s/(m kg)`; nothing for other brackets, fractions in powers and anything else.
+std::optional<std::vector<PoweredName>> powers_in(std::string_view text) {
+  std::vector<PoweredName> names;
+  bool below = false, grouped = false;
+  for (std::size_t at = 0; at < text.size();) {
+    char const c = text[at];
+    bool const letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (c == ' ' || c == '*' || (c == '1' && names.empty() && !below)) {
+      ++at;
+    } else if (c == '/' && !below) {
+      below = true;
+      grouped = at + 1 < text.size() && text[at + 1] == '(';
+      at += grouped ? 2 : 1;
+    } else if (c == ')' && grouped && at + 1 == text.size()) {
+      ++at;
+    } else if (letter) {
+      std::size_t end = at;
+      while (end < text.size() &&
+             ((text[end] >= 'a' && text[end] <= 'z') || (text[end] >= 'A' && text[end] <= 'Z') || text[end] == '_'))
+        ++end;
+      int power = 1;
+      std::string_view const name = text.substr(at, end - at);
+      if (end < text.size() && text[end] == '^') {
+        auto const [stop, error] = std::from_chars(text.data() + end + 1, text.data() + text.size(), power);
+        if (error != std::errc{}) return std::nullopt;
+        end = static_cast<std::size_t>(stop - text.data());
+      }
+      // Without brackets a second name below the line would be read in two ways.
+      if (below && !grouped && !names.empty() && names.back().power < 0) return std::nullopt;
+      names.push_back({std::string(name), below ? -power : power});
+      at = end;
+    } else {
+      return std::nullopt;
+    }
+  }
+  return names;
+}
+
+std::string written_again(std::vector<PoweredName> const& names) {
+  std::string above, below;
+  int count = 0;
+  for (PoweredName const& each : names) {
+    if (each.power == 0) continue;
+    std::string& side = each.power > 0 ? above : below;
+    count += each.power < 0 ? 1 : 0;
+    side += (side.empty() ? "" : " ") + each.name;
+    if (std::abs(each.power) > 1) side += "^" + std::to_string(std::abs(each.power));
+  }
+  if (below.empty()) return above;
+  return (above.empty() ? "1" : above) + "/" + (count > 1 ? "(" + below + ")" : below);
+}
+
+/// k where factor = dimension^k; 0: there is none.
+int whole_power(Dimension const& factor, Dimension const& dimension) {
+  for (int k : {1, -1, 2, -2, 3, -3, 4, -4}) {
+    bool same = true;
+    for (std::size_t i = 0; i < factor.size() && same; ++i) same = factor[i] == dimension[i] * Rational{k, 1};
+    if (same) return k;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string with_changed_power(std::string_view text, Dimension const& factor) {
+  auto names = powers_in(text);
+  if (!names) return {};
+  int fitting = 0;
+  for (PoweredName& each : *names) {
+    auto const unit = unit_atom(each.name);
+    if (!unit || unit->offset != 0 || unit->hertz.numerator != 0 || unit->radian.numerator != 0) return {};
+    if (int const power = unit->dimensionless() ? 0 : whole_power(factor, unit->dimension)) {
+      each.power += power;
+      ++fitting;
+    }
+  }
+  return fitting == 1 ? written_again(*names) : std::string();
+}
+
+}  // namespace sysid

@@ -1,0 +1,14 @@
+// A unit in the names that it is written with, with another power of one of them.
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "core/numeric/unit.hpp"
+
+namespace sysid {
+
+/// text times `factor`, in its own names: `N/mm^3` for `N/mm^2` and the factor 1/m. Empty where not exactly one of its names, to a
+/// whole power, is the factor.
+std::string with_changed_power(std::string_view text, Dimension const& factor);
+
+}  // namespace sysid
