@@ -147,7 +147,7 @@ Diagnostic cycles_in_angle(Span argument, std::string const& function) {
 
 bool is_unit_conflict(Diagnostic const& diagnostic) {
   return diagnostic.severity == Severity::error && diagnostic.primary &&
-         (diagnostic.code == "E2103" || diagnostic.code.starts_with("E22"));
+         (diagnostic.code == "E2103" || diagnostic.code == "E3206" || diagnostic.code.starts_with("E22"));
 }
 Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string const& unit, int places) {
   std::string const more =
