@@ -141,6 +141,9 @@ std::string instead_of_colon(std::string_view text, std::size_t begin, std::size
   int depth = 0;
   for (std::size_t i = first; !tokens[i].newline_before && i > 0; first = --i)
     depth += tokens[i].is("(") ? 1 : tokens[i].is(")") ? -1 : 0;
+  constexpr std::array<std::string_view, 3> of_columns{"time", "input", "measure"};
+  if (depth > 0 && (before.is("(") || before.is(",")) && words::contains(of_columns, tokens[first].text))
+    return "the name of a column is written in quotes unless it is a single word: `\"X(:,1)\"`";
   if (depth > 0 && before.kind == TokenKind::word) return fmt::format("a named argument is written `{} = ...`", before.text);
   constexpr std::array<std::string_view, 10> heads{"file",    "time",  "rate",  "step",   "split",
                                                    "initial", "state", "input", "shared", "equation"};

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "check/units/unit_errors.hpp"
+
 namespace sysid {
 
 Mistake mistake_of(Diagnostic const& each) {
@@ -15,7 +17,8 @@ std::set<Mistake> mistakes_from(std::size_t first, Diagnostics const& diagnostic
   std::set<Mistake> places;
   for (std::size_t i = first; i < diagnostics.all().size(); ++i) {
     Diagnostic const& each = diagnostics.all()[i];
-    if (each.severity == Severity::error && each.code.starts_with("E2")) places.insert(mistake_of(each));
+    bool const of_units = each.code.starts_with("E2") || errors::is_unit_conflict(each);
+    if (each.severity == Severity::error && of_units) places.insert(mistake_of(each));
   }
   return places;
 }

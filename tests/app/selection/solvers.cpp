@@ -110,29 +110,6 @@ TEST_CASE("`abc_smc` steps a linear candidate exactly, and what cannot be steppe
   CHECK(run.summary("other").at("settings").at("solver") != "exponential");
 }
 
-TEST_CASE("a result that does not say how its particles were simulated is predicted by the task's solver") {
-  LagRecord const record;
-  std::string const text =
-      lag_model("quick", "log_uniform(0.15, 0.3)") + lag_data +
-      "candidates lags { quick }\n"
-      "selection = select lags to bench with reversible_jump(samples = 200, burn_in = 50, pilot = 100), solver = "
-      "rk4(substeps = 64), seed = 1\n"
-      "again = predict selection on bench with draws(20), seed = 1\n";
-  TemporaryFolder const folder;
-  write_file(folder.path() / "lag.csv", record.text());
-  RunOptions options;
-  options.output = folder.path() / "results";
-  run_text(folder.path() / "case.sysid", text, options, {"select"});
-  auto const place = folder.path() / "results" / "selection" / "summary.json";
-  json summary = json::parse(read_file(place));
-  REQUIRE(summary.at("models").at("quick").erase("simulated_with") == 1);
-  write_file(place, summary.dump(2));
-  run_text(folder.path() / "case.sysid", text, options, {"predict"});
-  json const again = json::parse(read_file(folder.path() / "results" / "again" / "summary.json"));
-  CHECK(again.at("settings").at("solver") == "rk4");
-  CHECK(again.at("settings").at("substeps") == 64);
-}
-
 namespace {
 
 /// One model whose finer solver adds `shift` to every distance.

@@ -43,7 +43,7 @@ std::string const springs = [] {
     text += fmt::format("data e{0} {{ file \"e{0}.csv\"; input F = F; measure d = d [mm] }}\n", e);
     all += fmt::format("{}e{}", e == 0 ? "" : ", ", e);
   }
-  return text + "b = fit spring to " + all + " with mh(samples = 1500), seed = 1\n";
+  return text + "b = fit spring to " + all + " with mh(samples = 4000, burn_in = 1500), seed = 1\n";
 }();
 
 /// Springs of about 11 N/mm that scatter by a tenth; the last column of the last file times `unit`.
