@@ -92,7 +92,7 @@ Diagnostic time_not_increasing(Cell const& cell, double before, double now, std:
                fmt::format("{}: time does not increase, {}{} comes after {}{}", place(cell), now, unit_after_number(unit), before,
                            unit_after_number(unit)),
                now == before ? "if the sampling was regular and the times were rounded, write `rate` or `step` in place of `time`; "
-                               "otherwise remove repeated rows"
+                               "otherwise sort the rows and remove repeated ones"
                              : "sort the rows and remove repeated ones; if the file contains two runs, divide it into two files");
 }
 

@@ -516,11 +516,13 @@ TEST_CASE("structs of version 7.3 that another program than MATLAB wrote are mis
   H5Tset_size(word, 6);
   hid_t const group = H5Gcreate2(file, "data", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   hid_t const force = H5Dcreate2(group, "force", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  for (auto const& [object, name] : {std::pair{group, "struct"}, {force, "double"}}) {
+  hid_t const stroke = H5Dcreate2(group, "stroke", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  for (auto const& [object, name] : {std::pair{group, "struct"}, {force, "double"}, {stroke, "double"}}) {
     hid_t const attribute = H5Acreate2(object, "MATLAB_class", word, one, H5P_DEFAULT, H5P_DEFAULT);
     H5Awrite(attribute, word, name);
     H5Aclose(attribute);
   }
+  H5Dclose(stroke);
   H5Dclose(force);
   H5Gclose(group);
   H5Tclose(word);
