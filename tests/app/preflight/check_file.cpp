@@ -591,6 +591,14 @@ TEST_CASE("what is wrong with the data of several tasks is said at once, and the
   CHECK(task(result, "forecast").coverage.empty());
 }
 
+TEST_CASE("a range of one row is refused, and its step is not looked for") {
+  std::filesystem::path const path =
+      std::filesystem::path(SYSID_SOURCE_DIR) / "tests/golden/errors/E4201_discovery_from_one_row.sysid";
+  CheckResult const result = checked(path, read_file(path));
+  REQUIRE_FALSE(result.diagnostics.all().empty());
+  CHECK(result.diagnostics.all().front().code == "E4201");
+}
+
 TEST_CASE("data that a task of the file will make are said to be made by it") {
   TemporaryFolder folder;
   RunOptions options;
