@@ -8,7 +8,7 @@ using namespace sysid::test;
 
 namespace {
 
-Model model_with(std::string const& parameters) { return model_of(parameters + "\nobserve c ~ normal(a, sd = 1)"); }
+Model with_parameters(std::string const& parameters) { return model_of(parameters + "\nobserve c ~ normal(a, sd = 1)"); }
 std::string refused_parameters(std::string const& parameters) {
   return messages("model m {\n" + parameters + "\nobserve c ~ normal(a, sd = 1)\n}\n");
 }
@@ -24,7 +24,7 @@ std::ptrdiff_t place(Model const& model, std::string const& name) {
 }  // namespace
 
 TEST_CASE("parameters are drawn after those their priors read, also through definitions") {
-  Model const model = model_with(
+  Model const model = with_parameters(
       "parameter a ~ normal(b, sd = spread)\nlet spread = 2*s\nparameter b ~ normal(0, sd = s)\nparameter s ~ half_normal(sd = f)\n"
       "parameter f = 3");
   REQUIRE(model.sampling_order.size() == 3);
@@ -34,7 +34,7 @@ TEST_CASE("parameters are drawn after those their priors read, also through defi
 }
 
 TEST_CASE("bounds count as what a prior reads") {
-  Model const model = model_with("parameter a ~ normal(0, sd = 1, lower = b)\nparameter b ~ normal(0, sd = 1)");
+  Model const model = with_parameters("parameter a ~ normal(0, sd = 1, lower = b)\nparameter b ~ normal(0, sd = 1)");
   CHECK(place(model, "b") < place(model, "a"));
   CHECK(at(model, model.parameters[0].prior->lower.value(), {{"b", 0.25}}) == 0.25);
 }
