@@ -148,7 +148,7 @@ warm = fit oven to day with map, seed = 1
   std::string const wrong = with(with(right, "P = power", "P = ambient"), "Ta = ambient", "Ta = power");
   Fitted const exchanged = run_file(wrong, {}, {{"oven.csv", table}});
   CHECK(exchanged.found("warm", "column_used_twice"));
-  CHECK(exchanged.out.find("if so, write `input P = power [W] hold zero_order` and `input Ta = ambient [degC] hold zero_order`") !=
+  CHECK(exchanged.out.find("if they are exchanged, write `input P = power [W] hold zero_order` and `input Ta = ambient [degC] hold zero_order`") !=
         std::string::npos);
   CHECK_FALSE(run_file(right, {}, {{"oven.csv", table}}).found("warm", "column_used_twice"));
   Fitted const lacking = run_file(right, {}, {{"oven.csv", disturbed}});
