@@ -26,27 +26,6 @@ std::vector<double> scored_values(std::span<double const> series) {
   return values;
 }
 
-/// Of a series without gaps; in means of neighbours, so that the number of products stays small.
-double squared_standard_error(std::vector<double> const& values) {
-  constexpr std::size_t most = 2000;
-  std::size_t const width = (values.size() + most - 1) / most, count = values.size() / width;
-  std::vector<double> means;
-  for (std::size_t i = 0; i < count; ++i) means.push_back(mean(std::span(values).subspan(i * width, width)));
-  double const center = mean(means);
-  auto const covariance = [&](std::size_t lag) {
-    double sum = 0;
-    for (std::size_t i = 0; i + lag < count; ++i) sum += (means[i] - center) * (means[i + lag] - center);
-    return sum / static_cast<double>(count);
-  };
-  double sum = -covariance(0);
-  for (std::size_t lag = 0; lag + 1 < count; lag += 2) {
-    double const pair = covariance(lag) + covariance(lag + 1);
-    if (!(pair > 0)) break;
-    sum += 2 * pair;
-  }
-  return std::max(sum, covariance(0) / static_cast<double>(count)) / static_cast<double>(count);
-}
-
 /// Sum of squares of the autocovariances, each times the number of samples.
 double covariances(CorrelationTest const& test, std::span<double const> series) {
   double power = 0, sum = 0;
@@ -146,6 +125,27 @@ std::string cure(Model const& model, Channel const& channel, bool several, doubl
 }
 
 }  // namespace
+
+// In means of neighbours, so that the number of products stays small.
+double squared_standard_error(std::span<double const> values) {
+  constexpr std::size_t most = 2000;
+  std::size_t const width = (values.size() + most - 1) / most, count = values.size() / width;
+  std::vector<double> means;
+  for (std::size_t i = 0; i < count; ++i) means.push_back(mean(values.subspan(i * width, width)));
+  double const center = mean(means);
+  auto const covariance = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t i = 0; i + lag < count; ++i) sum += (means[i] - center) * (means[i + lag] - center);
+    return sum / static_cast<double>(count);
+  };
+  double sum = -covariance(0);
+  for (std::size_t lag = 0; lag + 1 < count; lag += 2) {
+    double const pair = covariance(lag) + covariance(lag + 1);
+    if (!(pair > 0)) break;
+    sum += 2 * pair;
+  }
+  return std::max(sum, covariance(0) / static_cast<double>(count)) / static_cast<double>(count);
+}
 
 OffsetTest offset_test(std::span<double const> residuals, bool ordered) {
   OffsetTest test;

@@ -18,17 +18,20 @@ struct OffsetTest {
   bool fires = false;
 };
 
-/// residuals: of unit size, NaN where not scored. ordered: samples follow each other in time.
-///
-/// The mean is no chance, |mean| > 6 standard errors, and it is most of the misfit. In time: the residuals are correlated, and
-/// without their mean they are white, or their autocovariances over 25 lags have a sum of squares of less than a twentieth. Rows of
-/// any order: the mean is more than half of the mean square.
+/// Of the mean of a series without gaps, at least two values, correlated in time:
 ///
 ///   standard error^2 = (c_0 + 2 sum c_k)/n,   c_k autocovariances without the mean, up to the first pair of lags whose sum is not
 ///   positive                                                                                            Geyer 1992, section 3.3
 ///
 /// so that a drift, whose samples are worth a few independent ones, is none. Of long series c_k is taken from means of
 /// neighbouring samples.
+double squared_standard_error(std::span<double const> values);
+
+/// residuals: of unit size, NaN where not scored. ordered: samples follow each other in time.
+///
+/// The mean is no chance, |mean| > 6 standard errors (`squared_standard_error`), and it is most of the misfit. In time: the
+/// residuals are correlated, and without their mean they are white, or their autocovariances over 25 lags have a sum of squares of
+/// less than a twentieth. Rows of any order: the mean is more than half of the mean square.
 OffsetTest offset_test(std::span<double const> residuals, bool ordered);
 
 /// size: the mean of measured minus predicted samples where the channel is scored, in its declared unit; largest: of those of all

@@ -21,7 +21,7 @@ constexpr int rows_at_once = 1024, after_an_outlier = 32;  // what was simulated
 constexpr double beyond_linear = 2;
 constexpr int most_lags = 1000;   // of a model that looks back
 constexpr double far_off = 8;     // expected sds: no sample of a right model
-constexpr int most_in_a_row = 2;  // rows so far off one after the other are no outliers, but a change
+constexpr int most_in_a_row = 2;  // samples of a channel; more, one after the other, are a change
 
 /// With a column for every channel: an experiment may lack those that come last.
 Schedule schedule_of(TrackedProgram const& program, Experiment experiment, SolverSettings const& solver) {
@@ -129,7 +129,7 @@ int Tracker::take_some(Experiment const& experiment, int from, int to, Sink cons
 }
 
 /// True where samples of the row are to be left out: it is then filtered once more, without them. A change of a parameter as large
-/// as that is found two rows later.
+/// as that is found two samples later.
 bool Tracker::leaves_out(Experiment const& experiment, int index, double const* records) {
   int const row = experiment.first_row + index;
   if (left_out_row_ == row) return false;  // without them it still comes here

@@ -15,6 +15,7 @@
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "diagnostics/residual_offset.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 #include "search/refit.hpp"
@@ -46,24 +47,11 @@ std::vector<std::size_t> shared_coordinates(ParameterSpace const& space) {
   return shared;
 }
 
-/// How many samples one independent sample is worth: 1 + 2 sum of the autocorrelations, up to the first pair of lags whose sum is
-/// not positive (Geyer 1992); 1 at least. Residuals that are not white make sds of estimates too small by its root.
+/// How many of these residuals one independent sample is: 1 at least. Where they are not white, sds of estimates are too small by
+/// the root of it.
 double samples_of_one(std::span<double const> residuals) {
-  double const middle = mean(residuals);
-  auto const covariance = [&](std::size_t lag) {
-    double sum = 0;
-    for (std::size_t i = lag; i < residuals.size(); ++i) sum += (residuals[i] - middle) * (residuals[i - lag] - middle);
-    return sum;
-  };
-  double const variance = covariance(0);
-  if (!(variance > 0)) return 1;
-  double sum = 1;
-  for (std::size_t lag = 1; lag + 1 < residuals.size() / 2; lag += 2) {
-    double const pair = covariance(lag) + covariance(lag + 1);
-    if (!(pair > 0)) break;
-    sum += 2 * pair / variance;
-  }
-  return std::max(1.0, sum);
+  double const variance = residuals.size() > 1 ? sample_variance(residuals) : 0;
+  return variance > 0 ? std::max(1.0, squared_standard_error(residuals) * static_cast<double>(residuals.size()) / variance) : 1;
 }
 
 /// The fit of one experiment by itself.
