@@ -10,6 +10,7 @@
 #include "check/expression/scope.hpp"
 #include "check/model/model.hpp"
 #include "check/units/units.hpp"
+#include "core/text/without_index.hpp"
 
 namespace sysid::assist {
 namespace {
@@ -63,7 +64,7 @@ std::optional<std::string> found_unit(Reading const& reading, Symbol const& symb
     auto const checked = check_model(derived, functions, unsaid);
     if (!checked) return std::nullopt;
     for (Derived const& each : checked->derived)
-      if (each.name.substr(0, each.name.find('[')) == symbol.name && each.unit)
+      if (without_index(each.name) == symbol.name && each.unit)
         return each.unit && each.unit->text.empty() ? format_dimension(each.unit->dimension) : each.unit_text();
     return std::nullopt;
   }

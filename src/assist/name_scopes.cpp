@@ -1,5 +1,6 @@
 // Declarations, in the order of the text.
 #include "assist/name_scopes.hpp"
+#include "core/text/without_index.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -118,7 +119,7 @@ class Declarer {
  private:
   /// Of `force[2]` the name alone.
   static ast::Name base(ast::Name name) {
-    name.text = name.text.substr(0, name.text.find('['));
+    name.text = without_index(name.text);
     name.span.end = name.span.begin + static_cast<std::uint32_t>(name.text.size());
     return name;
   }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "check/expression/option_reader.hpp"
+#include "core/text/without_index.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::assist {
@@ -16,8 +17,6 @@ constexpr std::array<std::string_view, 3> channel_functions{"measured", "predict
 bool reads_channel(std::string const& function) {
   return std::find(channel_functions.begin(), channel_functions.end(), function) != channel_functions.end();
 }
-
-std::string without_index(std::string const& text) { return text.substr(0, text.find('[')); }
 
 }  // namespace
 

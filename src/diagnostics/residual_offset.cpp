@@ -10,6 +10,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "core/text/without_index.hpp"
 #include "diagnostics/law/noise_words.hpp"
 #include "diagnostics/law/round_number.hpp"
 #include "diagnostics/residual_tests.hpp"
@@ -66,7 +67,7 @@ struct WholeChannel {
   std::string name, size;
 };
 WholeChannel whole_channel(Model const& model, std::string const& element) {
-  WholeChannel whole{element.substr(0, element.find('[')), ""};
+  WholeChannel whole{without_index(element), ""};
   if (whole.name.size() == element.size()) return whole;
   for (Channel const& each : model.channels)  // elements ascend
     if (each.name.starts_with(whole.name + "["))

@@ -14,6 +14,7 @@
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "core/text/without_index.hpp"
 #include "core/text/words.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
@@ -48,7 +49,7 @@ std::optional<Finding> flat_direction(Target const& target, Mode const& mode, st
     if (move[p] == 0) continue;
     known = known && is_known(parameter, mode.declared[p], mode.sd[p]);
     if (parameter.coefficient) {  // an unknown function stands for all its coefficients
-      std::string const function = parameter.name.substr(0, parameter.name.find('['));
+      std::string const function = without_index(parameter.name);
       if (std::find(names.begin(), names.end(), function) == names.end()) names.push_back(function);
       continue;
     }

@@ -9,6 +9,7 @@
 #include "app/session/fit_target.hpp"
 #include "app/session/preconditions.hpp"
 #include "app/session/stored_draws.hpp"
+#include "core/text/without_index.hpp"
 #include "likelihood/trajectory.hpp"
 #include "load/load.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 
 /// "k_probe" among "k_probe", "spring.k_probe", "k_probe[2]".
 bool is_probe(std::string const& quantity, std::string const& probe) {
-  std::string const plain = quantity.substr(0, quantity.find('['));
+  std::string const plain = without_index(quantity);
   return plain == probe || plain.ends_with("." + probe);
 }
 

@@ -1,5 +1,6 @@
 // Names of members, each parameter of the model once; a vector of parameters is one.
 #include "app/fit/hierarchies.hpp"
+#include "core/text/without_index.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +22,7 @@ std::vector<std::string> parameters_of(ParameterSpace const& space, std::vector<
 std::vector<std::string> declared_names(std::vector<std::string> const& parameters) {
   std::vector<std::string> names;
   for (std::string const& parameter : parameters) {
-    std::string name = parameter.substr(0, parameter.find('['));
+    std::string name = without_index(parameter);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
   }
   return names;

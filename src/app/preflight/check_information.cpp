@@ -1,5 +1,6 @@
 // Findings about identifiability: named once each, with the number of draws that show them.
 #include "app/preflight/check_information.hpp"
+#include "core/text/without_index.hpp"
 
 #include <fmt/format.h>
 
@@ -59,7 +60,7 @@ class Description {
 
   // An unknown function is one line, whatever the number of its coefficients.
   void count_coefficient(std::string const& name) {
-    std::string const function = name.substr(0, name.find('['));
+    std::string const function = without_index(name);
     std::vector<InformationPage::Line>& lines = page_.information->lines;
     coefficients_ = lines.empty() || lines.back().name != function ? 1 : coefficients_ + 1;
     if (coefficients_ == 1) lines.push_back({function, "", false, 1, 0, 0, {}});

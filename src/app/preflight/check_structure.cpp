@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/preflight/check_file.hpp"
+#include "core/text/without_index.hpp"
 #include "core/text/words.hpp"
 #include "syntax/unparse.hpp"
 
@@ -55,7 +56,7 @@ Texts texts_of(ast::File const& written, ast::File const& flat, std::string cons
 /// What is said of a name; of an element, `m[1]`, what is said of all.
 std::string text_of(std::map<std::string, std::string> const& texts, std::string const& name) {
   auto place = texts.find(name);
-  if (place == texts.end()) place = texts.find(name.substr(0, name.find('[')));
+  if (place == texts.end()) place = texts.find(without_index(name));
   return place == texts.end() ? std::string() : place->second;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/text/without_index.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/walk.hpp"
 
@@ -33,7 +34,7 @@ std::function<bool(std::string const& parameter)> switched_off_by_arguments(Sess
     each_reference(statement, [&](ast::Reference const& reference) { read.insert(reference.name.text); });
   return [read = std::move(read)](std::string const& parameter) {
     bool const of_part = parameter.find('.') != std::string::npos;
-    return of_part || read.contains(parameter) || read.contains(parameter.substr(0, parameter.find('[')));
+    return of_part || read.contains(parameter) || read.contains(without_index(parameter));
   };
 }
 

@@ -4,14 +4,13 @@
 #include <map>
 #include <utility>
 
+#include "core/text/without_index.hpp"
 #include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
 
 using Statements = std::map<std::string, std::vector<ast::ModelStatement const*>>;
-
-std::string without_index(std::string const& name) { return name.substr(0, name.find('[')); }
 
 /// The name of a parameter or definition: what it says is there for those that read it. Empty for other statements.
 std::string dispensable(ast::ModelStatement const& statement) {

@@ -7,6 +7,7 @@
 
 #include "check/message/error_words.hpp"
 #include "check/units/units.hpp"
+#include "core/text/without_index.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -193,7 +194,7 @@ std::string or_else(std::string const& declaration, std::string const& factor) {
   return declaration + ", or " + (at == std::string::npos ? factor : factor.substr(0, at) + " this term " + factor.substr(at + 6));
 }
 std::string declare_in(std::string const& name, std::string const& unit) {
-  return fmt::format("declare `{}` in [{}]", name.substr(0, name.find('[')), unit);
+  return fmt::format("declare `{}` in [{}]", without_index(name), unit);
 }
 std::string should_be_in(std::string const& unit) {
   return unit == "-" ? "make this a pure number" : fmt::format("make this a quantity in [{}]", unit);

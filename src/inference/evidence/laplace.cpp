@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "core/text/without_index.hpp"
 #include "inference/evidence/weighted_draws.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/descent.hpp"
@@ -27,7 +28,7 @@ std::vector<std::string> names_along(Target const& target, std::vector<double> c
   for (std::size_t p = 0; p < parameters; ++p)
     for (std::size_t at = p; at < flat.size(); at += parameters) {
       ParameterInfo const& parameter = target.parameters()[p];
-      std::string const name = parameter.coefficient ? parameter.name.substr(0, parameter.name.find('[')) : parameter.name;
+      std::string const name = parameter.coefficient ? without_index(parameter.name) : parameter.name;
       if (flat[at] != 0 && (names.empty() || names.back() != name)) names.push_back(name);
     }
   return names;
