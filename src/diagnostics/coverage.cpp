@@ -122,27 +122,25 @@ bool misses(double coverage, double samples, BandErrors const& errors) {
 bool add_coverage(Report& report, bool fed_back) {
   bool any = false;
   for (FitLine const& line : fit_lines(report))
-    for (Score const& score : line.scores)
-      if (score.name == "nmse" && score.value > as_bad_as_the_mean(measured_samples(report, line)))
-        report.findings.push_back(worse_than_the_mean(
-            score.value > useless_nmse ? Severity::error : Severity::warning, {line.channel, line.experiment}, line.what(),
-            score.value, "check units, signs and columns of this record, its start, and the verdict of the fit"));
-  for (FitLine const& line : fit_lines(report))
-    for (Score const& score : line.scores) {
-      if (score.name != "coverage_95" ||
-          !misses(score.value, static_cast<double>(measured_samples(report, line)), band_errors(report, line)))
-        continue;
-      any = true;
-      report.findings.push_back(
-          {FindingCode::coverage_low,
-           Severity::warning,
-           {line.channel, line.experiment},
-           fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * score.value, line.what()),
-           fed_back ? "look for disturbances that act on the system: the bands of a free run include only the uncertainty of the "
-                      "parameters and the noise of each sample"
-                    : "the model or its noise does not describe these data: check the residuals, and inputs outside the range "
-                      "that was fitted"});
-    }
+    if (auto const error = find_score(line.scores, {ScoreKind::nmse});
+        error && *error > as_bad_as_the_mean(measured_samples(report, line)))
+      report.findings.push_back(worse_than_the_mean(
+          *error > useless_nmse ? Severity::error : Severity::warning, {line.channel, line.experiment}, line.what(), *error,
+          "check units, signs and columns of this record, its start, and the verdict of the fit"));
+  for (FitLine const& line : fit_lines(report)) {
+    auto const inside = find_score(line.scores, {ScoreKind::coverage_95});
+    if (!inside || !misses(*inside, static_cast<double>(measured_samples(report, line)), band_errors(report, line))) continue;
+    any = true;
+    report.findings.push_back(
+        {FindingCode::coverage_low,
+         Severity::warning,
+         {line.channel, line.experiment},
+         fmt::format("only {:.3g} % of the samples of {} lie inside the 95 % band", 100 * *inside, line.what()),
+         fed_back ? "look for disturbances that act on the system: the bands of a free run include only the uncertainty of the "
+                    "parameters and the noise of each sample"
+                  : "the model or its noise does not describe these data: check the residuals, and inputs outside the range "
+                    "that was fitted"});
+  }
   return any;
 }
 

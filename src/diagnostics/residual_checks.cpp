@@ -236,7 +236,7 @@ std::string size_help(ScoredChannel const& of, Tested const& tested, bool larger
 void check_size(ScoredChannel const& of, Tested const& tested, Limits const& limits, UserText const& text, FitLine& line,
                 Findings& findings) {
   ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, limits.channels);
-  line.scores.push_back({"chi_squared_per_sample", size.per_sample});
+  line.scores.push_back({{ScoreKind::chi_squared}, size.per_sample});
   if (!size.fires()) return;
   findings.push_back(
       {FindingCode::noise_size, Severity::error, of.names(),
@@ -261,7 +261,7 @@ std::string memory_help(ScoredChannel const& of, Tested const& tested) {
 // Of a model that has a past: correlation in time, and with the input's past.
 void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& limits, FitLine& line, Findings& findings) {
   CorrelationTest const& white = *tested.white;
-  line.scores.push_back({"whiteness_p", white.p_value});
+  line.scores.push_back({{ScoreKind::whiteness}, white.p_value});
   bool const offset_alone = tested.offset.fires && tested.offset.white_without;
   if (white.fires(limits.white) && !offset_alone)
     findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
@@ -271,8 +271,7 @@ void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& l
   std::vector<Quantity> const& inputs = of.model().inputs;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     CorrelationTest const& crossed = tested.with_input[i];
-    line.scores.push_back(
-        {"input_correlation_p" + (inputs.size() > 1 ? "(" + inputs[i].name + ")" : std::string()), crossed.p_value});
+    line.scores.push_back({{ScoreKind::input_correlation, inputs.size() > 1 ? inputs[i].name : ""}, crossed.p_value});
     if (crossed.fires(limits.with_input))
       findings.push_back(
           {FindingCode::input_in_residuals,
@@ -306,7 +305,7 @@ void check_law(ScoredChannel const& of, Tested const& tested, int together, User
 FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits const& limits, UserText const& text,
                       Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
-  line.scores = {{"nmse", nmse(of.observed, of.predicted)}, {"rmse", rmse(of.observed, of.predicted)}};
+  line.scores = {{{ScoreKind::nmse}, nmse(of.observed, of.predicted)}, {{ScoreKind::rmse}, rmse(of.observed, of.predicted)}};
   Findings shape;
   check_offset(of, tested, text, shape);
   check_size(of, tested, limits, text, line, shape);

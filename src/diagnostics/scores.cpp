@@ -115,7 +115,7 @@ std::vector<Score> scores(PredictedQuantity const& quantity, std::vector<std::ui
     predicted.push_back(quantity.response.mean[i]);
   }
   if (rows.empty()) return {};
-  std::vector<Score> out = {{"nmse", nmse(observed, predicted)}, {"rmse", rmse(observed, predicted)}};
+  std::vector<Score> out = {{{ScoreKind::nmse}, nmse(observed, predicted)}, {{ScoreKind::rmse}, rmse(observed, predicted)}};
   if (quantity.noisy.mean.empty()) return out;
   double inside = 0, within = 0;
   auto const n = static_cast<double>(rows.size());
@@ -124,8 +124,8 @@ std::vector<Score> scores(PredictedQuantity const& quantity, std::vector<std::ui
     if (y >= quantity.noisy.lower[i] && y <= quantity.noisy.upper[i]) ++inside;
     if (std::fabs(y - quantity.noisy.mean[i]) <= 3 * quantity.noisy.sd[i]) ++within;
   }
-  out.push_back({"coverage_95", inside / n});
-  out.push_back({"coverage_3sd", within / n});
+  out.push_back({{ScoreKind::coverage_95}, inside / n});
+  out.push_back({{ScoreKind::coverage_3sd}, within / n});
   return out;
 }
 
@@ -141,8 +141,7 @@ std::vector<FitLine> fit_lines(Report const& report) {
       if (line == lines.end()) line = lines.insert(line, {prediction.experiment, quantity.name, "", {}, {}});
       line->unit = quantity.unit;
       for (Score const& score : found)
-        if (std::none_of(line->scores.begin(), line->scores.end(), [&](Score const& other) { return other.name == score.name; }))
-          line->scores.push_back(score);
+        if (!find_score(line->scores, score.name)) line->scores.push_back(score);
     }
   return lines;
 }

@@ -49,9 +49,4 @@ struct Prediction {
   bool smoothed = false;                    // bands of what all samples say of random states, not of trajectories
 };
 
-struct Score {
-  std::string name;
-  double value;
-};
-
 }  // namespace sysid

@@ -23,6 +23,7 @@
 #include "result/prediction.hpp"
 #include "result/prior_width.hpp"
 #include "result/restoring_force.hpp"
+#include "result/score.hpp"
 #include "result/selection.hpp"
 #include "result/summary.hpp"
 

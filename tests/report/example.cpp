@@ -136,7 +136,7 @@ Report duffing(int draws) {
        {"rows 1..500 of 1500", "input x = force [N], held between samples (zero_order)", "measure displacement = y_noisy [mm]"}});
   report.findings.push_back(
       {FindingCode::selection_ended, Severity::note, {}, "no posterior mean moves by more than 0.01 sd at half the step", ""});
-  report.fit = {{"bench.train", "displacement", "mm", {{"nmse", 0.0104}, {"chi_squared_per_sample", 1.01}}}};
+  report.fit = {{"bench.train", "displacement", "mm", {{{ScoreKind::nmse}, 0.0104}, {{ScoreKind::chi_squared}, 1.01}}}};
   Mode mode;
   mode.declared = truth;
   mode.sd = sd;

@@ -166,28 +166,28 @@ TEST_CASE("sentences follow the values and never contradict the checks") {
     report.fit = {{"bench.train", "displacement", "mm", std::move(scores)}};
     return report_html(report, {}).find(words) != std::string::npos;
   };
-  CHECK(says({{"nmse", 0.01}}, "can hardly be distinguished"));
-  CHECK(says({{"nmse", 140}}, "no better than a constant equal to the mean"));
-  CHECK(says({{"coverage_95", 0.94}}, "consistent with the data"));
-  CHECK(says({{"coverage_95", 0.7}}, "too narrow"));
-  CHECK(says({{"coverage_95", 1}}, "too wide for these data"));
-  CHECK(says({{"whiteness_p", 2e-4}}, "the residuals are autocorrelated"));
-  CHECK(says({{"whiteness_p", 0.02}}, "no autocorrelation of the residuals"));
-  CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "residuals uncorrelated with heat, p"));
-  CHECK(says({{"input_correlation_p(heat)", 1e-9}}, "the residuals are correlated with the input"));
-  CHECK(says({{"chi_squared_per_sample", 0.6}}, "the noise explains them"));
+  CHECK(says({{{ScoreKind::nmse}, 0.01}}, "can hardly be distinguished"));
+  CHECK(says({{{ScoreKind::nmse}, 140}}, "no better than a constant equal to the mean"));
+  CHECK(says({{{ScoreKind::coverage_95}, 0.94}}, "consistent with the data"));
+  CHECK(says({{{ScoreKind::coverage_95}, 0.7}}, "too narrow"));
+  CHECK(says({{{ScoreKind::coverage_95}, 1}}, "too wide for these data"));
+  CHECK(says({{{ScoreKind::whiteness}, 2e-4}}, "the residuals are autocorrelated"));
+  CHECK(says({{{ScoreKind::whiteness}, 0.02}}, "no autocorrelation of the residuals"));
+  CHECK(says({{{ScoreKind::input_correlation, "heat"}, 1e-9}}, "residuals uncorrelated with heat, p"));
+  CHECK(says({{{ScoreKind::input_correlation, "heat"}, 1e-9}}, "the residuals are correlated with the input"));
+  CHECK(says({{{ScoreKind::chi_squared}, 0.6}}, "the noise explains them"));
   report.noise = {"sigma"};
-  CHECK(says({{"chi_squared_per_sample", 0.6}}, "was fitted to the residuals, so this does not test the model"));
+  CHECK(says({{{ScoreKind::chi_squared}, 0.6}}, "was fitted to the residuals, so this does not test the model"));
   report.findings = {{FindingCode::noise_size, Severity::error, {}, "m", ""}};
-  CHECK(says({{"chi_squared_per_sample", 0.6}}, "smaller than in the model"));
-  CHECK(says({{"chi_squared_per_sample", 3}}, "larger than in the model"));
+  CHECK(says({{{ScoreKind::chi_squared}, 0.6}}, "smaller than in the model"));
+  CHECK(says({{{ScoreKind::chi_squared}, 3}}, "larger than in the model"));
   CHECK(report_html(report, {}).find("narrow every parameter") == std::string::npos);  // nothing is learnt from what failed
 }
 
 TEST_CASE("of several channels the worst is named") {
   Report report = example::duffing(20);
   report.predictions.clear();
-  report.fit = {{"a", "force", "N", {{"nmse", 1}}}, {"b", "force", "N", {{"nmse", 30}}}};
+  report.fit = {{"a", "force", "N", {{{ScoreKind::nmse}, 1}}}, {"b", "force", "N", {{{ScoreKind::nmse}, 30}}}};
   std::string const page = report_html(report, {});
   CHECK(page.find("30.0 % of the measured variance is not explained (force on b)") != std::string::npos);
 }

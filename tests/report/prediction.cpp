@@ -83,9 +83,9 @@ TEST_CASE("scores count scored samples that are there") {
   auto const found = scores(q, scored);
   REQUIRE(found.size() == 2);
   // y = 1, -1, 3: mean 1, population variance 8/3; mean square 11/3.
-  CHECK(found[0].name == "nmse");
+  CHECK(found[0].name.kind == ScoreKind::nmse);
   CHECK(found[0].value == doctest::Approx(100 * 11.0 / 8).epsilon(1e-14));
-  CHECK(found[1].name == "rmse");
+  CHECK(found[1].name.kind == ScoreKind::rmse);
   CHECK(found[1].value == doctest::Approx(std::sqrt(11.0 / 3)).epsilon(1e-14));
 }
 

@@ -19,12 +19,12 @@ namespace {
 bool has(std::string const& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 /// All but one of `samples` samples, or all of them, inside a band.
-std::string page_with_coverage(std::size_t samples, double share, std::string const& score = "coverage_95", bool counts = false) {
+std::string page_with_coverage(std::size_t samples, double share, ScoreKind score = ScoreKind::coverage_95, bool counts = false) {
   Report report = example::duffing(20);
   Prediction& prediction = report.predictions[0];
   prediction.scored.assign(prediction.scored.size(), 0);
   std::fill_n(prediction.scored.begin(), samples, 1);
-  report.fit = {{"bench.train", "displacement", "mm", {{score, share}}}};
+  report.fit = {{"bench.train", "displacement", "mm", {{{score}, share}}}};
   if (counts)
     for (PredictedQuantity& quantity : prediction.quantities)
       for (double& value : quantity.measured) value = std::round(value);
@@ -76,10 +76,10 @@ TEST_CASE("a band is too wide or too narrow only where chance would not do it") 
 }
 
 TEST_CASE("bands of counts hold more than their share, and three sds of other noise than normal have no share of their own") {
-  std::string const counts = page_with_coverage(100, 1, "coverage_95", true);
+  std::string const counts = page_with_coverage(100, 1, ScoreKind::coverage_95, true);
   CHECK(has(counts, "at least 95.0 % are expected: the width of the bands is consistent with the data"));
-  CHECK(has(page_with_coverage(100, 0.8, "coverage_95", true), "too narrow for these data"));
-  std::string const skewed = page_with_coverage(100, 0.96, "coverage_3sd");
+  CHECK(has(page_with_coverage(100, 0.8, ScoreKind::coverage_95, true), "too narrow for these data"));
+  std::string const skewed = page_with_coverage(100, 0.96, ScoreKind::coverage_3sd);
   CHECK(has(skewed, "96.0 % of the scored samples lie within three sds"));
   CHECK(has(skewed, "; of normal noise, 99.7 % are expected."));
 }
@@ -88,7 +88,7 @@ TEST_CASE("bands include the noise where there are such bands, and a small p val
   Report report = example::duffing(20);
   CHECK(has(report_html(report, {}), "Bands include the noise."));
   for (PredictedQuantity& each : report.predictions[0].quantities) each.noisy = {};
-  report.fit = {{"bench.train", "displacement", "mm", {{"nmse", 5.4}, {"whiteness_p", 3.639e-111}}}};
+  report.fit = {{"bench.train", "displacement", "mm", {{{ScoreKind::nmse}, 5.4}, {{ScoreKind::whiteness}, 3.639e-111}}}};
   std::string const page = report_html(report, {});
   CHECK(!has(page, "Bands include the noise."));
   CHECK(has(page, "&lt;\u00a00.0001"));

@@ -254,14 +254,10 @@ class AveragedQuantity {
   AveragedBand out_;
 };
 
-double score(std::vector<Score> const& scores, char const* name) {
-  auto const found = std::ranges::find_if(scores, [&](Score const& each) { return each.name == name; });
-  return found == scores.end() ? not_a_number : found->value;
-}
-
 AverageScores scores_of(PredictedQuantity const& quantity, std::vector<std::uint8_t> const& scored, double log_score) {
   std::vector<Score> const found = scores(quantity, scored);
-  return {log_score, score(found, "nmse"), score(found, "rmse"), score(found, "coverage_95")};
+  auto const score = [&](ScoreKind kind) { return find_score(found, {kind}).value_or(not_a_number); };
+  return {log_score, score(ScoreKind::nmse), score(ScoreKind::rmse), score(ScoreKind::coverage_95)};
 }
 
 }  // namespace

@@ -194,7 +194,7 @@ class PredictAverage {
       for (std::size_t i = 0; i < channel.rows.size(); ++i) average.scored[i] |= channel.rows[i];
       auto const of = std::ranges::find_if(bands, [&](auto const& each) { return each.average.name == channel.scores.channel; });
       std::vector<Score> all = scores(of->average, channel.rows);
-      all.insert(all.begin(), {"log_score", channel.scores.average.log_score});
+      all.insert(all.begin(), {{ScoreKind::log_score}, channel.scores.average.log_score});
       report.fit.push_back({channel.scores.experiment, channel.scores.channel, channel.scores.unit, std::move(all)});
       report.average->channels.push_back(std::move(channel.scores));
     }

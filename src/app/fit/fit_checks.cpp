@@ -109,9 +109,8 @@ std::vector<LeftByFit> left_by(FinishedFit const& fit) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
       int const scored = scored_count(experiment, c);
       for (FitLine const& line : fit.report.fit)
-        for (Score const& score : line.scores)
-          if (line.channel == channels[c].name && line.experiment == experiment.name && score.name == "chi_squared_per_sample")
-            each.squares += scored * score.value;
+        if (line.channel == channels[c].name && line.experiment == experiment.name)
+          each.squares += scored * find_score(line.scores, {ScoreKind::chi_squared}).value_or(0);
     }
     left.push_back(each);
   }

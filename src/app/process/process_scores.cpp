@@ -85,12 +85,12 @@ FitCheck score_leave_one_out(ProcessTarget const& target, ParameterSpace const& 
     double const unit_squared = std::pow(rmse(observed, predicted), 2);
     double const measured = target.measured_variance(static_cast<int>(c)) * std::pow(channel.from_si(1), 2);
     FitLine line{names, channel.name, channel.unit_text(), {}};
-    line.scores.push_back({"nmse_left_out", 100 * unit_squared / measured});
-    line.scores.push_back({"rmse", rmse(observed, predicted)});
-    line.scores.push_back({"coverage_95", static_cast<double>(inside) / static_cast<double>(standardised.size())});
+    line.scores.push_back({{ScoreKind::nmse_left_out}, 100 * unit_squared / measured});
+    line.scores.push_back({{ScoreKind::rmse}, rmse(observed, predicted)});
+    line.scores.push_back({{ScoreKind::coverage_95}, static_cast<double>(inside) / static_cast<double>(standardised.size())});
     // They are correlated, but in mean square of size one.
     ChiSquaredTest const size = chi_squared(standardised);
-    line.scores.push_back({"chi_squared_per_sample", size.per_sample});
+    line.scores.push_back({{ScoreKind::chi_squared}, size.per_sample});
     result.lines.push_back(std::move(line));
   }
   return result;

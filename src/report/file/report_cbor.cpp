@@ -61,6 +61,18 @@ struct adl_serializer<sysid::Finding> {
   }
 };
 
+template <>
+struct adl_serializer<sysid::Score> {
+  static void to_json(json& out, sysid::Score const& score) {
+    out = {{"name", sysid::text_of(score.name)}, {"value", score.value}};
+  }
+  static sysid::Score from_json(json const& stored) {
+    auto name = sysid::score_name(stored.at("name").get<std::string>());
+    if (!name) throw json::other_error::create(501, "a score without a row", &stored);
+    return {std::move(*name), stored.at("value").get<double>()};
+  }
+};
+
 }  // namespace nlohmann
 
 namespace sysid {
@@ -73,7 +85,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FixedValue, name, value, unit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrueValue, name, unit, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DataInfo, name, file, sha256, rows, scored, scored_rows, samples_sha256, inputs_sha256, notes,
                                    true_parameters)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Score, name, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FitLine, experiment, channel, unit, scores, optimum_of)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportTable, title, caption, header, rows)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, name, unit, mean, median, sd, mad, q5, q95, rhat, ess_bulk, ess_tail, mcse_mean,

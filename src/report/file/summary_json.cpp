@@ -28,7 +28,7 @@ Json facts(Facts const& facts) {
 
 Json score_object(std::vector<Score> const& scores) {
   Json out = Json::object();
-  for (Score const& score : scores) out[score.name] = score.value;
+  for (Score const& score : scores) out[text_of(score.name)] = score.value;
   return out;
 }
 

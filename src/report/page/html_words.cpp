@@ -46,7 +46,7 @@ bool all_whole(std::vector<double> const& samples) {
   return !samples.empty() && std::all_of(samples.begin(), samples.end(), [](double value) { return value == std::round(value); });
 }
 
-std::optional<Worst> worst(Report const& report, std::vector<FitLine> const& lines, std::string_view name,
+std::optional<Worst> worst(Report const& report, std::vector<FitLine> const& lines, ScoreName const& name,
                            std::function<double(Worst const&)> const& badness) {
   std::optional<Worst> out;
   for (FitLine const& line : lines)
@@ -192,39 +192,47 @@ std::string verdict_meaning(Report const& report) {
          "the fit.";
 }
 
-std::string score_words(Report const& report, std::vector<FitLine> const& lines, std::string const& score) {
+std::string score_words(Report const& report, std::vector<FitLine> const& lines, ScoreName const& score) {
   auto const say = [&](std::function<double(Worst const&)> const& badness, auto const& words) {
     auto const found = worst(report, lines, score, badness);
     return found ? words(*found) : std::string();
   };
   auto const high = [](Worst const& each) { return each.value; };
   auto const low = [](Worst const& each) { return -each.value; };
-  if (score == "nmse" || score == "nmse_left_out") return say(high, error_words);
-  for (auto const& [name, expected, words] :
-       {std::tuple("coverage_95", 0.95, &coverage_words), std::tuple("coverage_3sd", 0.9973, &three_sd_words)})
-    if (score == name)
-      return say([at = expected](Worst const& each) { return badness_of_coverage(each, at); },
-                 [at = expected, in_words = words](Worst const& each) { return in_words(each, at); });
-  if (score == "log_score")
-    return "mean log predictive density of a sample: higher is better, to be compared on these samples alone";
-  if (score == "chi_squared_per_sample")
-    return say([](Worst const& each) { return std::fabs(std::log(std::max(each.value, 1e-300))); },
-               [&](Worst const& each) {
-                 return size_words(each,
-                                   std::any_of(report.findings.begin(), report.findings.end(),
-                                               [](Finding const& finding) { return finding.code == FindingCode::noise_size; }),
-                                   !report.noise.empty());
-               });
-  if (score == "whiteness_p")
-    return say(low, [](Worst const& p) {
-      return chance_words(p, "the residuals are autocorrelated: dynamics are missing in the model, or the noise is not white",
-                          "no autocorrelation of the residuals was found");
-    });
-  if (score.starts_with("input_correlation_p"))
-    return say(low, [](Worst const& p) {
-      return chance_words(p, "the residuals are correlated with the input: the model misses a part of the response",
-                          "no correlation of the residuals with the input was found");
-    });
+  auto const coverage = [&](double expected, auto const& words) {
+    return say([=](Worst const& each) { return badness_of_coverage(each, expected); },
+               [&](Worst const& each) { return words(each, expected); });
+  };
+  switch (score.kind) {
+    case ScoreKind::nmse:
+    case ScoreKind::nmse_left_out:
+      return say(high, error_words);
+    case ScoreKind::rmse:
+      return "";
+    case ScoreKind::coverage_95:
+      return coverage(0.95, coverage_words);
+    case ScoreKind::coverage_3sd:
+      return coverage(0.9973, three_sd_words);
+    case ScoreKind::log_score:
+      return "mean log predictive density of a sample: higher is better, to be compared on these samples alone";
+    case ScoreKind::chi_squared:
+      return say([](Worst const& each) { return std::fabs(std::log(std::max(each.value, 1e-300))); },
+                 [&](Worst const& each) {
+                   bool const found = std::ranges::any_of(
+                       report.findings, [](Finding const& finding) { return finding.code == FindingCode::noise_size; });
+                   return size_words(each, found, !report.noise.empty());
+                 });
+    case ScoreKind::whiteness:
+      return say(low, [](Worst const& p) {
+        return chance_words(p, "the residuals are autocorrelated: dynamics are missing in the model, or the noise is not white",
+                            "no autocorrelation of the residuals was found");
+      });
+    case ScoreKind::input_correlation:
+      return say(low, [](Worst const& p) {
+        return chance_words(p, "the residuals are correlated with the input: the model misses a part of the response",
+                            "no correlation of the residuals with the input was found");
+      });
+  }
   return "";
 }
 

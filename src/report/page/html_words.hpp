@@ -16,7 +16,7 @@ std::string verdict_words(Report const& report);
 std::string verdict_meaning(Report const& report);
 
 /// What the values of a kind of score say here, of the worst of the lines; empty where nothing is to be said.
-std::string score_words(Report const& report, std::vector<FitLine> const& lines, std::string const& score);
+std::string score_words(Report const& report, std::vector<FitLine> const& lines, ScoreName const& score);
 
 /// A diagnostic of the chains, what it says here, and whether it is as it should be.
 struct ChainWords {

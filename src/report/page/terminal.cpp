@@ -46,8 +46,9 @@ std::string summary_table(Report const& report) {
 std::string scores_line(FitLine const& line) {
   std::string out;
   for (Score const& score : line.scores) {
-    std::string const unit = score.name.starts_with("nmse") ? "%" : score.name == "rmse" ? line.unit : "";
-    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", score.name, significant(score.value, 4));
+    ScoreUnit const of = row_of(score.name.kind).unit;
+    std::string const unit = of == ScoreUnit::percent ? "%" : of == ScoreUnit::of_channel ? line.unit : "";
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", text_of(score.name), significant(score.value, 4));
     if (!unit.empty()) out += fmt::format(" [{}]", unit);
   }
   return out;
