@@ -221,8 +221,8 @@ TEST_CASE("adjoints are the same bytes for any executor, lanes, threads and tape
       if (set > *supported_instruction_set()) continue;
       force_instruction_set(set);
       for (std::size_t way = 0; way < ways.size(); ++way) {
-        // Each way with each instruction set for every other case: a way that goes astray does so for many programs.
-        if (!full_size() && (way + number + (set == narrowest_instruction_set ? 0 : 1)) % 2 == 0) continue;
+        // Each way with each instruction set for every third case: a way that goes astray does so for many programs.
+        if (!full_size() && (way + number + (set == narrowest_instruction_set ? 0 : 1)) % 3 != 0) continue;
         CAPTURE(each.name);
         CAPTURE(way);
         Gradients const found = gradients(each.source, each.by, record_with_gaps(each.unequal), each.solver, parameters, ways[way]);

@@ -9,6 +9,7 @@
 #include "core/numeric/instruction_set.hpp"
 #include "core/numeric/random.hpp"
 #include "native/module.hpp"
+#include "replications.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/simulator.hpp"
 #include "simulate/systems.hpp"
@@ -150,7 +151,12 @@ std::vector<std::uint64_t> everything(Simulator const& simulator, ConstLanes par
 TEST_CASE("every executor gives the bytes of the oracle, for any width, position and number of threads") {
   REQUIRE((native::module() != nullptr || narrowest_instruction_set == InstructionSet::neon));  // which has no such compiler
   InstructionSet const before = instruction_set();
+  std::vector<ExecutionOptions> ways;
+  for (int const lanes : {0, 1, 4, 8, 16, 32}) ways.push_back({.lanes = lanes, .executor = ExecutorKind::native});
+  ways.push_back({.threads = 3, .executor = ExecutorKind::native});
+  std::size_t number = 0;  // of the setting
   for (Setting const& setting : settings()) {
+    ++number;
     CAPTURE(setting.name);
     Experiment const record = record_with_gaps(setting.unequal);
     auto const program = std::make_shared<SimulationProgram const>(compile(setting.source));
@@ -164,11 +170,12 @@ TEST_CASE("every executor gives the bytes of the oracle, for any width, position
       force_instruction_set(set);
       CAPTURE(std::string(name(set)));
       CHECK(everything(simulator({.executor = ExecutorKind::lanes}), parameters) == expected);
-      for (int const lanes : {0, 1, 4, 8, 16, 32}) {
-        CAPTURE(lanes);
-        CHECK(everything(simulator({.lanes = lanes, .executor = ExecutorKind::native}), parameters) == expected);
+      for (std::size_t way = 0; way < ways.size(); ++way) {
+        // Each way with each instruction set for every third setting: a way that goes astray does so for many programs.
+        if (!full_size() && (way + number + (set == narrowest_instruction_set ? 0 : 1)) % 3 != 0) continue;
+        CAPTURE(way);
+        CHECK(everything(simulator(ways[way]), parameters) == expected);
       }
-      CHECK(everything(simulator({.threads = 3, .executor = ExecutorKind::native}), parameters) == expected);
     }
     force_instruction_set(before);
   }
