@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/numeric/elementary.hpp"
-#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/residuals/explained.hpp"
 #include "diagnostics/scores.hpp"
 
 namespace sysid {

@@ -2,6 +2,7 @@
 #include "diagnostics/prior_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -110,6 +111,22 @@ std::string times_apart(double ratio) {
 Finding prior_far_from_data(std::vector<std::string> names, std::string message) {
   return {FindingCode::prior_far_from_data, Severity::warning, std::move(names), std::move(message),
           "check the units of the data columns, and priors that are wide or misplaced"};
+}
+
+void name_held(Report const& report, Findings& findings) {
+  std::vector<std::string> held;
+  for (PriorInfo const& prior : report.priors)
+    for (Summary const& summary : report.summary)
+      if (summary.name == prior.name && !summary.coefficient)
+        if (auto const ratio = contraction(prior, summary); ratio && *ratio < hardly_narrower) held.push_back(summary.name);
+  constexpr std::size_t most_named = 6;
+  if (held.empty() || held.size() > most_named) return;
+  for (Finding& each : findings)
+    if (each.code == FindingCode::explains_little || each.code == FindingCode::worse_than_the_mean)
+      each.help +=
+          held.size() == 1
+              ? fmt::format("; the posterior of {} is nearly as wide as its prior: check this prior", held.front())
+              : fmt::format("; the posteriors of {} are nearly as wide as their priors: check these priors", fmt::join(held, ", "));
 }
 
 }  // namespace sysid

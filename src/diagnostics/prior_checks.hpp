@@ -45,4 +45,8 @@ std::string times_apart(double ratio);
 /// prior_far_from_data with what was found.
 Finding prior_far_from_data(std::vector<std::string> names, std::string message);
 
+/// Where a fit explains little: adds to the help which parameters have kept the width of their prior, which may hold others where
+/// they cannot fit.
+void name_held(Report const& report, Findings& findings);
+
 }  // namespace sysid

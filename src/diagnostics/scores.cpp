@@ -7,7 +7,7 @@
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/numeric/tails.hpp"
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 
 namespace sysid {
 namespace {

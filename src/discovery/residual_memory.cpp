@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 
 namespace sysid {
 namespace {

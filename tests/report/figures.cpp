@@ -12,7 +12,7 @@
 #include "core/numeric/random.hpp"
 #include "core/text/number.hpp"
 #include "diagnostics/convergence.hpp"
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 #include "example.hpp"
 #include "report/figure/gnuplot.hpp"
 

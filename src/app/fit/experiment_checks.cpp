@@ -15,7 +15,7 @@
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
-#include "diagnostics/residual_offset.hpp"
+#include "diagnostics/residuals/residual_offset.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 #include "search/refit.hpp"

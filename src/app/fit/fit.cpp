@@ -22,6 +22,7 @@
 #include "app/session/task_checkpoint.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
+#include "diagnostics/prior_checks.hpp"
 #include "diagnostics/tolerance/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/backend/checkpoint.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/session/session.hpp"
-#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/residuals/residual_checks.hpp"
 #include "experiment/experiments.hpp"
 #include "inference/backend/backend.hpp"
 #include "likelihood/parameter_space.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/session/session.hpp"
-#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/residuals/residual_checks.hpp"
 #include "likelihood/particle/particle_target.hpp"
 #include "likelihood/particle/particle_trajectory.hpp"
 #include "result/mode.hpp"

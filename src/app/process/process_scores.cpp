@@ -7,7 +7,7 @@
 
 #include "app/process/process_draws.hpp"
 #include "diagnostics/bands.hpp"
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 #include "gaussian_process/concern.hpp"
 #include "gaussian_process/leave_one_out.hpp"
 

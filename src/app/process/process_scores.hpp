@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/residuals/residual_checks.hpp"
 #include "experiment/experiments.hpp"
 #include "likelihood/process/process_target.hpp"
 #include "result/finding.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/selection/candidate_posterior.hpp"
-#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/residuals/residual_checks.hpp"
 #include "likelihood/selection/model_selection_target.hpp"
 #include "result/selection.hpp"
 

@@ -11,7 +11,7 @@
 #include "app/session/reporting.hpp"
 #include "core/system/files.hpp"
 #include "diagnostics/convergence.hpp"
-#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/residuals/residual_checks.hpp"
 #include "diagnostics/verdict.hpp"
 #include "model/simulated_parameters.hpp"
 

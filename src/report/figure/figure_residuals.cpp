@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 #include "report/figure/drawing.hpp"
 #include "report/figure/figures.hpp"
 

@@ -14,7 +14,7 @@
 #include "core/text/words.hpp"
 #include "diagnostics/chain_checks.hpp"
 #include "diagnostics/prior_checks.hpp"
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 #include "diagnostics/verdict.hpp"
 
 namespace sysid {

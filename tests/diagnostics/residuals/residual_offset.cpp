@@ -1,5 +1,5 @@
 // An offset of a sensor: what it is told from, and a cure that is followed as it is written.
-#include "diagnostics/residual_offset.hpp"
+#include "diagnostics/residuals/residual_offset.hpp"
 
 #include <doctest/doctest.h>
 

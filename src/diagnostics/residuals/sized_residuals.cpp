@@ -1,5 +1,5 @@
 // Sizes by variances of counts and by moments of deviances.
-#include "diagnostics/sized_residuals.hpp"
+#include "diagnostics/residuals/sized_residuals.hpp"
 
 #include <algorithm>
 #include <cmath>

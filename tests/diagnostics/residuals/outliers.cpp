@@ -1,5 +1,5 @@
 // Samples that do not belong: found where they are few, whatever they have done to the estimated noise, and nowhere else.
-#include "diagnostics/outliers.hpp"
+#include "diagnostics/residuals/outliers.hpp"
 
 #include <doctest/doctest.h>
 

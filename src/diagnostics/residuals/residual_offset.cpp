@@ -1,5 +1,5 @@
 // The test of a mean, and the words that give it a place in the model.
-#include "diagnostics/residual_offset.hpp"
+#include "diagnostics/residuals/residual_offset.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "core/text/without_index.hpp"
 #include "diagnostics/law/noise_words.hpp"
 #include "diagnostics/law/round_number.hpp"
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 #include "result/experiment_words.hpp"
 
 namespace sysid {

@@ -1,5 +1,5 @@
 // Residual tests: each fires on the fault it is for and stays silent on noise.
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Correlation and size of residuals.
-#include "diagnostics/residual_tests.hpp"
+#include "diagnostics/residuals/residual_tests.hpp"
 
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>

@@ -1,5 +1,5 @@
 // Hampel's identifier, against the stated size of the noise as well.
-#include "diagnostics/outliers.hpp"
+#include "diagnostics/residuals/outliers.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnostics/user_text.hpp"
+#include "diagnostics/residuals/user_text.hpp"
 #include "model/model.hpp"
 #include "result/finding.hpp"
 

@@ -1,5 +1,5 @@
 // Scores and tests of what a fit leaves, and the words for what they find.
-#include "diagnostics/residual_checks.hpp"
+#include "diagnostics/residuals/residual_checks.hpp"
 
 #include <fmt/format.h>
 
@@ -14,138 +14,17 @@
 #include "diagnostics/law/noise_law.hpp"
 #include "diagnostics/law/noise_words.hpp"
 #include "diagnostics/law/residual_law.hpp"
-#include "diagnostics/outliers.hpp"
-#include "diagnostics/residual_offset.hpp"
-#include "diagnostics/residual_tests.hpp"
-#include "diagnostics/sized_residuals.hpp"
+#include "diagnostics/residuals/explained.hpp"
+#include "diagnostics/residuals/residual_offset.hpp"
+#include "diagnostics/residuals/channel_residuals.hpp"
 #include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
-#include "result/experiment_words.hpp"
 
 namespace sysid {
 namespace {
 
 /// nmse [%] from which a fit that leaves more than noise explains little, and less than half.
 constexpr double little = 20, less_than_half = 50;
-/// nmse [%] that an offset leaves, from which it is not what the fit lacks.
-constexpr double useless_without_offset = 80;
-
-// A channel over the scored rows of an experiment.
-struct ScoredChannel {
-  Model const& of_model;
-  std::vector<Experiment> const& experiments;
-  int experiment, channel;
-  std::vector<double> residuals;            // [N] standardised, NaN where not scored
-  std::vector<double> observed, predicted;  // where scored, declared unit
-  std::vector<std::size_t> places;          // of these along the experiment
-  SizedResiduals sized;
-
-  Model const& model() const { return of_model; }
-  Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }
-  Experiment const& data() const { return experiments[static_cast<std::size_t>(experiment)]; }
-  std::string name() const { return described().name + on_experiment(data().name, experiments.size() > 1); }
-  std::vector<std::string> names() const { return {described().name, data().name}; }
-  bool noise_is_estimated() const {
-    return std::any_of(described().noise.arguments.begin() + 1, described().noise.arguments.end(),
-                       [&](NodeId argument) { return reads_estimated(model(), argument); });
-  }
-};
-
-std::vector<double> without(std::vector<double> residuals, std::vector<std::size_t> const& places) {
-  for (std::size_t const place : places) residuals[place] = std::nan("");
-  return residuals;
-}
-
-double error_at(ScoredChannel const& of, std::size_t place) {
-  auto const at = std::lower_bound(of.places.begin(), of.places.end(), place);
-  if (at == of.places.end() || *at != place) return 0;
-  auto const i = static_cast<std::size_t>(at - of.places.begin());
-  return std::fabs(of.observed[i] - of.predicted[i]);
-}
-
-// A response that is missed is missed most where it is largest, but never at one sample alone.
-std::vector<std::size_t> alone(ScoredChannel const& of, std::vector<std::size_t> places) {
-  constexpr double larger = 5;  // than its neighbours
-  std::erase_if(places, [&](std::size_t place) {
-    return error_at(of, place) < larger * std::max(place > 0 ? error_at(of, place - 1) : 0.0, error_at(of, place + 1));
-  });
-  return places;
-}
-
-// Single samples that do not belong; none of counts, where one is far from a small mean.
-std::vector<std::size_t> far_off(ScoredChannel const& of) {
-  if (of.described().noise.row->discrete) return {};
-  std::vector<std::size_t> const places = outliers(of.sized.values);
-  bool const noise_besides = of.model().dynamics == Dynamics::none || !whiteness(without(of.residuals, places)).fires();
-  return noise_besides ? places : alone(of, places);
-}
-
-// Single errors far from all others, whatever tails the noise has: of these alone the variance of a record may be.
-std::vector<std::size_t> spikes(ScoredChannel const& of) {
-  std::vector<double> errors(of.data().time.size(), std::nan(""));
-  std::vector<double> sizes;
-  for (std::size_t const place : of.places) sizes.push_back(errors[place] = error_at(of, place));
-  if (sizes.empty()) return {};
-  double const middle = median(sizes);
-  if (!(middle > 0)) return {};
-  for (double& error : errors) error /= sd_of_mad * middle;
-  return alone(of, outliers(errors));
-}
-
-// nmse [%] without `excluded`, places that rise, on the scale on which the noise has one size: by logarithms where it multiplies.
-double unexplained(ScoredChannel const& of, std::vector<std::size_t> const& excluded) {
-  DistributionRow const& noise = *of.described().noise.row;
-  std::vector<double> observed, predicted;
-  for (std::size_t i = 0; i < of.observed.size(); ++i) {
-    if (std::binary_search(excluded.begin(), excluded.end(), of.places[i])) continue;
-    observed.push_back(of.observed[i]);
-    predicted.push_back(of.predicted[i]);
-  }
-  if (noise.lower == nullptr || noise.discrete) return nmse(observed, predicted);
-  for (std::vector<double>* const series : {&observed, &predicted})
-    for (double& value : *series) value = value > 0 ? elementary::log(value) : std::nan("");
-  for (std::size_t i = 0; i < observed.size(); ++i)
-    if (std::isnan(predicted[i])) observed[i] = std::nan("");
-  return nmse(observed, predicted);
-}
-
-// What tests of a channel find; not yet what that means, which depends on how many are tested.
-struct Tested {
-  std::vector<std::size_t> far;  // samples far off, left out of the tests
-  double unexplained = 0;        // nmse [%] without spikes
-  OffsetTest offset;
-  double offset_size = 0, largest_offset = 0;  // of this channel, and of it on any experiment, in its declared unit
-  std::optional<CorrelationTest> white;        // rows of any order have no past
-  std::vector<CorrelationTest> with_input;     // of each input
-
-  /// Whether the fit explains something of the channel once the offset is estimated.
-  bool offset_cures() const { return offset.fires && unexplained * (1 - offset.share) < useless_without_offset; }
-};
-
-double mean_error(ScoredChannel const& of, std::vector<std::size_t> const& far) {
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < of.places.size(); ++i)
-    if (!std::binary_search(far.begin(), far.end(), of.places[i])) errors.push_back(of.observed[i] - of.predicted[i]);
-  return mean(errors);
-}
-
-Tested test_channel(ScoredChannel const& of) {
-  Tested tested;
-  tested.far = far_off(of);
-  tested.unexplained = unexplained(of, spikes(of));
-  std::vector<double> const residuals = without(of.residuals, tested.far);
-  bool const ordered = of.model().dynamics != Dynamics::none;
-  if (offset_can_be_added(of.model(), of.described())) tested.offset = offset_test(residuals, ordered);
-  if (tested.offset.fires) tested.offset_size = mean_error(of, tested.far);
-  if (!ordered) return tested;
-  tested.white = whiteness(residuals);
-  for (std::size_t i = 0; i < of.model().inputs.size(); ++i) {
-    std::vector<double> input;
-    for (std::size_t k = 0; k < of.data().time.size(); ++k) input.push_back(of.data().inputs[i].sample(static_cast<int>(k)));
-    tested.with_input.push_back(input_correlation(residuals, input));
-  }
-  return tested;
-}
 
 // What all channels of all experiments are judged by together.
 struct Limits {
@@ -153,9 +32,9 @@ struct Limits {
   double white, with_input;  // p values
 };
 
-Limits limits_of(std::vector<Tested> const& all) {
+Limits limits_of(std::vector<ChannelTests> const& all) {
   std::vector<double> white, with_input;
-  for (Tested const& each : all) {
+  for (ChannelTests const& each : all) {
     if (each.white) white.push_back(each.white->tail_p_value);
     for (CorrelationTest const& test : each.with_input) with_input.push_back(test.tail_p_value);
   }
@@ -165,7 +44,7 @@ Limits limits_of(std::vector<Tested> const& all) {
 constexpr char const* offset_first = "the misfit is mostly a constant: add the offset first (`residual_offset`)";
 
 // pattern: of the residuals, where what the fit leaves is more than noise; else null.
-void check_share(ScoredChannel const& of, Tested const& tested, char const* pattern, Findings& findings) {
+void check_share(ChannelResiduals const& of, ChannelTests const& tested, char const* pattern, Findings& findings) {
   char const* look = "check units, signs and columns, then the initial values and the priors, then the model";
   if (tested.offset_cures())
     look = offset_first;
@@ -187,7 +66,7 @@ void check_share(ScoredChannel const& of, Tested const& tested, char const* patt
 }
 
 // Rows as the file counts them, with how far they lie off.
-void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& places, UserText const& text, Findings& findings) {
+void check_outliers(ChannelResiduals const& of, std::vector<std::size_t> const& places, UserText const& text, Findings& findings) {
   if (places.empty()) return;
   std::string help = "check these rows: empty the cells that are not measurements";
   if (of.model().filtered())
@@ -207,13 +86,13 @@ void check_outliers(ScoredChannel const& of, std::vector<std::size_t> const& pla
                       help});
 }
 
-void check_offset(ScoredChannel const& of, Tested const& tested, UserText const& text, Findings& findings) {
+void check_offset(ChannelResiduals const& of, ChannelTests const& tested, UserText const& text, Findings& findings) {
   if (!tested.offset.fires) return;
   findings.push_back(residual_offset(of.model(), of.described(), of.data().name, of.experiments.size() > 1, tested.offset,
                                      tested.offset_size, tested.largest_offset, text));
 }
 
-std::string size_help(ScoredChannel const& of, Tested const& tested, bool larger, bool coloured, UserText const& text) {
+std::string size_help(ChannelResiduals const& of, ChannelTests const& tested, bool larger, bool coloured, UserText const& text) {
   // An offset or an outlier makes residuals larger: it does not explain that they are small.
   if (larger && !tested.far.empty()) return "a few outlying samples make the noise appear larger: check these first";
   if (larger && tested.offset_cures()) return offset_first;
@@ -233,7 +112,7 @@ std::string size_help(ScoredChannel const& of, Tested const& tested, bool larger
                 : "the stated noise is too large: estimate it";
 }
 
-void check_size(ScoredChannel const& of, Tested const& tested, Limits const& limits, UserText const& text, FitLine& line,
+void check_size(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, UserText const& text, FitLine& line,
                 Findings& findings) {
   ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, limits.channels);
   line.scores.push_back({{ScoreKind::chi_squared}, size.per_sample});
@@ -245,7 +124,7 @@ void check_size(ScoredChannel const& of, Tested const& tested, Limits const& lim
        size_help(of, tested, size.per_sample >= 1, tested.white && tested.white->fires(limits.white), text)});
 }
 
-std::string memory_help(ScoredChannel const& of, Tested const& tested) {
+std::string memory_help(ChannelResiduals const& of, ChannelTests const& tested) {
   if (tested.offset_cures()) return fmt::format("{}; then check the remaining residuals", offset_first);
   std::string help =
       "look for a force or dynamics that the model lacks, or for coloured noise; until this is resolved, the errors of the "
@@ -259,7 +138,7 @@ std::string memory_help(ScoredChannel const& of, Tested const& tested) {
 }
 
 // Of a model that has a past: correlation in time, and with the input's past.
-void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& limits, FitLine& line, Findings& findings) {
+void check_memory(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, FitLine& line, Findings& findings) {
   CorrelationTest const& white = *tested.white;
   line.scores.push_back({{ScoreKind::whiteness}, white.p_value});
   bool const offset_alone = tested.offset.fires && tested.offset.white_without;
@@ -284,7 +163,7 @@ void check_memory(ScoredChannel const& of, Tested const& tested, Limits const& l
 }
 
 // Of residuals that the other tests take for noise: whether it is the normal noise of one size that the model has.
-void check_law(ScoredChannel const& of, Tested const& tested, int together, UserText const& text, Findings& findings) {
+void check_law(ChannelResiduals const& of, ChannelTests const& tested, int together, UserText const& text, Findings& findings) {
   Channel const& channel = of.described();
   if (!channel.noise.row->gaussian || channel.noise.lower || channel.noise.upper) return;
   std::vector<double> const residuals = without(of.residuals, tested.far);
@@ -302,7 +181,7 @@ void check_law(ScoredChannel const& of, Tested const& tested, int together, User
   if (auto finding = noise_law(residual_law(left, of.predicted), rare / (2 * together), words)) findings.push_back(*finding);
 }
 
-FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits const& limits, UserText const& text,
+FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, UserText const& text,
                       Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
   line.scores = {{{ScoreKind::nmse}, nmse(of.observed, of.predicted)}, {{ScoreKind::rmse}, rmse(of.observed, of.predicted)}};
@@ -323,7 +202,7 @@ FitLine check_channel(ScoredChannel const& of, Tested const& tested, Limits cons
 
 // values: [D x 1] declared; residuals: all rows of the target.
 void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneArray const& residuals,
-                      std::vector<ScoredChannel>& scored) {
+                      std::vector<ChannelResiduals>& scored) {
   Model const& model = target.compiled()->model;
   Experiment const& experiment = target.experiments()[static_cast<std::size_t>(e)];
   Trajectory const trajectory(target.compiled(), experiment, target.options().solver, target.options().start_rows,
@@ -334,7 +213,8 @@ void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
   for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) {
     auto const channel = static_cast<std::size_t>(c);
     if (experiment.measured[channel].empty()) continue;
-    ScoredChannel of{model, target.experiments(), e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {}, {}};
+    ChannelResiduals of{model, target.experiments(), e, c, std::vector<double>(experiment.time.size(), std::nan("")), {}, {}, {},
+                        {}};
     for (std::size_t r = 0; r < target.residual_places().size(); ++r) {
       auto const [of_experiment, at_channel, sample] = target.residual_places()[r];
       if (of_experiment != e || at_channel != c || sample < 0) continue;
@@ -353,10 +233,10 @@ void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
   }
 }
 
-FitCheck check_scored(std::vector<ScoredChannel> const& scored, UserText const& text = {}) {
+FitCheck check_scored(std::vector<ChannelResiduals> const& scored, UserText const& text = {}) {
   FitCheck check;
-  std::vector<Tested> tested;
-  for (ScoredChannel const& each : scored) tested.push_back(test_channel(each));
+  std::vector<ChannelTests> tested;
+  for (ChannelResiduals const& each : scored) tested.push_back(test_channel(each));
   for (std::size_t k = 0; k < scored.size(); ++k)
     for (std::size_t j = 0; j < scored.size(); ++j)
       if (scored[j].described().name == scored[k].described().name)
@@ -376,17 +256,17 @@ FitCheck check_residuals(ModelTarget const& target, std::vector<double> const& d
   target.unconstrain(values, theta);
   Ledger ledger;
   target.residuals(theta, residuals, ledger);
-  std::vector<ScoredChannel> scored;
+  std::vector<ChannelResiduals> scored;
   for (int e = 0; e < static_cast<int>(target.experiments().size()); ++e) score_experiment(target, e, values, residuals, scored);
   return check_scored(scored, text);
 }
 
 FitCheck check_residuals(Model const& model, std::vector<Experiment> const& experiments,
                          std::vector<StandardisedRows> const& rows) {
-  std::vector<ScoredChannel> scored;
+  std::vector<ChannelResiduals> scored;
   for (std::size_t e = 0; e < experiments.size(); ++e)
     for (std::size_t c = 0; c < model.channels.size(); ++c) {
-      ScoredChannel of{model, experiments, static_cast<int>(e), static_cast<int>(c), rows[e].residuals[c], {}, {}, {}, {}};
+      ChannelResiduals of{model, experiments, static_cast<int>(e), static_cast<int>(c), rows[e].residuals[c], {}, {}, {}, {}};
       for (std::size_t i = 0; i < of.residuals.size(); ++i) {
         if (std::isnan(of.residuals[i])) continue;
         of.observed.push_back(model.channels[c].from_si(experiments[e].measured[c][i]));
