@@ -18,6 +18,9 @@ std::set<std::string> TaskResults::tasks() const {
 
 void TaskResults::erase(std::string_view task) {
   std::erase_if(all, [&](Result const& each) { return each.task == task; });
+  // A prediction takes draws from these without a look at the text they are of.
+  fitted.erase(std::string(task));
+  selected.erase(std::string(task));
 }
 
 }  // namespace sysid::repl

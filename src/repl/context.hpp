@@ -43,6 +43,7 @@ struct TaskResults {
   /// Null when there is none.
   Result const* find(std::string_view task) const;
   std::set<std::string> tasks() const;
+  /// Forgets the result of a task with its draws. That it was interrupted, and that its folder is the session's, stays.
   void erase(std::string_view task);
 };
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "app/run/pipeline.hpp"
+#include "app/session/reporting.hpp"
 #include "app/session/results.hpp"
 #include "app/session/stored_draws.hpp"
 #include "app/session/task_rows.hpp"
@@ -26,16 +27,27 @@ void keep(Context& context, Session& session, Task const& task, int index, std::
   result.summary = std::move(summary);
   if (auto const selected = session.selected.find(index); selected != session.selected.end())
     context.results.selected[task.name] = selected->second;
-  if (!std::holds_alternative<FitTask>(task.what)) return;
+  if (kind_of(task) != TaskKind::fit) return;
   auto const fitted = session.fitted.find(index);
-  if (context.results.interrupted.contains(task.name)) {
-    // The draws so far stand in the folder alone.
-    std::vector<std::string> names;
-    for (DrawColumn const& column : result.draws) names.push_back(column.name);
-    context.results.fitted[task.name] = read_fitted(result.folder, names);
-    for (DrawColumn const& column : result.draws) context.results.fitted[task.name].draws.units.push_back(column.unit);
-  } else if (fitted != session.fitted.end()) {
+  if (fitted != session.fitted.end() && !context.results.interrupted.contains(task.name)) {
     context.results.fitted[task.name] = fitted->second;
+    return;
+  }
+  // The draws so far, and those of a result that was complete already, stand in the folder alone.
+  std::vector<std::string> names;
+  for (DrawColumn const& column : result.draws) names.push_back(column.name);
+  FittedModel stored = read_fitted(result.folder, names);
+  for (DrawColumn const& column : result.draws) stored.draws.units.push_back(column.unit);
+  context.results.fitted[task.name] = std::move(stored);
+}
+
+/// Whether the folder of a task holds results of the task as it is written now, whoever has computed them.
+bool holds_own_result(Session const& session, Task const& task) {
+  if (!std::filesystem::exists(session.result_folder(task) / "summary.json")) return false;
+  try {
+    return !stored_otherwise(session, task, stated_seed(task));
+  } catch (UserError const&) {
+    return false;
   }
 }
 
@@ -84,6 +96,7 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
   std::ostringstream answers;
   Session session(checked->source, checked->file, options, context.progress, answers, notices);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (tasks[i].name == name) continue;  // what it has left before may be of another text
     if (auto const known = context.results.fitted.find(tasks[i].name); known != context.results.fitted.end())
       session.fitted[static_cast<int>(i)] = known->second;
     if (auto const known = context.results.selected.find(tasks[i].name); known != context.results.selected.end())
@@ -110,10 +123,13 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
   });
   clear_interrupt();
   if (claimed && ended) context.results.made.insert(name);
-  bool const something = ended && (std::holds_alternative<SimulateTask>(place->what) ||
-                                   std::filesystem::exists(session.result_folder(*place) / "summary.json"));
-  // A result of before that this run has swept away is none.
-  if (!something && !std::filesystem::exists(context.options.output / name / "summary.json")) context.results.erase(name);
+  bool const stands = std::filesystem::exists(session.result_folder(*place) / "summary.json");
+  // A run that was stopped may have left the result of an earlier text where it was.
+  bool const something = ended && (kind_of(*place) == TaskKind::simulate ||
+                                   (exit == ExitCode::interrupted ? holds_own_result(session, *place) : stands));
+  // A result of before that this run has swept away is none, nor one of a text that the work no longer has: of a run that failed
+  // the work goes back to the text of before.
+  if (!something && (ended || !stands)) context.results.erase(name);
   if (!ended) return false;
   if (exit == ExitCode::interrupted)
     context.results.interrupted[name] = checked;

@@ -132,7 +132,6 @@ bool drop(Context& context, std::string const& name) {
   if (!adopt(context, std::move(draft), "")) return false;
   if (context.work.statements.find(ItemKind::task, name) == context.work.statements.items.size()) {
     context.results.erase(name);
-    context.results.fitted.erase(name);
     context.results.interrupted.erase(name);
   }
   return true;

@@ -333,6 +333,38 @@ TEST_CASE("a fit that is stopped keeps its draws, and goes on to the bytes of an
   CHECK_FALSE(broken->enter("resume"));
 }
 
+TEST_CASE("a fit that is stopped before its first draw leaves none of an earlier text to be predicted with") {
+  Dialogue d;
+  d.begin();
+  std::string const fit =
+      "post = fit oscillator to bench.train with mh(samples = 400, burn_in = 200, thin = 2, chains = 2), seed = 1";
+  REQUIRE_MESSAGE(d.enter(fit), d.messages());
+  REQUIRE_MESSAGE(d.enter("parameter k3 [N/m^3] ~ log_uniform(1e7, 1e11); 1 [kg]*y'' + c*y' + k*y + k3*y^3 = x"), d.messages());
+  d.workbench().interrupt_after(1);
+  REQUIRE_MESSAGE(d.enter(fit), d.messages());
+  // The draws of the model without k3 stand in the folder yet.
+  CHECK_FALSE(d.enter("count(k)"));
+  CHECK_FALSE(d.enter("forecast = predict post on bench with draws(20)"));
+  CHECK(has(d.messages(), "`post`"));
+  REQUIRE_MESSAGE(d.enter("run post"), d.messages());
+  CHECK_MESSAGE(d.enter("forecast = predict post on bench with draws(20)"), d.messages());
+  CHECK(d.enter("mean(k3)"));
+}
+
+TEST_CASE("what a task has left is forgotten as a whole") {
+  repl::TaskResults results;
+  for (char const* name : {"first", "second"}) {
+    results.all.emplace_back().task = name;
+    results.fitted[name] = {};
+    results.selected[name] = {};
+  }
+  results.erase("first");
+  CHECK(results.find("first") == nullptr);
+  CHECK(results.fitted.count("first") + results.selected.count("first") == 0);
+  CHECK(results.find("second") != nullptr);
+  CHECK(results.fitted.count("second") + results.selected.count("second") == 2);
+}
+
 TEST_CASE("a file is loaded, changed, loaded again; its paths are those of its folder") {
   Dialogue d;
   d.begin();
