@@ -30,8 +30,8 @@ struct Export {
 
 fs::path fit_path(StoredResult const& stored) { return stored.folder / exported_file(stored.task(), ".nc"); }
 
-fs::path candidate_path(StoredResult const& stored, std::string const& candidate) {
-  return stored.folder / exported_file(stored.task(), ".nc", model_file_name(candidate));
+fs::path candidate_path(StoredResult const& stored, std::string const& file_name) {
+  return stored.folder / exported_file(stored.task(), ".nc", file_name);
 }
 
 /// The index of the task whose results these are. kind: "fit", "selection".
@@ -88,7 +88,7 @@ std::vector<Export> selection_exports(StoredResult const& stored, Session* sessi
     }
   }
   std::vector<Export> files;
-  for (CandidateData& each : candidates) files.push_back({candidate_path(stored, each.name), std::move(each.data)});
+  for (CandidateData& each : candidates) files.push_back({candidate_path(stored, each.file_name), std::move(each.data)});
   return files;
 }
 
@@ -122,7 +122,8 @@ void require_exportable(ResultsFolder const& results, bool force) {
     std::vector<fs::path> paths;
     if (stored.is("fit")) paths.push_back(fit_path(stored));
     if (stored.is("select"))
-      for (std::string const& candidate : living_candidates(stored)) paths.push_back(candidate_path(stored, candidate));
+      for (LivingCandidate const& candidate : living_candidates(stored))
+        paths.push_back(candidate_path(stored, candidate.file_name));
     for (fs::path const& path : paths)
       if (!force && fs::exists(path)) throw refused(fmt::format("`{}` exists already", path.string()), "add --force to replace it");
     any = any || !paths.empty();

@@ -11,6 +11,7 @@
 #include "core/text/number.hpp"
 #include "exchange/draws_group.hpp"
 #include "report/file/selection.hpp"
+#include "report/file/task_folder.hpp"
 #include "result/selection.hpp"
 
 namespace sysid {
@@ -48,36 +49,38 @@ void add_weighted(InferenceData& data, std::filesystem::path const& path, Draws 
 
 }  // namespace
 
-std::vector<std::string> living_candidates(StoredResult const& stored) {
+std::vector<LivingCandidate> living_candidates(StoredResult const& stored) {
   std::vector<std::string> names;
   auto const models = stored.summary.value("models", nlohmann::ordered_json::object());
-  for (auto const& [name, model] : models.items())
-    if (std::filesystem::exists(stored.folder / fmt::format("draws_{}.csv", model_file_name(name)))) names.push_back(name);
-  return names;
+  for (auto const& [name, model] : models.items()) names.push_back(name);
+  std::vector<std::string> const file_names = model_file_names(names);
+  std::vector<LivingCandidate> living;
+  for (std::size_t m = 0; m < names.size(); ++m)
+    if (std::filesystem::exists(stored.folder / model_draws_file(file_names[m]))) living.push_back({names[m], file_names[m]});
+  return living;
 }
 
 std::vector<CandidateData> stored_candidates(StoredResult const& stored) {
   std::vector<CandidateData> candidates;
-  for (std::string const& name : living_candidates(stored)) {
+  for (auto const& [name, file] : living_candidates(stored)) {
     nlohmann::ordered_json const& model = stored.summary["models"][name];
-    std::string const file = model_file_name(name);
-    CandidateData candidate{name, 0, {provenance(stored), {}, {}}};
+    CandidateData candidate{name, file, 0, {provenance(stored), {}, {}}};
     for (auto& [key, value] : candidate.data.attributes)
       if (key == "model") value = name;
     candidate.data.attributes.emplace_back("model_probability", shortest(model.value("probability", 0.0)));
     Draws const parameters = parameters_of(model.value("parameters", nlohmann::ordered_json::object()));
     Draws resampled = parameters;
-    resampled.chains.push_back(read_chain(stored.folder / fmt::format("draws_{}.csv", file), resampled.names));
+    resampled.chains.push_back(read_chain(stored.folder / model_draws_file(file), resampled.names));
     NetcdfGroup posterior("posterior");
     add_draws(posterior, resampled);
     candidate.data.add(std::move(posterior));
-    auto const particles = stored.folder / fmt::format("particles_{}.csv", file);
+    auto const particles = stored.folder / particles_file(file);
     bool const by_distance = std::filesystem::exists(particles);
     if (by_distance) add_weighted(candidate.data, particles, parameters);
     // Chains on the likelihood know parameters of the noise, too.
     Draws refined = parameters_of(model.value("polished", nlohmann::ordered_json::object()));
-    for (int c = 1; std::filesystem::exists(stored.folder / fmt::format("polished_{}_{}.csv", file, c)); ++c)
-      refined.chains.push_back(read_chain(stored.folder / fmt::format("polished_{}_{}.csv", file, c), refined.names));
+    for (std::size_t c = 0; std::filesystem::exists(stored.folder / refined_file(file, c)); ++c)
+      refined.chains.push_back(read_chain(stored.folder / refined_file(file, c), refined.names));
     if (!refined.chains.empty() && !refined.names.empty()) {
       NetcdfGroup group("polished_posterior");
       add_draws(group, refined);

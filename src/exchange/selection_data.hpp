@@ -6,12 +6,16 @@ namespace sysid {
 
 struct CandidateData {
   std::string name;       // of the model: "bouc_wen(n = 2)"
+  std::string file_name;  // what it is called in names of files
   std::size_t place = 0;  // among the candidates of the set, once its model is known
   InferenceData data;
 };
 
-/// The models that have draws, by name.
-std::vector<std::string> living_candidates(StoredResult const& stored);
+/// A model that has draws.
+struct LivingCandidate {
+  std::string name, file_name;  // as of CandidateData
+};
+std::vector<LivingCandidate> living_candidates(StoredResult const& stored);
 
 /// Per living candidate: posterior, its particles resampled to equal weights; weighted_posterior and weighted_sample_stats, the
 /// particles themselves with weight, distance and population; polished_posterior, where chains on its likelihood were run.

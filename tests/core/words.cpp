@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "core/text/told_apart.hpp"
+
 using namespace sysid;
 
 TEST_CASE("names are listed with a word before the last") {
@@ -14,6 +16,14 @@ TEST_CASE("names are listed with a word before the last") {
   CHECK(quoted({}).empty());
   CHECK(quoted({"m", "c", "k"}) == "`m`, `c` and `k`");
   CHECK(quoted({"m", "c"}, "or") == "`m` or `c`");
+}
+
+TEST_CASE("of equal names the first stays, and no other becomes like one that was there") {
+  using Names = std::vector<std::string>;
+  CHECK(told_apart({}).empty());
+  CHECK(told_apart({"b", "a"}) == Names{"b", "a"});
+  CHECK(told_apart({"a", "a", "a_", "a", "b"}) == Names{"a", "a__", "a_", "a___", "b"});
+  CHECK(told_apart({"", ""}) == Names{"", "_"});
 }
 
 TEST_CASE("of many names the first are listed, and how many follow") {

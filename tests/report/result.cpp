@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
@@ -173,6 +174,39 @@ TEST_CASE("smoothed states of several experiments have a file each, and are read
   std::string const table = read_file(folder.path() / "states_bench_test.csv");
   write_file(folder.path() / "states_bench_test.csv", table + "\n");
   CHECK_THROWS_AS(read_result(folder.path()), UserError);
+}
+
+TEST_CASE("names in Greek letters have files of their own, from which the result comes back as it was") {
+  TemporaryFolder const folder;
+  Report report = example::duffing(10);
+  std::vector<PredictedQuantity>& quantities = report.predictions[0].quantities;
+  quantities.insert(quantities.begin(), quantities[0]);
+  quantities[0].name = "\u03b8";
+  quantities[1].name = "\u03c6";
+  report.predictions.push_back(report.predictions[0]);
+  report.predictions[0].experiment = "bench.a";
+  report.predictions[1].experiment = "bench_a";
+  for (double const height : {1.0, 2.0}) {
+    FunctionReport function{height == 1 ? "\u03c6" : "\u03c8", "N", {{"v", "m/s"}}, {}, {{}}, {}};
+    for (int i = 0; i <= 10; ++i) function.cuts[0].push_back({{0.1 * i}, height, 0.1, height - 0.2, height + 0.2});
+    function.grid = function.cuts[0];
+    report.functions.push_back(function);
+  }
+  write_result(report, folder.path(), {});
+  std::set<std::string> names;
+  for (plot::Figure const& figure : figures(report)) {
+    CHECK_MESSAGE(names.insert(figure.name).second, figure.name);
+    CHECK(read_file(folder.path() / "figures" / (figure.name + ".gnuplot")) == figure.script);
+    CHECK_MESSAGE(figure.script.find(" " + figure.name + ".svg draws this") != std::string::npos, figure.name);
+    CHECK_MESSAGE(figure.script.find(" name '" + figure.name + "'") != std::string::npos, figure.name);
+  }
+  CHECK(names.contains("fit_bench_a___"));
+  CHECK(names.contains("function___"));
+  Report const stored = read_result(folder.path());
+  REQUIRE(stored.functions.size() == 2);
+  CHECK(stored.functions[0].grid[5].mean == 1);
+  CHECK(stored.functions[1].grid[5].mean == 2);
+  CHECK(stored.predictions[1].quantities[1].response.mean == report.predictions[1].quantities[1].response.mean);
 }
 
 TEST_CASE("a folder that cannot be written is an I/O error") {

@@ -131,6 +131,9 @@ std::vector<SelectedCandidate> const& selected_candidates(Session& session, int 
   auto const folder = stored_results(session, task, "select");
   auto const summary = nlohmann::json::parse(read_summary(folder));
   std::vector<SelectedCandidate> candidates;
+  std::vector<std::string> names;
+  for (CandidateModel const& each : set.models) names.push_back(each.name);
+  std::vector<std::string> const file_names = model_file_names(names);
   for (std::size_t k = 0; k < set.models.size(); ++k) {
     SelectedCandidate candidate;
     std::string const& name = set.models[k].name;
@@ -148,7 +151,7 @@ std::vector<SelectedCandidate> const& selected_candidates(Session& session, int 
       nlohmann::json const& model = summary.at("models").at(name);
       return model.contains("simulated_with") ? read_solver(model.at("simulated_with")) : fit.solver;
     });
-    auto const path = folder / fmt::format("draws_{}.csv", model_file_name(name));
+    auto const path = folder / model_draws_file(file_names[k]);
     if (std::filesystem::exists(path)) {
       auto const space =
           parameter_space(without_noise_parameters(session.file.models[static_cast<std::size_t>(fit.model)]), fit.experiments);

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
+
+#include "core/text/told_apart.hpp"
 
 namespace sysid {
 
@@ -49,9 +52,7 @@ bool shows_something(PredictedQuantity const& quantity) {
          (!quantity.measured.empty() || std::any_of(mean.begin(), mean.end(), [&](double each) { return each != mean.front(); }));
 }
 
-}  // namespace
-
-std::vector<Figure> figures(Report const& report) {
+std::vector<Figure> all_figures(Report const& report) {
   std::vector<Figure> out;
   bool const several = report.predictions.size() > 1;
   auto const where = [&](std::string const& experiment) { return several ? " on " + experiment : std::string(); };
@@ -121,6 +122,19 @@ std::vector<Figure> figures(Report const& report) {
   for (Prediction const& prediction : report.predictions)
     for (PredictedQuantity const& quantity : prediction.quantities)
       if (has_residuals(prediction, quantity)) out.push_back(residual_figure(prediction, quantity, where(prediction.experiment)));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Figure> figures(Report const& report) {
+  std::vector<Figure> out = all_figures(report);
+  std::vector<std::string> names;
+  for (Figure const& each : out) names.push_back(each.name);
+  // Channels in Greek letters, or experiments that differ in a dot, would share their files.
+  names = told_apart(std::move(names));
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (out[i].name != names[i]) plot::rename(out[i], names[i]);
   return out;
 }
 

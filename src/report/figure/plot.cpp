@@ -111,6 +111,20 @@ std::string preamble(std::string_view name, int width, int height, int lines) {
                    muted, ink, rule);
 }
 
+void rename(Figure& figure, std::string const& name) {
+  // The last line of the preamble that has the name is that of the SVG.
+  std::size_t const end = std::min(figure.script.find('\n', figure.script.find("set terminal svg")), figure.script.size());
+  std::string head = figure.script.substr(0, end);
+  auto const replace = [&](std::string const& from, std::string const& to) {
+    for (std::size_t at = head.find(from); at != std::string::npos; at = head.find(from, at + to.size()))
+      head.replace(at, from.size(), to);
+  };
+  replace(fmt::format(" {}.", figure.name), fmt::format(" {}.", name));
+  replace(fmt::format("name '{}'", identifier(figure.name)), fmt::format("name '{}'", identifier(name)));
+  figure.script.replace(0, end, head);
+  figure.name = name;
+}
+
 std::string data_block(std::string_view name, std::vector<std::vector<double>> const& rows) {
   std::string out = fmt::format("${} << EOD\n", name);
   for (std::vector<double> const& row : rows) {

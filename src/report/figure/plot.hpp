@@ -84,6 +84,8 @@ std::string identifier(std::string_view text);
 /// Terminal, fonts, lines: the beginning of each script. gnuplot's variable `format` says which picture becomes of it: 'svg',
 /// 'png', 'pdf', or 'text' in `columns` columns of characters, on `lines` lines; 0: as many as keep the shape.
 std::string preamble(std::string_view name, int width, int height, int lines = 0);
+/// Gives a figure another name, in its script, which begins with a preamble, too.
+void rename(Figure& figure, std::string const& name);
 
 /// `$NAME << EOD`, rows of numbers; an empty row breaks the line.
 std::string data_block(std::string_view name, std::vector<std::vector<double>> const& rows);

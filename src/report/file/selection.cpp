@@ -10,6 +10,7 @@
 
 #include "core/numeric/random.hpp"
 #include "core/text/number.hpp"
+#include "core/text/told_apart.hpp"
 #include "core/text/words.hpp"
 #include "report/file/csv.hpp"
 #include "report/file/task_folder.hpp"
@@ -212,13 +213,22 @@ void add_jumps(JumpRecord::OfModel const& of, Json& entry) {
 
 }  // namespace
 
-std::string model_file_name(std::string const& model) {
-  std::string name;
-  for (char const c : model)
-    if (c == '.' || c == '(' || c == ')' || c == '=' || c == ',' || c == '_' || c == '-' ||
-        std::isalnum(static_cast<unsigned char>(c)))
-      name += c;
-  return name;
+std::vector<std::string> model_file_names(std::vector<std::string> const& models) {
+  std::vector<std::string> names;
+  for (std::string const& model : models) {
+    std::string& name = names.emplace_back();
+    for (char const c : model)
+      if (c == '.' || c == '(' || c == ')' || c == '=' || c == ',' || c == '_' || c == '-' ||
+          std::isalnum(static_cast<unsigned char>(c)))
+        name += c;
+  }
+  return told_apart(std::move(names));
+}
+
+std::vector<std::string> model_file_names(SelectionResult const& selection) {
+  std::vector<std::string> names;
+  for (SelectedModel const& model : selection.models) names.push_back(model.name);
+  return model_file_names(names);
 }
 
 std::vector<ReportTable> selection_tables(SelectionReport const& selection) {
@@ -301,11 +311,11 @@ std::vector<std::pair<std::string, std::string>> selection_files(Report const& r
   bool const by_distance = !selection.result.jumps;
   std::vector<std::pair<std::string, std::string>> files;
   if (by_distance) files.emplace_back("populations.csv", populations_csv(report));
+  std::vector<std::string> const names = model_file_names(selection.result);
   for (std::size_t m = 0; m < selection.result.models.size(); ++m) {
     SelectedModel const& model = selection.result.models[m];
     if (model.weight.empty()) continue;
-    std::string const name = model_file_name(model.name);
-    if (by_distance) files.emplace_back(particles_file(model.name), particles_csv(report, model));
+    if (by_distance) files.emplace_back(particles_file(names[m]), particles_csv(report, model));
     if (model.died_in > 0) continue;
     Report of_model;
     of_model.version = report.version;
@@ -316,11 +326,11 @@ std::vector<std::pair<std::string, std::string>> selection_files(Report const& r
     of_model.settings = report.settings;
     of_model.data = report.data;
     of_model.draws = resampled_draws(model, selection.resampling_seed);
-    files.emplace_back(fmt::format("draws_{}.csv", name), draws_csv(of_model, 0));
+    files.emplace_back(model_draws_file(names[m]), draws_csv(of_model, 0));
     if (m >= selection.refined_draws.size()) continue;
     of_model.draws = selection.refined_draws[m];
     for (std::size_t c = 0; c < of_model.draws.chains.size(); ++c)
-      files.emplace_back(refined_file(model.name, c), draws_csv(of_model, static_cast<int>(c)));
+      files.emplace_back(refined_file(names[m], c), draws_csv(of_model, static_cast<int>(c)));
   }
   return files;
 }

@@ -10,10 +10,12 @@ namespace sysid {
 
 struct Report;
 struct SelectionReport;
+struct SelectionResult;
 struct ReportTable;
 
-/// "bouc_wen(n=2)": a model's name for files.
-std::string model_file_name(std::string const& model);
+/// "bouc_wen(n=2)": what each of the candidate models, all of them in their order, is called in names of files.
+std::vector<std::string> model_file_names(std::vector<std::string> const& models);
+std::vector<std::string> model_file_names(SelectionResult const& selection);
 
 std::vector<ReportTable> selection_tables(SelectionReport const& selection);
 /// {NAME: {probability, share, died_in_population, parameters, ...}}.

@@ -154,21 +154,25 @@ Report read_result(fs::path const& folder) {
     std::vector<std::string> const names = free_run_files(report);
     for (std::size_t r = 0; r < runs.size(); ++r) read_prediction(folder / names[r], runs[r]);
   }
-  for (FunctionReport& function : report.functions) read_function(folder / function_file(function), function);
+  std::vector<std::string> const function_names = function_files(report);
+  for (std::size_t f = 0; f < report.functions.size(); ++f) read_function(folder / function_names[f], report.functions[f]);
   if (!report.selection) return report;
   SelectionReport& selection = *report.selection;
   if (selection.refined_draws.size() > selection.result.models.size())
     throw unusable_result(fmt::format("`{}` is damaged", path.string()));
-  for (SelectedModel& model : selection.result.models)
-    if (!model.weight.empty() && selection.result.jumps)
-      read_jump_draws(folder / fmt::format("draws_{}.csv", model_file_name(model.name)), model);
-    else if (!model.weight.empty())
-      read_particles(folder / particles_file(model.name), model);
+  std::vector<std::string> const names = model_file_names(selection.result);
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    SelectedModel& model = selection.result.models[m];
+    if (model.weight.empty()) continue;
+    if (selection.result.jumps)
+      read_jump_draws(folder / model_draws_file(names[m]), model);
+    else
+      read_particles(folder / particles_file(names[m]), model);
+  }
   for (std::size_t m = 0; m < selection.refined_draws.size(); ++m) {
     if (selection.result.models[m].died_in > 0 || selection.result.models[m].weight.empty()) continue;  // they have no files
     Draws& draws = selection.refined_draws[m];
-    for (std::size_t c = 0; c < draws.chains.size(); ++c)
-      read_chain(folder / refined_file(selection.result.models[m].name, c), draws, draws.chains[c]);
+    for (std::size_t c = 0; c < draws.chains.size(); ++c) read_chain(folder / refined_file(names[m], c), draws, draws.chains[c]);
   }
   return report;
 }

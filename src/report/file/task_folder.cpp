@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <set>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
+#include "core/text/told_apart.hpp"
 #include "report/figure/figures.hpp"
 #include "report/figure/gnuplot.hpp"
 #include "report/file/calibration.hpp"
@@ -116,7 +118,8 @@ std::vector<std::string> write_result(Report const& report, fs::path const& fold
     for (std::size_t r = 0; r < names.size(); ++r) write(names[r], predict_csv(report, report.discovery->free_runs[r]));
   }
   if (report.calibration) write("ranks.csv", ranks_csv(report));
-  for (FunctionReport const& function : report.functions) write(function_file(function), function_csv(function));
+  std::vector<std::string> const function_names = function_files(report);
+  for (std::size_t f = 0; f < report.functions.size(); ++f) write(function_names[f], function_csv(report.functions[f]));
   std::vector<std::string> const prediction_names = prediction_files(report);
   for (std::size_t p = 0; p < report.predictions.size(); ++p)
     write(prediction_names[p], predict_csv(report, report.predictions[p]));
@@ -171,15 +174,19 @@ std::string draws_file(std::size_t chain) { return fmt::format("draws_{}.csv", c
 
 namespace {
 
-std::vector<std::string> files_along(std::vector<Prediction> const& predictions, char const* begin) {
-  std::vector<std::string> names;
-  std::set<std::string> taken;
-  for (Prediction const& prediction : predictions) {
-    std::string suffix = predictions.size() == 1 ? "" : "_" + plot::identifier(prediction.experiment);
-    while (!taken.insert(suffix).second) suffix += "_";  // two names may differ only in letters that file names do not have
-    names.push_back(fmt::format("{}{}.csv", begin, suffix));
-  }
+/// BEGINNING_NAME.csv for each. Two names may differ only in letters that file names do not have.
+std::vector<std::string> files_by_name(std::string_view begin, std::vector<std::string> names) {
+  for (std::string& name : names) name = plot::identifier(name);
+  names = told_apart(std::move(names));
+  for (std::string& name : names) name = fmt::format("{}_{}.csv", begin, name);
   return names;
+}
+
+std::vector<std::string> files_along(std::vector<Prediction> const& predictions, std::string_view begin) {
+  if (predictions.size() == 1) return {fmt::format("{}.csv", begin)};
+  std::vector<std::string> names;
+  for (Prediction const& prediction : predictions) names.push_back(prediction.experiment);
+  return files_by_name(begin, std::move(names));
 }
 
 }  // namespace
@@ -192,14 +199,18 @@ std::vector<std::string> free_run_files(Report const& report) {
   return report.discovery ? files_along(report.discovery->free_runs, "free_run") : std::vector<std::string>();
 }
 
-std::string function_file(FunctionReport const& function) {
-  return fmt::format("function_{}.csv", plot::identifier(function.name));
+std::vector<std::string> function_files(Report const& report) {
+  std::vector<std::string> names;
+  for (FunctionReport const& function : report.functions) names.push_back(function.name);
+  return files_by_name("function", std::move(names));
 }
 
-std::string particles_file(std::string const& model) { return fmt::format("particles_{}.csv", model_file_name(model)); }
+std::string model_draws_file(std::string const& model) { return fmt::format("draws_{}.csv", model); }
+
+std::string particles_file(std::string const& model) { return fmt::format("particles_{}.csv", model); }
 
 std::string refined_file(std::string const& model, std::size_t chain) {
-  return fmt::format("polished_{}_{}.csv", model_file_name(model), chain + 1);
+  return fmt::format("polished_{}_{}.csv", model, chain + 1);
 }
 
 }  // namespace sysid

@@ -55,8 +55,10 @@ std::vector<std::string> prediction_files(Report const& report);
 std::vector<std::string> free_run_files(Report const& report);
 /// Of the smoothed states of each experiment, in order.
 std::vector<std::string> states_files(Report const& report);
-std::string function_file(FunctionReport const& function);
-/// Of a candidate model.
+/// Of each unknown function, in order.
+std::vector<std::string> function_files(Report const& report);
+/// Of a candidate model, by what `model_file_names` calls it.
+std::string model_draws_file(std::string const& model);
 std::string particles_file(std::string const& model);
 std::string refined_file(std::string const& model, std::size_t chain);
 

@@ -54,6 +54,25 @@ TEST_CASE("a model in metres and the same one in millimetres are equally probabl
   }
 }
 
+TEST_CASE("models whose names differ in Greek letters alone have draws of their own, from which they are predicted") {
+  Line const line(0.1, 0.5);
+  auto const model = [](std::string const& name, std::string const& mean) {
+    return "model " + name + " { input u; parameter k ~ uniform(0, 4); observe d ~ normal(" + mean + ", sd = 0.1) }\n";
+  };
+  std::string const text = model("line_\u03b1", "k*u + 0.45") + model("line_\u03b2", "k*u + 0.55") +
+                           "candidates both { line_\u03b1; line_\u03b2 }\n"
+                           "answer = select both to line with abc_smc(particles = 200), seed = 1\n"
+                           "forecast = predict answer on line with draws(100), seed = 1";
+  line.run(text, "", {"select", "predict"});
+  std::filesystem::path const predicted = line.results() / "forecast/predict.csv";
+  std::string const at_once = read_file(predicted);
+  for (char const* name : {"draws_line_.csv", "draws_line__.csv", "particles_line_.csv", "particles_line__.csv"})
+    CHECK_MESSAGE(std::filesystem::exists(line.results() / "answer" / name), name);
+  CHECK(read_file(line.results() / "answer/draws_line_.csv") != read_file(line.results() / "answer/draws_line__.csv"));
+  line.run(text, "", {"predict"});
+  CHECK(read_file(predicted) == at_once);
+}
+
 TEST_CASE("channels of two units and two noises make one root mean square") {
   Line const line(0.1, 0.0);
   Printed const answer = line.run(
