@@ -123,7 +123,7 @@ bool drop(Context& context, std::string const& name) {
     WorkItem without = without_statement(draft.items[model], name);
     if (without.text == draft.items[model].text)
       return context.output.refuse(
-          fmt::format("there is no `{}` in the session, and no declaration of it in `{}`", name, context.work.model));
+          fmt::format("there is no `{}` in the session, and no declaration of it alone in `{}`", name, context.work.model));
     for (std::string const& notice : draft.put(std::move(without), context.results.tasks())) context.output.say(notice);
   } else {
     return context.output.refuse(fmt::format("there is no `{}` in the session", name));

@@ -75,3 +75,20 @@ TEST_CASE("a declaration that is dropped goes with its line") {
   CHECK(without_statement(item, "q").text == item.text);
   CHECK(without_statement(item, "y").text == item.text);
 }
+
+TEST_CASE("a name that is dropped is what is declared under it, in whatever order the block says more of it") {
+  std::string const block = "model a {\n  observe y ~ normal(y, sd = 1)\n  state y\n  initial y = 0\n  y' = -y\n}";
+  WorkItem const item{ItemKind::model, "a", "", block};
+  CHECK(without_statement(item, "y").text == replaced(block, "  state y\n", ""));
+  // What is declared elsewhere, as a channel is, goes by its name.
+  WorkItem const shown{ItemKind::model, "a", "", replaced(block, "observe y", "observe d")};
+  CHECK(without_statement(shown, "d").text == replaced(block, "  observe y ~ normal(y, sd = 1)\n", ""));
+  CHECK(without_statement(item, "").text == block);
+}
+
+TEST_CASE("an equation is dropped by its text") {
+  WorkItem const item{ItemKind::model, "a", "", text};
+  CHECK(without_statement(item, "y'' + k*y = x").text == replaced(text, "  y'' + k*y = x\n", ""));
+  CHECK(without_statement(item, "z'=y").text == replaced(text, "  z' = y\n", ""));
+  CHECK(without_statement(item, "z' = -y").text == text);
+}

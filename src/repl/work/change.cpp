@@ -7,6 +7,7 @@
 #include <set>
 
 #include "repl/work/entry.hpp"
+#include "syntax/entry.hpp"
 #include "syntax/expression_text.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
@@ -14,9 +15,14 @@
 namespace sysid::repl {
 namespace {
 
-/// Something with a name in a block: a statement, or an element of one.
+/// The name spaces of a block, in the order in which a name alone is looked up: where it is declared, then where it is given more.
+enum class SlotKind { name, function, equation, input, measure, constant, split, read, observe, initial, time, file };
+
+/// Something with a name in a block: a statement, or an element of one. Of what there is one of, and of equations, the name is
+/// empty.
 struct Slot {
-  std::string key;  // the name, with what tells name spaces apart
+  SlotKind kind;
+  std::string name;
   Span span;
 };
 
@@ -28,34 +34,32 @@ struct Named {
   std::string word{};  // before the elements of a list
 };
 
-Slot slot(std::string key, Span span) { return {std::move(key), span}; }
-
 Named named(ast::ModelStatement const& statement) {
   return std::visit(
       [](auto const& each) -> Named {
         using Each = std::decay_t<decltype(each)>;
         if constexpr (std::is_same_v<Each, ast::InputDeclaration> || std::is_same_v<Each, ast::StateDeclaration>) {
           Named result{{}, true, false, std::is_same_v<Each, ast::InputDeclaration> ? "input" : "state"};
-          for (ast::Declared const& name : each.names) result.slots.push_back(slot("name " + name.name.text, name.span));
+          for (ast::Declared const& name : each.names) result.slots.push_back({SlotKind::name, name.name.text, name.span});
           return result;
         } else if constexpr (std::is_same_v<Each, ast::InitialDeclaration>) {
           Named result{{}, true, true, "initial"};
           for (ast::InitialValue const& value : each.values)
-            result.slots.push_back(slot("initial " + text_of(value.state), value.span));
+            result.slots.push_back({SlotKind::initial, text_of(value.state), value.span});
           return result;
         } else if constexpr (std::is_same_v<Each, ast::ParameterDeclaration> || std::is_same_v<Each, ast::Definition> ||
                              std::is_same_v<Each, ast::DisturbanceDeclaration>) {
-          return {{slot("name " + each.name.name.text, each.span)}};
+          return {{{SlotKind::name, each.name.name.text, each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::FunctionDefinition> || std::is_same_v<Each, ast::ProcessDefinition>) {
-          return {{slot("function " + each.name.text, each.span)}};
+          return {{{SlotKind::function, each.name.text, each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::Observation>) {
-          return {{slot("observe " + each.channel.name.text, each.span)}};
+          return {{{SlotKind::observe, each.channel.name.text, each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::Part>) {
-          return {{slot("name " + each.name.text, each.span)}};
+          return {{{SlotKind::name, each.name.text, each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::Equation>) {
-          return {{slot("equation", each.span)}};
+          return {{{SlotKind::equation, "", each.span}}};
         } else {
-          return {{slot("time", each.span)}};
+          return {{{SlotKind::time, "", each.span}}};
         }
       },
       statement);
@@ -66,23 +70,23 @@ Named named(ast::DataStatement const& statement) {
       [](auto const& each) -> Named {
         using Each = std::decay_t<decltype(each)>;
         if constexpr (std::is_same_v<Each, ast::DataFile>) {
-          return {{slot("file", each.span)}};
+          return {{{SlotKind::file, "", each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::DataTime> || std::is_same_v<Each, ast::DataRate>) {
-          return {{slot("time", each.span)}};
+          return {{{SlotKind::time, "", each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::DataInput>) {
-          return {{slot("input " + each.input.text, each.span)}};
+          return {{{SlotKind::input, each.input.text, each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::DataMeasure>) {
-          return {{slot("measure " + each.channel.text, each.span)}};
+          return {{{SlotKind::measure, each.channel.text, each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::DataConstant>) {
-          return {{slot("constant " + each.parameter.text, each.span)}};
+          return {{{SlotKind::constant, each.parameter.text, each.span}}};
         } else if constexpr (std::is_same_v<Each, ast::DataReading>) {
           Named result{{}, true, true, "read"};
           for (ast::ReadingSetting const& setting : each.settings)
-            result.slots.push_back(slot("read " + setting.name.text, setting.span));
+            result.slots.push_back({SlotKind::read, setting.name.text, setting.span});
           return result;
         } else {
           Named result{{}, true, true, "split"};
-          for (ast::SplitPart const& part : each.parts) result.slots.push_back(slot("split " + part.name.text, part.span));
+          for (ast::SplitPart const& part : each.parts) result.slots.push_back({SlotKind::split, part.name.text, part.span});
           return result;
         }
       },
@@ -220,7 +224,8 @@ void put(Editor& editor, std::string const& entry, Span at, Statement const& typ
     std::optional<std::uint32_t> list_end;
     for (Named const& each : all_named(current.statements))
       for (Slot const& there : each.slots) {
-        if (there.key == element.key && each.list == incoming.list && each.word == incoming.word) place = there.span;
+        if (there.kind == element.kind && there.name == element.name && each.list == incoming.list && each.word == incoming.word)
+          place = there.span;
         if (each.joins && each.word == incoming.word) list_end = there.span.end;
       }
     if constexpr (std::is_same_v<Block, ast::Model>)
@@ -232,6 +237,12 @@ void put(Editor& editor, std::string const& entry, Span at, Statement const& typ
     else
       editor.add_behind(place_for(current, typed, editor.text()), entry, text, incoming.list ? incoming.word + " " : "");
   }
+}
+
+/// Blanks tell no two equations of a model apart.
+std::string without_blanks(std::string text) {
+  std::erase_if(text, [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; });
+  return text;
 }
 
 }  // namespace
@@ -249,13 +260,20 @@ WorkItem with_statement(WorkItem block, std::string const& entry, Span span) {
 }
 
 WorkItem without_statement(WorkItem block, std::string const& what) {
+  std::optional<SlotKind> found;
   std::optional<Span> place;
   std::size_t in_list = 0;
+  std::string const wanted = without_blanks(what);
+  auto const is_meant = [&](Slot const& slot) {
+    if (slot.kind != SlotKind::equation) return slot.name == what && !what.empty();
+    return without_blanks(in_one_line(block.text.substr(slot.span.begin, slot.span.end - slot.span.begin))) == wanted;
+  };
   auto const look = [&](auto const& statements) {
     for (auto const& statement : statements) {
       Named const each = named(statement);
       for (Slot const& slot : each.slots)
-        if (slot.key.ends_with(" " + what)) {
+        if ((!found || slot.kind < *found) && is_meant(slot)) {
+          found = slot.kind;
           place = span_of(statement);
           in_list = each.slots.size();
         }

@@ -11,7 +11,8 @@ namespace sysid::repl {
 /// state); what is listed under one word, as inputs or parts of a split, is replaced one by one.
 WorkItem with_statement(WorkItem block, std::string const& entry, Span span);
 
-/// Without the declaration of a name or, of a model, the equation whose text is `what`; the same block when there is none.
+/// Without what `what` names: its declaration; where it has none, its observation or initial value; of a model, the equation whose
+/// text it is but for blanks. The same block when there is none, or when it stands in a list with others.
 WorkItem without_statement(WorkItem block, std::string const& what);
 
 }  // namespace sysid::repl
