@@ -5,6 +5,7 @@
 
 #include "app/catalogue/lists.hpp"
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "core/text/wrapped.hpp"
 #include "repl/commands.hpp"
 #include "repl/help.hpp"
@@ -12,6 +13,7 @@
 #include "repl/work/change.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/format.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid::repl {
 
@@ -19,14 +21,17 @@ namespace {
 
 // "linear = fit circuit to record with map": settings would not fit beside the scores, and `show` has them. An option that stands
 // before the back end goes with all that follows.
-std::string without_settings(std::string task) {
-  constexpr std::string_view with = " with ";
-  std::size_t const begin = task.find(with);
-  if (begin == std::string::npos) return task;
-  std::size_t const end = std::min(task.find_first_of("(,= ", begin + with.size()), task.size());
-  bool const option = end < task.size() && task[task.find_first_not_of(' ', end)] == '=';
-  task.erase(option || task.find("predict ") < begin ? begin : end);
-  return task;
+std::string without_settings(std::string const& statement) {
+  auto const task = std::get<ast::Task>(item_of(statement));
+  if (task.options.empty()) return statement;
+  ast::Option const& first = task.options.front();
+  constexpr std::string_view with = "with";
+  std::string_view head = trimmed(std::string_view(statement).substr(0, first.span.begin));
+  head = trimmed(head.substr(0, head.size() - with.size()));
+  // What a prediction takes first is a number of draws.
+  if (first.key || first.input || words::task_kind(task.verb.text) == TaskKind::predict) return std::string(head);
+  std::string_view const option = std::string_view(statement).substr(first.span.begin, first.span.end - first.span.begin);
+  return fmt::format("{} {} {}", head, with, trimmed(option.substr(0, option.find('('))));
 }
 
 std::string score(std::optional<double> value) { return value ? significant(*value, 4) : std::string(); }

@@ -519,6 +519,20 @@ TEST_CASE("what is entered before a task stays when the task cannot be run") {
   CHECK_FALSE(d.enter("show late"));
 }
 
+TEST_CASE("the list has tasks with their back ends, whatever they are called") {
+  Dialogue d;
+  d.begin();
+  REQUIRE_MESSAGE(d.enter("mypredict = fit oscillator to bench.train with map, substeps = 2"), d.messages());
+  REQUIRE_MESSAGE(d.enter("forecast = predict mypredict on bench with draws(1)"), d.messages());
+  REQUIRE(d.enter("list"));
+  CHECK(has(d.answers(), "mypredict = fit oscillator to bench.train with map "));
+  CHECK(has(d.answers(), "forecast = predict mypredict on bench "));
+  CHECK(has(d.answers(), "made = simulate maker "));
+  CHECK_FALSE(has(d.answers(), "substeps"));
+  CHECK_FALSE(has(d.answers(), "with draws"));
+  CHECK_FALSE(has(d.answers(), "with input"));
+}
+
 TEST_CASE("a plot or a statistic by the name that other prompts give it is answered with ours") {
   Dialogue d;
   d.begin();
