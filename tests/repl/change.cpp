@@ -69,6 +69,24 @@ TEST_CASE("data blocks change likewise") {
   CHECK(with(data, "split late = rows 9..9", ItemKind::data) == replaced(data, "rows 6..9", "rows 6..9, late = rows 9..9"));
 }
 
+TEST_CASE("a block that was typed in the same entry is known on both sides of what is put into it") {
+  auto const length = static_cast<std::uint32_t>(text.size());
+  WorkItem const item{ItemKind::model, "a", "", text, false, {{{0, length}, 0}}};
+  for (std::string const statement : {"parameter c = 2", "parameter k = 30"}) {
+    std::string const whole = text + "\n" + statement;
+    WorkItem const changed = with_statement(item, whole, {length + 1, static_cast<std::uint32_t>(whole.size())});
+    CHECK(changed.typed.size() == 3);
+    std::string typed;
+    for (TypedPart const& part : changed.typed) {
+      std::string const there = changed.text.substr(part.in_text.begin, part.in_text.end - part.in_text.begin);
+      CHECK(there == whole.substr(part.in_typed, there.size()));
+      typed += there;
+    }
+    CHECK(typed.find("y'' + k*y = x\n  z' = y\n  observe d ~ normal(y, sd = 1)\n}") != std::string::npos);
+    CHECK(typed.find(statement) != std::string::npos);
+  }
+}
+
 TEST_CASE("a declaration that is dropped goes with its line") {
   WorkItem const item{ItemKind::model, "a", "", "model a {\n  parameter c = 1\n  parameter k = 1\n  state y, z\n}"};
   CHECK(without_statement(item, "c").text == "model a {\n  parameter k = 1\n  state y, z\n}");

@@ -103,13 +103,18 @@ class Editor {
                std::string_view after = {}) {
     std::string const put = std::string(before) + entry.substr(from.begin, from.end - from.begin) + std::string(after);
     text_.replace(begin, end - begin, put);
-    std::erase_if(typed_,
-                  [&](TypedPart const& each) { return each.in_text.begin >= begin && each.in_text.end <= end && begin < end; });
-    for (TypedPart& each : typed_)
-      if (each.in_text.begin >= end) {
-        auto const move = static_cast<std::int64_t>(put.size()) - (end - begin);
-        each.in_text = {static_cast<std::uint32_t>(each.in_text.begin + move), static_cast<std::uint32_t>(each.in_text.end + move)};
-      }
+    auto const moved = [by = static_cast<std::int64_t>(put.size()) - (end - begin)](std::uint32_t at) {
+      return static_cast<std::uint32_t>(at + by);
+    };
+    std::vector<TypedPart> kept;
+    for (TypedPart const& each : typed_) {
+      Span const at = each.in_text;
+      // A block that was typed in the same entry goes on behind what is put into it.
+      if (at.begin < begin) kept.push_back({{at.begin, std::min(at.end, begin)}, each.in_typed});
+      std::uint32_t const rest = std::max(at.begin, end);
+      if (rest < at.end) kept.push_back({{moved(rest), moved(at.end)}, each.in_typed + (rest - at.begin)});
+    }
+    typed_ = std::move(kept);
     auto const first = static_cast<std::uint32_t>(begin + before.size());
     typed_.push_back({{first, first + (from.end - from.begin)}, from.begin});
   }
