@@ -79,15 +79,15 @@ DrawColumn const* Result::find_draws(std::string_view name) const {
   return place == draws.end() ? nullptr : &*place;
 }
 
-Result read_result(std::filesystem::path const& folder, std::string const& task, std::string const& verb) {
+Result read_result(std::filesystem::path const& folder, std::string const& task, TaskKind kind) {
   Result result;
   result.task = task;
-  result.verb = verb;
+  result.kind = kind;
   result.folder = folder;
   Json summary;
   if (std::filesystem::exists(folder / "summary.json")) summary = Json::parse(read_whole_summary(folder));
   if (!summary.is_object()) return result;
-  if (summary.contains("parameters") && verb == "fit")
+  if (summary.contains("parameters") && kind == TaskKind::fit)
     for (auto const& [name, each] : summary["parameters"].items()) {
       DrawColumn column{name, interpreted(folder / "summary.json", [&, &of = each] { return of.value("unit", ""); }), {}, {}};
       if (each.contains("sd") && each["sd"].is_number()) column.sd = each["sd"].get<double>();
@@ -103,7 +103,7 @@ Result read_result(std::filesystem::path const& folder, std::string const& task,
     if (!result.nmse) result.nmse = largest_nmse(summary["fit"]);
   }
   constexpr std::size_t of_sampler = 4;  // columns before the user's
-  for (int k = 1; verb == "fit" && std::filesystem::exists(folder / fmt::format("draws_{}.csv", k)); ++k) {
+  for (int k = 1; kind == TaskKind::fit && std::filesystem::exists(folder / fmt::format("draws_{}.csv", k)); ++k) {
     NumberTable const table = read_number_table(folder / fmt::format("draws_{}.csv", k));
     if (table.columns.size() != result.draws.size() + of_sampler) continue;
     result.chains.push_back(table.columns.front().size());

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "syntax/words.hpp"
+
 namespace sysid::repl {
 
 /// A parameter or derived quantity over all draws, chain after chain; declared unit.
@@ -30,7 +32,8 @@ struct RecordSeries {
 };
 
 struct Result {
-  std::string task, verb;
+  std::string task;
+  TaskKind kind = TaskKind::fit;
   std::filesystem::path folder;
   std::string summary;              // as it was printed
   std::vector<std::size_t> chains;  // draws of each
@@ -43,6 +46,6 @@ struct Result {
 };
 
 /// What stands in a folder of results; what is not there stays empty. Selections have draws per candidate, which are not read.
-Result read_result(std::filesystem::path const& folder, std::string const& task, std::string const& verb);
+Result read_result(std::filesystem::path const& folder, std::string const& task, TaskKind kind);
 
 }  // namespace sysid::repl

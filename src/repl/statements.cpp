@@ -18,6 +18,7 @@
 #include "repl/work/entry.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/parse.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid::repl {
 namespace {
@@ -48,7 +49,8 @@ void name_task(WorkItem& item, std::string const& name) {
 
 /// Whether a task fits a plain model of the work: of a family its name would hold the arguments, which the checker knows.
 bool of_plain_model(ast::Task const& task, Workspace const& work) {
-  if (task.verb.text == "predict" || task.verb.text == "discover" || task.verb.text == "select") return true;
+  auto const kind = words::task_kind(task.verb.text);
+  if (kind != TaskKind::fit && kind != TaskKind::simulate) return true;
   std::size_t const place = work.find(ItemKind::model, task.subject.text);
   return place < work.items.size() && std::get<ast::Model>(item_of(work.items[place].text)).arguments.empty();
 }

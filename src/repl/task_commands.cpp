@@ -77,7 +77,7 @@ bool compare(Context& context, std::string const& tasks) {
   // What can be compared of all that has been run: candidates of a selection have their probabilities already.
   if (names.empty())
     for (Result const& each : context.results.all)
-      if (each.verb == "fit" || each.verb == "predict") names.push_back(each.task);
+      if (each.kind == TaskKind::fit || each.kind == TaskKind::predict) names.push_back(each.task);
   if (names.empty())
     return context.output.refuse("no fit and no prediction has been run yet", "`fit1 = fit MODEL to DATA with map`");
   for (std::string const& name : names) {

@@ -22,7 +22,7 @@ namespace {
 
 void keep(Context& context, Session& session, Task const& task, int index, std::string summary) {
   context.results.erase(task.name);
-  context.results.all.push_back(read_result(session.result_folder(task), task.name, verb_of(task)));
+  context.results.all.push_back(read_result(session.result_folder(task), task.name, kind_of(task)));
   Result& result = context.results.all.back();
   result.summary = std::move(summary);
   if (auto const selected = session.selected.find(index); selected != session.selected.end())
@@ -78,7 +78,8 @@ std::string free_task_name(Context const& context, std::string const& like) {
 std::string last_fit(Context const& context) {
   std::string found;
   for (Result const& each : context.results.all)
-    if (each.verb == "fit" && context.work.statements.find(ItemKind::task, each.task) < context.work.statements.items.size())
+    if (each.kind == TaskKind::fit &&
+        context.work.statements.find(ItemKind::task, each.task) < context.work.statements.items.size())
       found = each.task;
   return found;
 }

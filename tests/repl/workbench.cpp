@@ -448,7 +448,7 @@ TEST_CASE("a damaged table of draws is named, not read as numbers that are missi
   std::filesystem::path const draws = d.folder() / "results/first/draws_1.csv";
   std::string const text = read_file(draws);
   write_file(draws, text.substr(0, text.rfind(',')) + "\n");  // a row that lost its last number
-  CHECK_THROWS_WITH_AS(repl::read_result(draws.parent_path(), "first", "fit"),
+  CHECK_THROWS_WITH_AS(repl::read_result(draws.parent_path(), "first", TaskKind::fit),
                        doctest::Contains("has been changed since it was written"), UserError);
 }
 
