@@ -64,7 +64,9 @@ RecordSeries read_record(std::filesystem::path const& path) {
     std::string const name = column.substr(0, column.size() - 5);
     bool const with_noise = name.ends_with("_noisy") && table.find(name.substr(0, name.size() - 6) + "_mean") != nullptr;
     if (with_noise) continue;
-    SeriesColumn quantity{name, "", *table.find(name + "_mean"), {}};
+    auto const* mean = table.find(name + "_mean");
+    if (mean == nullptr) throw unusable_result(fmt::format("`{}` is damaged", path.string()));
+    SeriesColumn quantity{name, "", *mean, {}};
     if (auto const unit = units.find(name); unit != units.end()) quantity.unit = unit->second;
     if (auto const* measured = table.find(name + "_measured")) quantity.measured = *measured;
     record.quantities.push_back(std::move(quantity));

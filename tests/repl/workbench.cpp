@@ -7,9 +7,11 @@
 #include <optional>
 
 #include "app/run/pipeline.hpp"
+#include "core/system/digest.hpp"
 #include "core/system/interrupt.hpp"
 #include "dialogue.hpp"
 #include "repl/prompt.hpp"
+#include "report/file/stored_files.hpp"
 
 using namespace sysid;
 
@@ -450,6 +452,22 @@ TEST_CASE("a damaged table of draws is named, not read as numbers that are missi
   write_file(draws, text.substr(0, text.rfind(',')) + "\n");  // a row that lost its last number
   CHECK_THROWS_WITH_AS(repl::read_result(draws.parent_path(), "first", TaskKind::fit),
                        doctest::Contains("has been changed since it was written"), UserError);
+}
+
+TEST_CASE("a table of bands that has lost their means is named, also where its digest has been changed with it") {
+  Dialogue d;
+  d.begin();
+  REQUIRE(d.enter("first = fit oscillator to bench.train with map"));
+  std::filesystem::path const folder = d.folder() / "results/first";
+  std::string table = read_file(folder / "predict.csv");
+  std::string const column = "displacement_mean";
+  REQUIRE(has(table, column));
+  write_file(folder / "predict.csv", table.replace(table.find(column), column.size(), "displacement_mode"));
+  auto summary = nlohmann::ordered_json::parse(read_file(folder / "summary.json"));
+  summary["versions"]["files"]["predict.csv"] = sha256(table);
+  summary["versions"]["summary_sha256"] = unsealed();
+  write_file(folder / "summary.json", sealed_summary(summary.dump(2) + "\n"));
+  CHECK_THROWS_WITH_AS(repl::read_result(folder, "first", TaskKind::fit), doctest::Contains("predict.csv` is damaged"), UserError);
 }
 
 TEST_CASE("a warning is shown once for each statement that it stands in, whatever moves before it") {

@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <new>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "core/system/files.hpp"
 #include "example.hpp"
@@ -65,6 +67,13 @@ TEST_CASE("a result with a file missing, cut short, changed or too many is refus
   CHECK(refusal(folder.path()) == "`" + folder.path().string() + "` was written by an older version of sysid");
   write_file(summary, std::string(1000000, '['));
   CHECK(refusal(folder.path()) == "`summary.json` is not the result of a task");
+}
+
+TEST_CASE("lengths that no memory holds are damage, errors of ours pass on") {
+  auto const reading = [](auto const& error) { interpreted("report.cbor", [&] { throw error; }); };
+  CHECK_THROWS_AS(reading(std::bad_alloc()), UserError);
+  CHECK_THROWS_AS(reading(std::length_error("")), UserError);
+  CHECK_THROWS_AS(reading(InternalError("")), InternalError);
 }
 
 TEST_CASE("a whole file with other content than is written is damaged") {

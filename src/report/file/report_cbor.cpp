@@ -353,6 +353,8 @@ Report read_record(std::string const& bytes, std::filesystem::path const& path) 
     throw other;
   } catch (std::length_error const&) {
     throw other;
+  } catch (...) {  // lengths that are allowed one by one may be too many together
+    throw_damaged(path);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <new>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -46,6 +47,8 @@ void throw_damaged(fs::path const& path) {
   } catch (std::out_of_range const&) {
     throw damaged;
   } catch (std::length_error const&) {
+    throw damaged;
+  } catch (std::bad_alloc const&) {  // of a length that nothing has
     throw damaged;
   }
 }
