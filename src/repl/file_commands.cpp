@@ -65,8 +65,8 @@ bool take_file(Context& context, std::filesystem::path const& path) {
   if (first) context.work.unsaved = false;
   for (std::string const& notice : notices) context.output.say(notice);
   for (WorkItem const& item : context.work.statements.items) {
-    if (item.kind == ItemKind::model && !item.kept) context.work.model = item.name;
-    if (item.kind == ItemKind::data && !item.kept) context.work.data = item.name;
+    if (item.kind == ItemKind::model && item.kept_of.empty()) context.work.model = item.name;
+    if (item.kind == ItemKind::data && item.kept_of.empty()) context.work.data = item.name;
   }
   // Of several models the one that is fitted last is the likeliest to be worked on.
   for (Task const& task : context.work.checked->file.tasks)

@@ -38,7 +38,7 @@ Typed typed_in(std::string const& arguments) {
 /// What was kept under a name of its own is meant as it is now.
 std::string name_now(Workspace const& work, ItemKind kind, std::string const& item) {
   std::size_t const at = work.find(kind, item);
-  return at < work.items.size() && work.items[at].kept ? item.substr(0, item.rfind('_')) : item;
+  return at < work.items.size() && !work.items[at].kept_of.empty() ? work.items[at].kept_of : item;
 }
 
 /// The text of a fit that is run, with its syntax tree.

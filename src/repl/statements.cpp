@@ -83,7 +83,7 @@ bool draft(Context& context, EntryPart const& part, std::string const& entry, Wo
   auto const length = static_cast<std::uint32_t>(text.size());
   if (part.kind == EntryPart::Kind::items) {
     ast::Item const tree = item_of(text);
-    WorkItem item{kind_of(tree), name_of(tree), "", text, false, {{{0, length}, part.span.begin}}};
+    WorkItem item{kind_of(tree), name_of(tree), "", text, {}, {{{0, length}, part.span.begin}}};
     if (item.kind == ItemKind::task) {
       item.text = with_seed(context, text);
       keep_unnamed(context, tree, item, work, notices);

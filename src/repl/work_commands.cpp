@@ -57,9 +57,9 @@ bool list(Context& context, std::string const& topic) {
     bool const current = (item.kind == ItemKind::model && item.name == context.work.model) ||
                          (item.kind == ItemKind::data && item.name == context.work.data);
     rows.push_back({std::string(word_of(item.kind)), item.name,
-                    current     ? "the next statements change this one"
-                    : item.kept ? "as it was when a task was run"
-                                : ""});
+                    current                 ? "the next statements change this one"
+                    : !item.kept_of.empty() ? "as it was when a task was run"
+                                            : ""});
   }
   if (!rows.empty()) context.output.answers() << align_columns(rows, 3);
   std::vector<std::vector<std::string>> tasks = {{"task", "", "nmse [%]", "rmse"}};

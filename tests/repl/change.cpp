@@ -71,7 +71,7 @@ TEST_CASE("data blocks change likewise") {
 
 TEST_CASE("a block that was typed in the same entry is known on both sides of what is put into it") {
   auto const length = static_cast<std::uint32_t>(text.size());
-  WorkItem const item{ItemKind::model, "a", "", text, false, {{{0, length}, 0}}};
+  WorkItem const item{ItemKind::model, "a", "", text, {}, {{{0, length}, 0}}};
   for (std::string const statement : {"parameter c = 2", "parameter k = 30"}) {
     std::string const whole = text + "\n" + statement;
     WorkItem const changed = with_statement(item, whole, {length + 1, static_cast<std::uint32_t>(whole.size())});

@@ -63,6 +63,9 @@ TEST_CASE("what a task was run on stays with it when it changes, and goes when n
         "model spring_1 { }\nmodel spring { state y }\nmodel rig_1 { part s = spring_1() }\nmodel rig { part s = spring() }\n"
         "candidates set { rig; spring }\ndata b { }\nf = fit rig_1 to b with map\ng = fit rig to b with ml\ns = select set to b "
         "with abc_smc\n");
+  CHECK(w.items[w.find("spring_1")].kept_of == "spring");
+  CHECK(w.items[w.find("rig_1")].kept_of == "rig");
+  CHECK(w.items[w.find("rig")].kept_of.empty());
   w.put(item("f = fit rig to b with map"), {"f"});
   w.prune();
   CHECK(w.find("spring_1") == w.items.size());

@@ -229,10 +229,10 @@ std::vector<std::string> Workspace::keep_earlier(std::size_t changed, std::set<s
     }
     if (nodes[i].held) {
       WorkItem earlier = items[i];
+      earlier.kept_of = earlier.name;
       earlier.name = names[{earlier.kind, earlier.name}];
       renamed[nodes[i].own.begin] = {nodes[i].own.end, earlier.name};
       earlier.text = replaced(earlier.text, renamed);
-      earlier.kept = true;
       if (i == changed)
         notices.push_back(fmt::format("the earlier `{}` is kept as `{}`, with the tasks that used it", item.name, earlier.name));
       after.push_back(std::move(earlier));
@@ -249,7 +249,9 @@ void Workspace::prune() {
     std::set<std::pair<ItemKind, std::string>> wanted;
     for (WorkItem const& item : items)
       for (ItemReference const& each : references_of(item_of(item.text))) wanted.insert({each.kind, each.name});
-    again = std::erase_if(items, [&](WorkItem const& item) { return item.kept && !wanted.contains({item.kind, item.name}); }) > 0;
+    again = std::erase_if(items, [&](WorkItem const& item) {
+              return !item.kept_of.empty() && !wanted.contains({item.kind, item.name});
+            }) > 0;
   }
 }
 

@@ -27,9 +27,9 @@ struct TypedPart {
 struct WorkItem {
   ItemKind kind = ItemKind::task;
   std::string name;
-  std::string lead;                // comments before it, in lines of their own
-  std::string text;                // as written
-  bool kept = false;               // the earlier text of something that was changed, kept for tasks that had been run on it
+  std::string lead;       // comments before it, in lines of their own
+  std::string text;       // as written
+  std::string kept_of{};  // what it was called before it was changed and kept for tasks that had been run on it; else empty
   std::vector<TypedPart> typed{};  // of `text`, what stands in the entry that is being taken in
 };
 
