@@ -54,8 +54,8 @@ ClaimedFolder::ClaimedFolder(std::filesystem::path const& folder, RunOptions con
   remove_file(folder / "claim");
 }
 
-void remove_earlier(std::filesystem::path const& folder) {
-  remove_result(folder);
+void remove_earlier(std::filesystem::path const& folder, std::filesystem::path const& written) {
+  remove_result(folder, written);
   remove_file(checkpoint_path(folder));
 }
 

@@ -47,8 +47,8 @@ struct ClaimedFolders {
   std::vector<ClaimedFolder> folders;
 };
 
-/// Removes results and checkpoint of an earlier run, whose place something else takes.
-void remove_earlier(std::filesystem::path const& folder);
+/// Removes results and checkpoint of an earlier run, whose place `written`, a file in the folder, takes.
+void remove_earlier(std::filesystem::path const& folder, std::filesystem::path const& written);
 
 std::filesystem::path checkpoint_path(std::filesystem::path const& folder);
 

@@ -151,8 +151,9 @@ class Simulate {
     auto const path = session_.result_folder(task_) / what_.file;
     std::string const text = record(trajectory.quantities(), *ended);
     until_written.reset();
-    if (session_.options.force) remove_earlier(session_.result_folder(task_));  // results of another task of this name
     write_file(path, text);
+    // Results of another task of this name; on a full disk they are still there.
+    if (session_.options.force) remove_earlier(session_.result_folder(task_), path);
     session_.notices << fmt::format("{}: {} samples of {} written to {}\n", task_.name, what_.samples, model().name, path.string());
     warn_of_older_data(session_, task_, path);
     return ExitCode::success;

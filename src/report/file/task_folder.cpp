@@ -68,10 +68,11 @@ void remove_summary(fs::path const& folder) {
 
 }  // namespace
 
-void remove_result(fs::path const& folder) {
-  remove_summary(folder);
-  for (fs::path const& file : files_of_result(folder)) remove_file(file);
-  remove_file(folder / tracked_rows);
+void remove_result(fs::path const& folder, fs::path const& but) {
+  if (folder / "summary.json" != but) remove_summary(folder);
+  for (fs::path const& file : files_of_result(folder))
+    if (file != but) remove_file(file);
+  if (folder / tracked_rows != but) remove_file(folder / tracked_rows);
 }
 
 void remove_partial(fs::path const& folder) {

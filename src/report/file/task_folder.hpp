@@ -20,8 +20,8 @@ bool holds_result(std::filesystem::path const& folder);
 void require_no_result(std::filesystem::path const& folder);
 
 /// Removes the files of a result (draws of more chains than a new run has would otherwise stay), with the pictures, texts and
-/// scripts that lie in its figures/.
-void remove_result(std::filesystem::path const& folder);
+/// scripts that lie in its figures/. but: a file that stays, whatever its name.
+void remove_result(std::filesystem::path const& folder, std::filesystem::path const& but = {});
 
 /// Removes what a killed run left half written, of the files that a run writes into its folder; those of other names stay. To be
 /// called by whoever holds the folder's lock.

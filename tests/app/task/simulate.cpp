@@ -1,5 +1,7 @@
 // Records that `simulate` writes.
 #include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <set>
 
@@ -20,6 +22,43 @@ truth = simulate lag with values(tau = 1), input x = gaussian(sd = 1), samples =
   CHECK(text.find("\nt,x_input,x,x_clean\n") != std::string::npos);
   CHECK(text.find("# column x_input") != std::string::npos);
   CHECK(text.find("# column x: measured; x_clean: without noise") != std::string::npos);
+}
+
+TEST_CASE("a forced simulation that finds the disk full leaves the results of before, one that is written replaces them") {
+  TemporaryFolder folder;
+  RunOptions options;
+  options.output = folder.path() / "results";
+  std::string const text = R"(
+model lag { input x; state s; initial s = 0; parameter tau [s] ~ log_uniform(0.1, 10); tau*s' = x - s; observe y ~ normal(s, sd = 0.1) }
+truth = simulate lag with values(tau = 1), input x = gaussian(sd = 1), samples = 5, rate = 10 [Hz], seed = 1, file = "predict.csv"
+)";
+  run_text(folder.path() / "lag.sysid", text, options);
+  std::filesystem::path const record = options.output / "truth/predict.csv", other = options.output / "truth/draws_1.csv";
+  std::string const whole = read_file(record);
+  write_file(other, "of another task");
+  options.force = true;
+  // A limit on the size of files stands in for the full disk.
+  auto const before_signal = ::signal(SIGXFSZ, SIG_IGN);
+  rlimit before = {};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  rlimit little = before;
+  little.rlim_cur = 10;
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &little) == 0);
+  bool refused = false;
+  try {
+    run_text(folder.path() / "lag.sysid", text, options);
+  } catch (IoError const&) {
+    refused = true;
+  }
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+  ::signal(SIGXFSZ, before_signal);
+  CHECK(refused);
+  REQUIRE(std::filesystem::exists(record));
+  CHECK(read_file(record) == whole);
+  CHECK(std::filesystem::exists(other));
+  run_text(folder.path() / "lag.sysid", text, options);
+  CHECK(read_file(record) == whole);
+  CHECK_FALSE(std::filesystem::exists(other));
 }
 
 namespace {
