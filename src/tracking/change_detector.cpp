@@ -14,9 +14,9 @@ constexpr double clear_lead = 20;  // of z^2: twice the logarithm of a likelihoo
 constexpr int most_waited = 100;   // rows
 
 /// Whether a row is still kept at an age: the older, the wider apart.
-bool is_kept(int row, int age, int window) {
+bool is_kept(std::int64_t row, std::int64_t age, int window) {
   if (age > window) return false;
-  int apart = spacing;
+  std::int64_t apart = spacing;
   while (age > apart * per_octave) apart *= 2;
   return row % apart == 0;
 }
@@ -109,7 +109,7 @@ std::optional<DetectedJump> ChangeDetector::detect() {
   return best;
 }
 
-void ChangeDetector::keep(int row, std::span<double const> means, std::span<double const> variances) {
+void ChangeDetector::keep(std::int64_t row, std::span<double const> means, std::span<double const> variances) {
   std::erase_if(candidates_, [&](Candidate const& each) { return !is_kept(each.row, row - each.row, window_); });
   if (row % spacing != 0 || parameters_ == 0) return;
   Candidate candidate;

@@ -1,5 +1,6 @@
 // Whether a tracked parameter has jumped: a generalised likelihood ratio of the innovations of a filter that knows of no jump.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,7 +16,7 @@ struct Innovated {
 /// A jump that the innovations show.
 struct DetectedJump {
   int parameter = 0;
-  int row = 0;              // after which it came
+  std::int64_t row = 0;     // after which it came
   double statistic = 0;     // z, standard normal where there is no jump
   double size = 0, sd = 0;  // of the jump, on the unbounded scale
   int other = -1;           // the next likeliest parameter, and its z
@@ -48,12 +49,12 @@ class ChangeDetector {
   /// Once a row, after its samples.
   std::optional<DetectedJump> detect();
   /// From this row on a jump may have come. means, variances: of the parameters here, [parameters].
-  void keep(int row, std::span<double const> means, std::span<double const> variances);
+  void keep(std::int64_t row, std::span<double const> means, std::span<double const> variances);
   void forget() { candidates_.clear(), waited_ = 0; }
 
  private:
   struct Candidate {
-    int row = 0;
+    std::int64_t row = 0;
     std::vector<double> errors;                                // [size x parameters]: d
     std::vector<double> information, score, means, variances;  // [parameters]: J, b
   };

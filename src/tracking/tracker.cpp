@@ -48,10 +48,10 @@ bool records_along(TrackedProgram const& program, SolverSettings const& solver, 
   return outcome.ok;
 }
 
-UserError diverged(Experiment const& experiment, int index) {
+UserError diverged(Experiment const& experiment, std::int64_t row) {
   return UserError({Severity::error,
                     "",
-                    fmt::format("the filter has no finite values at row {} of {}", experiment.first_row + index, experiment.name),
+                    fmt::format("the filter has no finite values at row {} of {}", row, experiment.name),
                     std::nullopt,
                     {},
                     "the model diverges on these rows: check the record there, use a smaller --drift, or fit the model again"});
@@ -92,7 +92,8 @@ Tracker::Tracker(TrackedProgram program, SolverSettings solver, ExecutionOptions
   left_out_in_a_row_.assign(program_.channels.size(), 0);
 }
 
-void Tracker::take(Experiment const& experiment, int from, Sink const& sink) {
+void Tracker::take(Experiment const& experiment, int from, Sink const& sink, std::int64_t rows_before) {
+  rows_before_ = rows_before;
   int const rows = static_cast<int>(experiment.time.size());
   while (from < rows) {
     stop_if_interrupted();
@@ -106,9 +107,9 @@ void Tracker::take(Experiment const& experiment, int from, Sink const& sink) {
 int Tracker::take_some(Experiment const& experiment, int from, int to, Sink const& sink) {
   bool const begins = rows_ == 0;
   int const first = begins ? from : from - 1;
-  Experiment part = slice(experiment, first, to, std::min(most_lags, experiment.first_row + first));
+  Experiment part = slice(experiment, first, to, static_cast<int>(std::min<std::int64_t>(most_lags, row_of(experiment, first))));
   if (!begins) part.scored.front() = 0;  // it has corrected the moments
-  if (left_out_row_ == experiment.first_row + from)
+  if (left_out_row_ == row_of(experiment, from))
     for (std::size_t c = 0; c < part.measured.size(); ++c)
       if (row_.left_out[c] != 0) part.measured[c][static_cast<std::size_t>(from - first)] = std::nan("");
   LaneArray records;
@@ -116,7 +117,7 @@ int Tracker::take_some(Experiment const& experiment, int from, int to, Sink cons
       records_along(program_, solver_, execution_, part, parameters_of(program_, options_.intensities, moments_), records);
   if (!fine) {
     // Rows before it are known to be good.
-    if (to - from == 1) throw diverged(experiment, from);
+    if (to - from == 1) throw diverged(experiment, row_of(experiment, from));
     int const half = from + (to - from) / 2;
     return take_some(experiment, from, half, sink);
   }
@@ -131,7 +132,7 @@ int Tracker::take_some(Experiment const& experiment, int from, int to, Sink cons
 /// True where samples of the row are to be left out: it is then filtered once more, without them. A change of a parameter as large
 /// as that is found two samples later.
 bool Tracker::leaves_out(Experiment const& experiment, int index, double const* records) {
-  int const row = experiment.first_row + index;
+  std::int64_t const row = row_of(experiment, index);
   if (left_out_row_ == row) return false;  // without them it still comes here
   std::ranges::fill(row_.left_out, 0);
   if (!options_.leaves_out || settling_ > 0) return false;
@@ -160,7 +161,7 @@ bool Tracker::read(Experiment const& experiment, int index, double const* record
   if (rows_ > 0) detector_.move(records + program_.transition);
   for (auto const& channel : program_.channels) {
     if (std::isnan(records[channel.innovation])) continue;
-    if (!(records[channel.variance] > 0)) throw diverged(experiment, index);
+    if (!(records[channel.variance] > 0)) throw diverged(experiment, row_of(experiment, index));
     detector_.observe({records[channel.innovation], records[channel.variance], records + channel.slopes, records + channel.gains});
   }
   std::copy_n(records + program_.after, program_.moments, moments_.begin());
@@ -181,7 +182,7 @@ bool Tracker::read(Experiment const& experiment, int index, double const* record
     scratch_.clear();
     for (int j = 0; j < program_.tracked; ++j) scratch_.push_back(variance(program_.states + j));
     detector_.keep(rows_, {moments_.data() + program_.states, static_cast<std::size_t>(program_.tracked)}, scratch_);
-    times_.emplace_back(experiment.first_row + index, experiment.time[static_cast<std::size_t>(index)]);
+    times_.emplace_back(row_of(experiment, index), experiment.time[static_cast<std::size_t>(index)]);
     if (times_.size() > 4 * static_cast<std::size_t>(options_.window))
       times_.erase(times_.begin(), times_.end() - options_.window - 1);
   }
@@ -190,7 +191,7 @@ bool Tracker::read(Experiment const& experiment, int index, double const* record
 }
 
 void Tracker::report(Experiment const& experiment, int index, double const* records, TrackedRow& row) {
-  row.row = experiment.first_row + index;
+  row.row = row_of(experiment, index);
   row.time = experiment.time[static_cast<std::size_t>(index)];
   for (int i = 0; i < program_.states; ++i) {
     row.mean[static_cast<std::size_t>(i)] = moments_[static_cast<std::size_t>(i)];
@@ -256,7 +257,7 @@ Alarm Tracker::respond(Experiment const& experiment, int index, DetectedJump con
   Alarm alarm;
   double const variance_of_size = std::pow(beyond_linear * jump.sd, 2);
   alarm.parameter = jump.parameter;
-  alarm.row = experiment.first_row + index;
+  alarm.row = row_of(experiment, index);
   alarm.time = experiment.time[static_cast<std::size_t>(index)];
   // times_ ends with the row before this one, which is the rows_ - 1st.
   auto const back = static_cast<std::size_t>(rows_ - 1 - jump.row);
@@ -287,7 +288,7 @@ StatePrior states_along(TrackedProgram const& program, SolverSettings const& sol
   int const rows = static_cast<int>(along.time.size()), n = program.states;
   StatePrior prior{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), true};
   if (!records_along(program, solver, execution, along, parameters_of(program, {}, moments_of(program, first, known)), records))
-    throw diverged(experiment, 0);
+    throw diverged(experiment, experiment.first_row);
   Eigen::MatrixXd path(n, rows);
   for (int i = 0; i < rows; ++i)
     for (int s = 0; s < n; ++s) path(s, i) = records(i * program.records + program.after + s, 0);

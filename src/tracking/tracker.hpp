@@ -2,6 +2,7 @@
 // jumped.
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -41,7 +42,7 @@ struct TrackingOptions {
 /// A jump of a parameter, in SI; rows as of the experiment's file.
 struct Alarm {
   int parameter = 0;  // of the tracked ones
-  int row = 0, onset_row = 0;
+  std::int64_t row = 0, onset_row = 0;
   double time = 0;
   double statistic = 0;  // z
   double before = 0, before_sd = 0, after = 0, after_sd = 0;
@@ -51,7 +52,7 @@ struct Alarm {
 
 /// Estimates once the samples of a row are known, SI. Valid during the call it is handed to.
 struct TrackedRow {
-  int row = 0;
+  std::int64_t row = 0;
   double time = 0;
   bool settling = false;
   std::vector<double> mean, sd;  // [states + tracked]
@@ -71,13 +72,15 @@ class Tracker {
           TrackingOptions options);
 
   /// Rows from index `from` of the experiment on, in order; each goes to `sink`. From the second call on index from - 1 is the row
-  /// that came last. UserError where the filter has no finite values.
-  void take(Experiment const& experiment, int from, Sink const& sink);
+  /// that came last. rows_before: of the file, which the experiment does not count: more than it can, of a record without an end.
+  /// UserError where the filter has no finite values.
+  void take(Experiment const& experiment, int from, Sink const& sink, std::int64_t rows_before = 0);
 
   ChangeDetector const& detector() const { return detector_; }
 
  private:
   int take_some(Experiment const& experiment, int from, int to, Sink const& sink);
+  std::int64_t row_of(Experiment const& experiment, int index) const { return rows_before_ + experiment.first_row + index; }
   bool leaves_out(Experiment const& experiment, int index, double const* records);
   bool read(Experiment const& experiment, int index, double const* records, Sink const& sink);
   void report(Experiment const& experiment, int index, double const* records, TrackedRow& row);
@@ -97,12 +100,12 @@ class Tracker {
   TrackingOptions options_;
   ChangeDetector detector_;
   std::vector<double> moments_;
-  int rows_ = 0;                               // taken so far
-  int settling_ = 0;                           // rows left
-  int left_out_row_ = 0;                       // the row of the file that has samples left out, as row_.left_out says; 0: none yet
-  std::vector<int> left_out_in_a_row_;         // per channel, of its samples before the next one
-  int block_ = 32;                             // rows that are simulated at once
-  std::vector<std::pair<int, double>> times_;  // of the rows that a jump may have come after: row of the file, time
+  std::int64_t rows_ = 0, rows_before_ = 0;  // taken so far; as of take
+  int settling_ = 0;                         // rows left
+  std::int64_t left_out_row_ = 0;            // the row of the file that has samples left out, as row_.left_out says; 0: none yet
+  std::vector<int> left_out_in_a_row_;       // per channel, of its samples before the next one
+  int block_ = 32;                           // rows that are simulated at once
+  std::vector<std::pair<std::int64_t, double>> times_;  // of the rows that a jump may have come after: row of the file, time
   TrackedRow row_;
   std::vector<double> scratch_;
 };

@@ -103,6 +103,33 @@ TEST_CASE("however rows are gathered, the estimates are the same") {
   CHECK(pieces.alarms.front().onset_row == whole.alarms.front().onset_row);
 }
 
+TEST_CASE("rows of a record without an end are numbered on beyond 32 bits") {
+  MadeOscillator made;
+  made.rows = 2500;
+  made.change_after = 900;
+  Model const model = model_of(oscillator_text);
+  TrackedProgram const program = oscillator_program(model, made.sigma);
+  Experiment const experiment = made.experiment();
+  Tracker near = oscillator_tracker(program, made), far = oscillator_tracker(program, made);
+  Estimates const whole = tracked_along(near, experiment);
+  std::int64_t const before = 3'000'000'000;
+  Estimates later;
+  std::int64_t last = 0;
+  far.take(
+      experiment, 0,
+      [&](TrackedRow const& row) {
+        keep(later, row);
+        last = row.row;
+      },
+      before);
+  CHECK(last == before + experiment.first_row + made.rows - 1);
+  CHECK(later.mean == whole.mean);
+  REQUIRE(!whole.alarms.empty());
+  REQUIRE(later.alarms.size() == whole.alarms.size());
+  CHECK(later.alarms.front().row == before + whole.alarms.front().row);
+  CHECK(later.alarms.front().onset_row == before + whole.alarms.front().onset_row);
+}
+
 TEST_CASE("a tenth less stiffness is found and followed, and the alarm says what was and what is") {
   for (MomentRule const rule : {MomentRule::linearised, MomentRule::sigma_points}) {
     MadeOscillator made;

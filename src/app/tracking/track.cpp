@@ -51,6 +51,7 @@ class Tracking {
       follow();
     else
       whole();
+    if (gathered_.rows == 0 && waiting_ > 0) throw too_few_rows();
     if (gathered_.rows == 0)
       throw no_tracking(fmt::format("the file has no rows from row {} on", fit_.options.first_row), "choose other --rows");
     table_.finish();
@@ -60,28 +61,34 @@ class Tracking {
  private:
   bool lives() const { return fit_.options.follow || fit_.options.record == "-"; }
   Model const& model() const { return fit_.model(); }
+  static UserError too_few_rows() { return no_tracking("tracking needs at least two rows", "choose more --rows"); }
 
   /// Where it is known how the record begins, else somewhere along that of the fit.
-  StatePrior first_states(Experiment const& experiment) const {
-    bool const known = fit_.options.at_rest || (fit_.options.record.empty() && experiment.first_row == fit_.fitted_from &&
-                                                fit_.fit->start.kind != StartRule::Kind::estimated);
+  StatePrior first_states(Experiment const& experiment, std::int64_t rows_before) const {
+    bool const known =
+        fit_.options.at_rest || (fit_.options.record.empty() && rows_before + experiment.first_row == fit_.fitted_from &&
+                                 fit_.fit->start.kind != StartRule::Kind::estimated);
     return known ? fit_.at_rest(experiment) : fit_.states;
   }
 
-  void take(Experiment const& experiment, int from) {
+  void take(Experiment const& experiment, int from, std::int64_t rows_before) {
     if (!tracker_) {
       ExecutionOptions execution = session_.interruptible();
       execution.stopped = nullptr;  // a chunk takes milliseconds
       execution.threads = 1;
       tracker_.emplace(fit_.program, fit_.solver, execution, fit_.prior,
-                       first_states(slice(experiment, from, static_cast<int>(experiment.time.size()), lag())), fit_.tracking);
+                       first_states(slice(experiment, from, static_cast<int>(experiment.time.size()), lag()), rows_before),
+                       fit_.tracking);
       gathered_.threshold = tracker_->detector().threshold();
     }
-    tracker_->take(experiment, from, [&](TrackedRow const& row) {
-      table_.add(row);
-      gathered_.add(row);
-      if (row.alarm != nullptr) session_.notices << gathered_.alarm_line(*row.alarm) << '\n' << std::flush;
-    });
+    tracker_->take(
+        experiment, from,
+        [&](TrackedRow const& row) {
+          table_.add(row);
+          gathered_.add(row);
+          if (row.alarm != nullptr) session_.notices << gathered_.alarm_line(*row.alarm) << '\n' << std::flush;
+        },
+        rows_before);
   }
 
   void whole() {
@@ -92,8 +99,8 @@ class Tracking {
     gathered_.digest = record.digest;
     Experiment const experiment = cut(record, block, model(), 0, {StartRule::Kind::rest, 0});
     gathered_.time_unit = experiment.time_unit;
-    if (experiment.time.size() < 2) throw no_tracking("tracking needs at least two rows", "choose more --rows");
-    take(experiment, 0);
+    if (experiment.time.size() < 2) throw too_few_rows();
+    take(experiment, 0, 0);
   }
 
   // --- as rows arrive
@@ -151,12 +158,12 @@ class Tracking {
     if (!record) throw UnusableData(std::move(diagnostics));
     require_steps(*record, block_, model());
     Experiment experiment = cut(*record, block_, model(), -1, {StartRule::Kind::rest, 0});
-    experiment.first_row += gone_;
     if (!block_.time)
-      for (double& time : experiment.time) time += gone_ * (block_.step > 0 ? block_.step : model().step.value_or(1));
+      for (double& time : experiment.time)
+        time += static_cast<double>(gone_) * (block_.step > 0 ? block_.step : model().step.value_or(1));
     gathered_.time_unit = experiment.time_unit;
     int const from = static_cast<int>(kept_.size()) - waiting_ - lag();
-    take(experiment, std::max(0, from));
+    take(experiment, std::max(0, from), gone_);
     waiting_ = 0;
     while (static_cast<int>(kept_.size()) > lag() + 1) kept_.pop_front(), ++gone_;
   }
@@ -168,8 +175,9 @@ class Tracking {
   TrackTable table_;
   GatheredTrack gathered_;
   std::optional<Tracker> tracker_;
-  std::deque<std::string> kept_;           // lines: those before what waits, then what waits
-  int read_ = 0, gone_ = 0, waiting_ = 0;  // rows
+  std::deque<std::string> kept_;      // lines: those before what waits, then what waits
+  std::int64_t read_ = 0, gone_ = 0;  // rows
+  int waiting_ = 0;
 };
 
 }  // namespace

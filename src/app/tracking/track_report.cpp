@@ -25,11 +25,16 @@ std::vector<std::string> channel_names(Model const& model) {
   return names;
 }
 
+}  // namespace
+
 std::string with_sd(double value, double sd) {
   if (!(sd > 0) || !std::isfinite(value)) return significant(value, 4);
-  int const digits = std::clamp(value == 0 ? 2 : static_cast<int>(std::floor(std::log10(std::fabs(value) / sd))) + 3, 2, 9);
+  // Of the smallest sds the ratio is infinite.
+  int const digits = value == 0 ? 2 : static_cast<int>(std::clamp(std::floor(std::log10(std::fabs(value) / sd)) + 3, 2.0, 9.0));
   return fmt::format("{} ± {}", significant(value, digits), significant(sd, 2));
 }
+
+namespace {
 
 std::string changed(double before, double after) {
   if (before == 0 || (before > 0) != (after > 0)) return "changed";

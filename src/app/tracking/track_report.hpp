@@ -7,6 +7,9 @@
 
 namespace sysid {
 
+/// "1.000 ± 0.004": as many digits of a value as its sd leaves room for.
+std::string with_sd(double value, double sd);
+
 struct GatheredTrack {
   GatheredTrack(TrackedFit const& fit, TrackedUnits units);
   void add(TrackedRow const& row);
@@ -22,11 +25,11 @@ struct GatheredTrack {
   std::optional<Unit> time_unit;
   double threshold = 0;
   std::int64_t rows = 0, samples = 0;
-  int first_row = 0, last_row = 0;
+  std::int64_t first_row = 0, last_row = 0;
   double squared = 0;  // of the rows that did not settle
   std::vector<Alarm> alarms;
   struct LeftOut {
-    int row;
+    std::int64_t row;
     std::string channel;
     double sds;
   };

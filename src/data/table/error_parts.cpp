@@ -16,7 +16,7 @@ Diagnostic error(std::string code, Mention mention, std::string message, std::st
   return result;
 }
 
-std::string place(std::string const& file, int row, int line) {
+std::string place(std::string const& file, std::int64_t row, std::int64_t line) {
   return line > 0 ? fmt::format("`{}` row {} (line {})", file, row, line) : fmt::format("`{}` row {}", file, row);
 }
 

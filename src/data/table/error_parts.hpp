@@ -1,5 +1,6 @@
 // What messages about a data file's contents are made of. Messages are lower case without a full stop; `help` states what to do.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,15 +16,15 @@ using Mention = std::optional<Span>;
 /// A cell of a data file. Rows count from 1 below the header, lines from 1 at the top of the file; 0: no file of lines.
 struct Cell {
   std::string file;
-  int row = 0;
-  int line = 0;
+  std::int64_t row = 0;
+  std::int64_t line = 0;
   std::string column;
 };
 
 Diagnostic error(std::string code, Mention mention, std::string message, std::string help);
 
 /// "`bench.csv` row 3 (line 4)"
-std::string place(std::string const& file, int row, int line);
+std::string place(std::string const& file, std::int64_t row, std::int64_t line);
 /// The same with the column.
 std::string place(Cell const& cell);
 

@@ -29,7 +29,7 @@ Diagnostic not_text(std::string const& file, std::optional<std::string> const& p
                proposed ? *proposed : "records are text, MATLAB files (.mat), NetCDF and HDF5; save a spreadsheet as CSV");
 }
 
-Diagnostic nul_bytes(std::string const& file, int line, std::size_t count, Mention mention) {
+Diagnostic nul_bytes(std::string const& file, std::int64_t line, std::size_t count, Mention mention) {
   return error("E4003", mention,
                fmt::format("`{}` has {} among its text, {} in line {}", file, counted(count, "NUL byte"),
                            count == 1 ? "it is" : "the first", line),
@@ -91,7 +91,7 @@ Diagnostic unknown_separator(std::string const& file, int line, std::string_view
                "separate the columns by commas, semicolons or tabs");
 }
 
-Diagnostic open_quote(std::string const& file, int line, Mention mention) {
+Diagnostic open_quote(std::string const& file, std::int64_t line, Mention mention) {
   return error("E4004", mention, fmt::format("a quoted cell is not closed correctly on line {} of `{}`", line, file),
                "close it with `\"` on the same line, followed by a separator; a quote inside is written `\"\"`");
 }
@@ -103,7 +103,7 @@ Diagnostic cut_row(std::string const& file, int row, int line, int cells, int co
                "delete this line");
 }
 
-Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention) {
+Diagnostic ragged_row(std::string const& file, std::int64_t row, std::int64_t line, int cells, int columns, Mention mention) {
   return error(
       "E4005", mention,
       fmt::format("{} has {}, but the header names {}", place(file, row, line), counted(cells, "cell"), counted(columns, "column")),
@@ -119,7 +119,7 @@ Diagnostic broken_table(std::string const& file, int line, Mention mention) {
                "correct the line or delete it; to read only the lines before it or after it, state them with `read values`");
 }
 
-Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention) {
+Diagnostic comment_in_data(std::string const& file, std::int64_t row, std::int64_t line, Mention mention) {
   return error("E4006", mention, fmt::format("{} is a comment", place(file, row, line)),
                "comments are allowed only above the header");
 }

@@ -15,7 +15,7 @@ Diagnostic header_of_numbers(std::string const& file, int line, bool after_comme
 /// proposed: the advice that reads it in another encoding, where one does.
 Diagnostic not_text(std::string const& file, std::optional<std::string> const& proposed, Mention mention);
 /// E4003: text but for zeros, the first of them in `line`, from 1.
-Diagnostic nul_bytes(std::string const& file, int line, std::size_t count, Mention mention);
+Diagnostic nul_bytes(std::string const& file, std::int64_t line, std::size_t count, Mention mention);
 Diagnostic not_in_encoding(std::string const& file, std::string const& encoding, Mention mention);
 /// E4008 of a file of variables; known: those that are columns.
 Diagnostic missing_variable(std::string const& file, std::string const& variable, std::vector<std::string> const& known,
@@ -37,13 +37,13 @@ Diagnostic reading_waited(std::string const& file, std::string const& what, Ment
 Diagnostic linked_elsewhere(std::string const& file, std::string const& target, Mention mention);
 /// E4002: `sep=|`.
 Diagnostic unknown_separator(std::string const& file, int line, std::string_view separator, Mention mention);
-Diagnostic open_quote(std::string const& file, int line, Mention mention);
-Diagnostic ragged_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
+Diagnostic open_quote(std::string const& file, std::int64_t line, Mention mention);
+Diagnostic ragged_row(std::string const& file, std::int64_t row, std::int64_t line, int cells, int columns, Mention mention);
 /// E4005 of the last line of a file, which has no end of a line.
 Diagnostic cut_row(std::string const& file, int row, int line, int cells, int columns, Mention mention);
 /// E4010: a line between the rows that is none.
 Diagnostic broken_table(std::string const& file, int line, Mention mention);
-Diagnostic comment_in_data(std::string const& file, int row, int line, Mention mention);
+Diagnostic comment_in_data(std::string const& file, std::int64_t row, std::int64_t line, Mention mention);
 Diagnostic too_many_rows(std::string const& file, int most, Mention mention);
 Diagnostic too_few_rows(std::string const& file, int rows, Mention mention);
 /// E4025: what `read` says of a file, and the file does not have.

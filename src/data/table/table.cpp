@@ -76,8 +76,8 @@ Table Table::read(std::string const& path, std::optional<Span> mention, ReadingR
   }
 }
 
-Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention, int rows_before, ReadingRules const& rules,
-                   ColumnNeeds const& needs) {
+Table Table::parse(std::string name, std::string bytes, std::optional<Span> mention, std::int64_t rows_before,
+                   ReadingRules const& rules, ColumnNeeds const& needs) {
   Table table;
   table.needs_ = needs;
   table.rows_before_ = rows_before;
@@ -130,7 +130,7 @@ void Table::rethrow_with_proposal(UserError const& error, std::string const& col
   throw UserError(std::move(diagnostic));
 }
 
-int Table::line(int row) const {
+std::int64_t Table::line(int row) const {
   return rows_before_ + (lines_.empty() ? header_line_ + row : lines_[static_cast<std::size_t>(row - 1)]);
 }
 

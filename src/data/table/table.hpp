@@ -27,7 +27,7 @@ class Table final : public RecordFile {
   /// Also of a gzip file. IoError when the file cannot be read, UserError (at `mention`) when it is no such table.
   static Table read(std::string const& path, std::optional<Span> mention = std::nullopt, ReadingRules const& rules = {});
   /// The same for bytes at hand, which messages call `name`. rows_before: of the file, which the bytes leave out.
-  static Table parse(std::string name, std::string bytes, std::optional<Span> mention = std::nullopt, int rows_before = 0,
+  static Table parse(std::string name, std::string bytes, std::optional<Span> mention = std::nullopt, std::int64_t rows_before = 0,
                      ReadingRules const& rules = {}, ColumnNeeds const& needs = {});
   /// Without a look at what other rules would read: for who tries rules.
   static Table parse_as_told(std::string name, std::string bytes, ReadingRules const& rules);
@@ -37,8 +37,8 @@ class Table final : public RecordFile {
   std::optional<int> row_count() const override { return rows_; }
   std::vector<std::string> const& columns() const override { return columns_; }
   /// The line of the file, from 1, of row `row`, from 1.
-  int line(int row) const;
-  int rows_before() const { return rows_before_; }
+  std::int64_t line(int row) const;
+  std::int64_t rows_before() const { return rows_before_; }
   std::string const& digest() const override { return digest_; }
   void set_digest(std::string digest) { digest_ = std::move(digest); }
   /// The comment lines before the header, without their `#` and the blanks around.
@@ -86,7 +86,8 @@ class Table final : public RecordFile {
   std::vector<std::uint64_t>
       cells_;               // [rows x (columns + 1)]: where each cell begins; the last entry of a row: one past its end + 1
   std::vector<int> lines_;  // [rows], where lines between them are left out; else empty
-  int rows_ = 0, rows_before_ = 0;
+  int rows_ = 0;
+  std::int64_t rows_before_ = 0;
   int header_line_ = 0;
   char separator_ = ',';
   bool proposes_ = true;  // messages look for other rules

@@ -70,7 +70,7 @@ class TableParser::Rows {
                 filled || !trimmed(std::string_view(table_.bytes_).substr(cell_begin, cell_end - cell_begin), cell_blanks).empty();
           }
         });
-    int const before = table_.rows_before_;
+    std::int64_t const before = table_.rows_before_;
     if (!closed) throw UserError(data_errors::open_quote(table_.name_, before + number, parser_.mention_));
     bool const cut = cells < columns_ && columns_ > 1 && end == table_.bytes_.size() && before == 0 && table_.rows_ > 1;
     if (cut && !table_.rules_.ragged)

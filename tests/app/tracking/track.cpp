@@ -12,7 +12,9 @@
 
 #include "app/running.hpp"
 #include "app/tracking/followed_rows.hpp"
+#include "app/tracking/track_report.hpp"
 #include "core/numeric/random.hpp"
+#include "core/text/number.hpp"
 
 using namespace sysid;
 
@@ -281,6 +283,17 @@ TEST_CASE("what cannot be tracked is refused, with the reason") {
   options = beam.options();
   options.first_row = 2000;
   CHECK(beam.refusal(options).find("1500") != std::string::npos);
+  options.first_row = options.last_row = 1;
+  CHECK(beam.refusal(options) == "tracking needs at least two rows");
+  options.follow = true;
+  CHECK(beam.refusal(options) == "tracking needs at least two rows");
+}
+
+TEST_CASE("a value has digits by its sd, nine of them beside the smallest") {
+  CHECK(with_sd(1, 0.004) == significant(1, 5) + " ± " + significant(0.004, 2));
+  CHECK(with_sd(1, 5e-324) == significant(1, 9) + " ± " + significant(5e-324, 2));
+  CHECK(with_sd(0, 0.1) == significant(0, 2) + " ± " + significant(0.1, 2));
+  CHECK(with_sd(1, 0) == significant(1, 4));
 }
 
 TEST_CASE("lines of a followed file come whole, blank ones and the header apart") {
