@@ -96,6 +96,8 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
   LineOutput notices(context.output.messages(), [](std::string const& line) { return line; });
   std::ostringstream answers;
   Session session(checked->source, checked->file, options, context.progress, answers, notices);
+  // Where a run was stopped before it left anything, the result of an earlier text is nothing to go on from.
+  if (resume && sysid::complete(session.result_folder(*place)) && !holds_own_result(session, *place)) options.resume = false;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (tasks[i].name == name) continue;  // what it has left before may be of another text
     if (auto const known = context.results.fitted.find(tasks[i].name); known != context.results.fitted.end())

@@ -347,8 +347,8 @@ TEST_CASE("a fit that is stopped before its first draw leaves none of an earlier
   // The draws of the model without k3 stand in the folder yet.
   CHECK_FALSE(d.enter("count(k)"));
   CHECK_FALSE(d.enter("forecast = predict post on bench with draws(20)"));
-  CHECK(has(d.messages(), "`post`"));
-  REQUIRE_MESSAGE(d.enter("run post"), d.messages());
+  CHECK_MESSAGE(has(d.messages(), "post`"), d.messages());
+  REQUIRE_MESSAGE(d.enter("resume post"), d.messages());
   CHECK_MESSAGE(d.enter("forecast = predict post on bench with draws(20)"), d.messages());
   CHECK(d.enter("mean(k3)"));
 }

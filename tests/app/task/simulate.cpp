@@ -29,8 +29,10 @@ TEST_CASE("a forced simulation that finds the disk full leaves the results of be
   RunOptions options;
   options.output = folder.path() / "results";
   std::string const text = R"(
-model lag { input x; state s; initial s = 0; parameter tau [s] ~ log_uniform(0.1, 10); tau*s' = x - s; observe y ~ normal(s, sd = 0.1) }
-truth = simulate lag with values(tau = 1), input x = gaussian(sd = 1), samples = 5, rate = 10 [Hz], seed = 1, file = "predict.csv"
+model lag { input x; state s; initial s = 0; parameter tau [s] ~ log_uniform(0.1, 10)
+  tau*s' = x - s; observe y ~ normal(s, sd = 0.1) }
+truth = simulate lag with values(tau = 1), input x = gaussian(sd = 1), samples = 5, rate = 10 [Hz], seed = 1,
+  file = "predict.csv"
 )";
   run_text(folder.path() / "lag.sysid", text, options);
   std::filesystem::path const record = options.output / "truth/predict.csv", other = options.output / "truth/draws_1.csv";
