@@ -5,6 +5,7 @@
 
 #include "app/comparison/compare.hpp"
 #include "app/preflight/check_file.hpp"
+#include "check/checked/checked.hpp"
 #include "repl/commands.hpp"
 #include "repl/statements.hpp"
 #include "repl/tasks.hpp"
@@ -16,15 +17,19 @@ namespace sysid::repl {
 namespace {
 
 /// The model of a task by the name of `list`, where what it ran on is kept beside what it has become.
-std::string model_of_work(Workspace const& work, std::string const& task, std::string model) {
-  std::size_t place = work.find(ItemKind::task, task);
-  if (place == work.items.size()) return model;
-  ast::Task tree = std::get<ast::Task>(item_of(work.items[place].text));
-  // Of a prediction, that of its fit; of an average, whose models are several, that of its results.
-  if (!tree.others.empty()) return model;
-  place = work.find(ItemKind::task, tree.subject.text);
-  if (place < work.items.size()) tree = std::get<ast::Task>(item_of(work.items[place].text));
-  return model.replace(0, std::min(model.find('('), model.size()), tree.subject.text);
+std::string model_of_work(CheckedFile const& file, std::string const& name, std::string const& model) {
+  auto const place = std::find_if(file.tasks.begin(), file.tasks.end(), [&](Task const& each) { return each.name == name; });
+  if (place == file.tasks.end()) return model;
+  Task const* task = &*place;
+  if (auto const* what = std::get_if<PredictTask>(&task->what)) {
+    // Of a prediction, that of its fit; of an average, whose models are several, that of its results.
+    if (what->averages()) return model;
+    task = &file.tasks[static_cast<std::size_t>(what->fit)];
+  }
+  if (auto const* fit = std::get_if<FitTask>(&task->what)) return file.models[static_cast<std::size_t>(fit->model)].name;
+  if (auto const* what = std::get_if<SelectTask>(&task->what))
+    return file.candidates[static_cast<std::size_t>(what->candidates)].name;
+  return model;
 }
 
 }  // namespace
@@ -90,7 +95,7 @@ bool compare(Context& context, std::string const& tasks) {
     folders.push_back(result->folder);
   }
   context.output.answer(comparison_text(sysid::compare(folders, [&](std::string const& task, std::string const& model) {
-    return model_of_work(context.work.statements, task, model);
+    return context.work.checked ? model_of_work(context.work.checked->file, task, model) : model;
   })));
   return true;
 }

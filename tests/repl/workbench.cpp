@@ -572,4 +572,8 @@ TEST_CASE("a fit without a name of a model with arguments can be run and refitte
   REQUIRE_MESSAGE(d.enter("fit law to bench.train with map"), d.messages());
   REQUIRE_MESSAGE(d.enter("fit law(n = 2) to bench.train with map"), d.messages());
   CHECK(d.enter("show fit_law2"));
+  // What they ran on is kept when the model changes, and compared under that name.
+  REQUIRE_MESSAGE(d.enter("parameter k [N/m] ~ log_uniform(1e3, 1e6)"), d.messages());
+  REQUIRE_MESSAGE(d.enter("compare"), d.messages());
+  CHECK_MESSAGE(has(d.answers(), "law_1(n = 2)"), d.answers());
 }
