@@ -116,6 +116,7 @@ Result read_result(std::filesystem::path const& folder, std::string const& task,
   }
   if (!result.optimum())
     for (DrawColumn& column : result.draws) column.sd.reset();
+  if (kind == TaskKind::simulate) return result;  // its record has no bands, whatever its name
   std::vector<std::filesystem::path> records;
   std::error_code ignored;
   for (auto const& entry : std::filesystem::directory_iterator(folder, ignored)) {

@@ -537,6 +537,16 @@ TEST_CASE("what is entered before a task stays when the task cannot be run") {
   CHECK_FALSE(d.enter("show late"));
 }
 
+TEST_CASE("a record that was simulated is no prediction, whatever it is called") {
+  Dialogue d;
+  d.begin();
+  REQUIRE_MESSAGE(d.enter("predicted = simulate maker with input x = gaussian(sd = 10), samples = 50, rate = 500 [Hz], seed = 2"),
+                  d.messages());
+  REQUIRE(d.workbench().results().back().task == "predicted");
+  CHECK(d.workbench().results().back().kind == TaskKind::simulate);
+  CHECK(d.workbench().results().back().records.empty());
+}
+
 TEST_CASE("the list has tasks with their back ends, whatever they are called") {
   Dialogue d;
   d.begin();
