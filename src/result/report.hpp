@@ -1,6 +1,7 @@
 // What a task found, as plain data: tasks fill it, the writers of report/ turn it into files and text.
 // Nothing in it depends on the host or the hour but `timing`.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -55,8 +56,8 @@ struct TrueValue {
 struct DataInfo {
   std::string name;  // "bench.train"
   std::string file, sha256;
-  int rows = 0;                    // of the file
-  int scored = 0;                  // of the split
+  std::int64_t rows = 0;           // of the file
+  std::int64_t scored = 0;         // of the split
   std::string scored_rows;         // which: "101..500", counted from 1
   std::string samples_sha256;      // of the measured samples that the likelihood reads, with their rows and in their declared units
   std::string inputs_sha256;       // of what the model is given beside them: columns, units and rules of its inputs, constants

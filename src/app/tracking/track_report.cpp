@@ -295,7 +295,7 @@ void fill_report(Session const& session, TrackedFit const& fit, GatheredTrack co
   data.file = gathered.file;
   data.sha256 = gathered.digest;
   data.rows = gathered.last_row;
-  data.scored = static_cast<int>(gathered.rows);
+  data.scored = gathered.rows;
   data.scored_rows = fmt::format("{}..{}", gathered.first_row, gathered.last_row);
   report.data.push_back(data);
   Prediction along;
