@@ -25,15 +25,19 @@ ast::Argument* location_of(ast::Call& noise, DistributionRow const& row) {
   return at == noise.arguments.end() ? nullptr : &*at;
 }
 
-/// A model of the text and the statement in it that observes the channel; null where it stands in a module.
+/// The model of the text that observes the channel; null where it stands in a module.
+ast::Model* model_of(ast::File& tree, Channel const& channel) {
+  for (ast::Item& item : tree.items)
+    if (auto* const model = std::get_if<ast::Model>(&item); model != nullptr && covers(model->span, channel.span)) return model;
+  return nullptr;
+}
+
+/// The statement of it that does; null where it stands in a module.
 ast::Observation* observation_of(ast::File& tree, Channel const& channel) {
-  for (ast::Item& item : tree.items) {
-    auto* const model = std::get_if<ast::Model>(&item);
-    if (model == nullptr || !covers(model->span, channel.span)) continue;
+  if (ast::Model* const model = model_of(tree, channel))
     for (ast::ModelStatement& statement : model->statements)
       if (auto* const observation = std::get_if<ast::Observation>(&statement))
         if (covers(observation->span, channel.span)) return observation;
-  }
   return nullptr;
 }
 
@@ -105,7 +109,7 @@ std::optional<std::string> rewritten(Source const& source, Channel const& channe
 
 }  // namespace
 
-std::optional<std::string> noise_statement_with(Source const& source, Channel const& channel, std::string const& parameter) {
+std::optional<std::string> noise_statement_with(Source const& source, Channel const& channel, std::string const& sum) {
   Diagnostics ignored;
   auto tree = parse(source, ignored);
   ast::Observation* const observation = tree ? observation_of(*tree, channel) : nullptr;
@@ -113,10 +117,19 @@ std::optional<std::string> noise_statement_with(Source const& source, Channel co
   ast::Argument* const location = location_of(observation->noise, *channel.noise.row);
   if (location == nullptr) return {};
   ast::Reference added;
-  added.name.text = parameter;
-  ast::Binary sum{{}, "+", std::move(location->value), ast::Expression{{}, std::move(added)}};
-  location->value = ast::Expression{{}, std::move(sum)};
+  added.name.text = sum;
+  ast::Binary with_sum{{}, "+", std::move(location->value), ast::Expression{{}, std::move(added)}};
+  location->value = ast::Expression{{}, std::move(with_sum)};
   return unparse(ast::ModelStatement{*observation});
+}
+
+std::string time_name(Source const& source, Channel const& channel) {
+  Diagnostics ignored;
+  auto tree = parse(source, ignored);
+  if (ast::Model const* const model = tree ? model_of(*tree, channel) : nullptr)
+    for (ast::ModelStatement const& statement : model->statements)
+      if (auto const* const time = std::get_if<ast::TimeDeclaration>(&statement)) return time->time.name.text;
+  return {};
 }
 
 std::optional<std::string> heavy_tailed_statement(Source const& source, Channel const& channel) {

@@ -8,9 +8,12 @@
 
 namespace sysid {
 
-/// `observe displacement ~ normal(y + displacement_offset, sd = sigma)`: the statement of `channel` with `parameter` added to what
+/// `observe displacement ~ normal(y + displacement_offset, sd = sigma)`: the statement of `channel` with `sum` added to what
 /// the noise lies about. Nothing where it is not in the text itself, but in a module.
-std::optional<std::string> noise_statement_with(Source const& source, Channel const& channel, std::string const& parameter);
+std::optional<std::string> noise_statement_with(Source const& source, Channel const& channel, std::string const& sum);
+
+/// `t` of `time t [s]` in the model of `channel`. Empty where it has no such statement or stands in a module.
+std::string time_name(Source const& source, Channel const& channel);
 
 /// `observe displacement ~ student_t(y, 4, scale = sigma)`: the same with heavy tails, of a channel with `normal(y, sd = sigma)`,
 /// or with a variance or precision. Nothing where it is written otherwise, stands in a module, or has a number without unit that

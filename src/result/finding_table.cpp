@@ -55,6 +55,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::optimum_not_reached, "optimum_not_reached", error},
     {FindingCode::widths_not_normal, "widths_not_normal", error_or_warning},
     {FindingCode::residual_offset, "residual_offset", warning},
+    {FindingCode::residual_trend, "residual_trend", warning},
     {FindingCode::residuals_not_white, "residuals_not_white", warning},
     {FindingCode::input_in_residuals, "input_in_residuals", warning},
     {FindingCode::noise_law, "noise_law", warning},

@@ -54,6 +54,7 @@ enum class FindingCode {
   optimum_not_reached,
   widths_not_normal,
   residual_offset,
+  residual_trend,
   residuals_not_white,
   input_in_residuals,
   noise_law,

@@ -10,7 +10,7 @@ namespace sysid {
 
 namespace {
 
-constexpr ScoreRow rows[] = {
+constexpr ScoreRow score_rows[] = {
     {ScoreKind::log_score, "log_score"},
     {ScoreKind::nmse, "nmse", ScoreUnit::percent},
     {ScoreKind::nmse_left_out, "nmse_left_out", ScoreUnit::percent},
@@ -22,16 +22,16 @@ constexpr ScoreRow rows[] = {
     {ScoreKind::input_correlation, "input_correlation_p", ScoreUnit::none, true},
 };
 
-constexpr bool in_order() {
-  for (std::size_t i = 0; i < std::size(rows); ++i)
-    if (static_cast<std::size_t>(rows[i].kind) != i) return false;
-  return rows[std::size(rows) - 1].kind == ScoreKind::input_correlation;
+constexpr bool scores_in_order() {
+  for (std::size_t i = 0; i < std::size(score_rows); ++i)
+    if (static_cast<std::size_t>(score_rows[i].kind) != i) return false;
+  return score_rows[std::size(score_rows) - 1].kind == ScoreKind::input_correlation;
 }
-static_assert(in_order(), "a row for every score, in the order of ScoreKind");
+static_assert(scores_in_order(), "a row for every score, in the order of ScoreKind");
 
 }  // namespace
 
-ScoreRow const& row_of(ScoreKind kind) { return rows[static_cast<std::size_t>(kind)]; }
+ScoreRow const& row_of(ScoreKind kind) { return score_rows[static_cast<std::size_t>(kind)]; }
 
 std::string text_of(ScoreName const& name) {
   std::string_view const word = row_of(name.kind).word;
@@ -40,8 +40,9 @@ std::string text_of(ScoreName const& name) {
 
 std::optional<ScoreName> score_name(std::string_view text) {
   std::string_view const word = text.substr(0, text.find('('));
-  auto const* const row = std::find_if(std::begin(rows), std::end(rows), [&](ScoreRow const& each) { return each.word == word; });
-  if (row == std::end(rows)) return {};
+  auto const* const row =
+      std::find_if(std::begin(score_rows), std::end(score_rows), [&](ScoreRow const& each) { return each.word == word; });
+  if (row == std::end(score_rows)) return {};
   if (word.size() == text.size()) return ScoreName{row->kind};
   if (row->kind != ScoreKind::input_correlation || !text.ends_with(')')) return {};
   return ScoreName{row->kind, std::string(text.substr(word.size() + 1, text.size() - word.size() - 2))};

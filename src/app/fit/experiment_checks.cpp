@@ -15,7 +15,7 @@
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
-#include "diagnostics/residuals/residual_offset.hpp"
+#include "diagnostics/residuals/residual_line.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
 #include "search/refit.hpp"
@@ -33,8 +33,9 @@ constexpr double rare = 1e-4, rare_power = 1e-3;  // the latter where a member i
 bool may_disagree(FinishedFit const& fit) {
   return fit.likelihood.model().filtered() || std::ranges::any_of(fit.report.findings, [](Finding const& each) {
            return each.code == FindingCode::residuals_not_white || each.code == FindingCode::input_in_residuals ||
-                  each.code == FindingCode::residual_offset || each.code == FindingCode::noise_size ||
-                  each.code == FindingCode::explains_little || each.code == FindingCode::worse_than_the_mean;
+                  each.code == FindingCode::residual_offset || each.code == FindingCode::residual_trend ||
+                  each.code == FindingCode::noise_size || each.code == FindingCode::explains_little ||
+                  each.code == FindingCode::worse_than_the_mean;
          });
 }
 

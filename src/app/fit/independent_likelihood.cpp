@@ -122,11 +122,15 @@ class IndependentLikelihood : public FitLikelihood {
     if (particles_) return particles_->check_residuals(parameters_of_each(middle_of(result)));
     Source const& source = session_.source;
     UserText const text{
-        [&](std::string const& name) { return mentions(source, name); },
-        [&](Channel const& channel, std::string const& parameter) { return noise_statement_with(source, channel, parameter); },
-        [&](Channel const& channel) { return heavy_tailed_statement(source, channel); },
-        [&](Channel const& channel, std::string const& relative) { return proportional_statement(source, channel, relative); },
-        [&](Channel const& channel, std::string const& shape) { return overdispersed_statement(source, channel, shape); }};
+        .mentions = [&](std::string const& name) { return mentions(source, name); },
+        .noise_statement_with = [&](Channel const& channel,
+                                    std::string const& sum) { return noise_statement_with(source, channel, sum); },
+        .time_name = [&](Channel const& channel) { return time_name(source, channel); },
+        .heavy_tailed = [&](Channel const& channel) { return heavy_tailed_statement(source, channel); },
+        .proportional = [&](Channel const& channel,
+                            std::string const& relative) { return proportional_statement(source, channel, relative); },
+        .overdispersed = [&](Channel const& channel,
+                             std::string const& shape) { return overdispersed_statement(source, channel, shape); }};
     return sysid::check_residuals(*target_, best_of(result), text);
   }
 

@@ -135,12 +135,12 @@ Findings check_threshold(SelectionReport const& selection) {
 
 FitCheck check_candidate(Session& session, Candidate const& candidate, CandidatePosterior const& posterior) {
   if (posterior.modes.empty() || posterior.given_up) return {};
-  FitCheck check = check_residuals(*likelihood_target(session, candidate, posterior.solver, session.abandonable()),
-                                   posterior.modes.front().declared,
-                                   UserText{[&](std::string const& name) { return mentions(session.source, name); },
-                                            [&](Channel const& channel, std::string const& parameter) {
-                                              return noise_statement_with(session.source, channel, parameter);
-                                            }});
+  FitCheck check = check_residuals(
+      *likelihood_target(session, candidate, posterior.solver, session.abandonable()), posterior.modes.front().declared,
+      UserText{.mentions = [&](std::string const& name) { return mentions(session.source, name); },
+               .noise_statement_with = [&](Channel const& channel,
+                                           std::string const& sum) { return noise_statement_with(session.source, channel, sum); },
+               .time_name = [&](Channel const& channel) { return time_name(session.source, channel); }});
   name_candidate(candidate, check.findings);
   return check;
 }

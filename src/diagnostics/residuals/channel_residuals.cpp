@@ -21,9 +21,13 @@ bool ChannelResiduals::noise_is_estimated() const {
                      [&](NodeId argument) { return reads_estimated(model(), argument); });
 }
 
-bool ChannelTests::offset_cures() const {
-  constexpr double useless = 80;  // nmse [%] that the offset leaves, from which it is not what the fit lacks
-  return offset.fires && unexplained * (1 - offset.share) < useless;
+char const* ChannelTests::first_cure() const {
+  constexpr double useless = 80;  // nmse [%] that offset or trend leave, from which they are not what the fit lacks
+  if (offset.fires && unexplained * (1 - offset.share) < useless)
+    return "the misfit is mostly a constant: add the offset first (`residual_offset`)";
+  if (trend.fires && unexplained * (1 - trend.share) < useless)
+    return "the misfit is mostly a line in time: add the drift first (`residual_trend`)";
+  return nullptr;
 }
 
 std::vector<double> without(std::vector<double> residuals, std::vector<std::size_t> const& places) {
@@ -86,11 +90,30 @@ double unexplained(ChannelResiduals const& of, std::vector<std::size_t> const& e
   return nmse(observed, predicted);
 }
 
-double mean_error(ChannelResiduals const& of, std::vector<std::size_t> const& far) {
-  std::vector<double> errors;
+/// Measured minus predicted samples, without those far off, in the channel's declared unit.
+struct Errors {
+  std::vector<double> time, values;  // [s]
+};
+Errors errors_of(ChannelResiduals const& of, std::vector<std::size_t> const& far) {
+  Errors errors;
   for (std::size_t i = 0; i < of.places.size(); ++i)
-    if (!std::binary_search(far.begin(), far.end(), of.places[i])) errors.push_back(of.observed[i] - of.predicted[i]);
-  return mean(errors);
+    if (!std::binary_search(far.begin(), far.end(), of.places[i])) {
+      errors.time.push_back(of.data().time[of.places[i]]);
+      errors.values.push_back(of.observed[i] - of.predicted[i]);
+    }
+  return errors;
+}
+
+Trend trend_of(ChannelResiduals const& of, Errors const& errors) {
+  std::optional<Unit> const& unit = of.data().time_unit;
+  Line const line = fitted_line(errors.time, errors.values);
+  Trend trend;
+  trend.slope = line.slope * (unit ? unit->scale : 1);
+  trend.largest_slope = std::fabs(trend.slope);
+  trend.largest_value =
+      std::max({std::fabs(line.at(errors.time.front())), std::fabs(line.at(errors.time.back())), std::fabs(line.at_zero)});
+  if (unit) trend.time_unit = unit->text;
+  return trend;
 }
 
 }  // namespace
@@ -101,8 +124,12 @@ ChannelTests test_channel(ChannelResiduals const& of) {
   tested.unexplained = unexplained(of, spikes(of));
   std::vector<double> const residuals = without(of.residuals, tested.far);
   bool const ordered = of.model().dynamics != Dynamics::none;
-  if (offset_can_be_added(of.model(), of.described())) tested.offset = offset_test(residuals, ordered);
-  if (tested.offset.fires) tested.offset_size = mean_error(of, tested.far);
+  if (offset_can_be_added(of.model(), of.described())) {
+    tested.offset = offset_test(residuals, ordered);
+    if (!tested.offset.fires && of.model().dynamics == Dynamics::continuous) tested.trend = trend_test(residuals, of.data().time);
+  }
+  if (tested.offset.fires) tested.offset_size = mean(errors_of(of, tested.far).values);
+  if (tested.trend.fires) tested.line = trend_of(of, errors_of(of, tested.far));
   if (!ordered) return tested;
   tested.white = whiteness(residuals);
   for (std::size_t i = 0; i < of.model().inputs.size(); ++i) {

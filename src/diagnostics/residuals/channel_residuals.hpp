@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "data/experiment.hpp"
-#include "diagnostics/residuals/residual_offset.hpp"
+#include "diagnostics/residuals/residual_line.hpp"
 #include "diagnostics/residuals/residual_tests.hpp"
 #include "diagnostics/residuals/sized_residuals.hpp"
 #include "model/model.hpp"
@@ -37,11 +37,16 @@ struct ChannelTests {
   double unexplained = 0;        // nmse [%] without spikes
   OffsetTest offset;
   double offset_size = 0, largest_offset = 0;  // of this channel, and of it on any experiment, in its declared unit
-  std::optional<CorrelationTest> white;        // rows of any order have no past
-  std::vector<CorrelationTest> with_input;     // of each input
+  TrendTest trend;                             // where there is no offset
+  Trend line;
+  std::optional<CorrelationTest> white;     // rows of any order have no past
+  std::vector<CorrelationTest> with_input;  // of each input
 
-  /// Whether the fit explains something of the channel once the offset is estimated.
-  bool offset_cures() const;
+  /// What to do first, where the fit explains something of the channel once the offset or the trend is estimated; else null.
+  char const* first_cure() const;
+
+  /// Whether the residuals are correlated by nothing else.
+  bool white_otherwise() const { return (offset.fires && offset.white_without) || (trend.fires && trend.white_without); }
 };
 
 /// `residuals` with NaN at `places`.

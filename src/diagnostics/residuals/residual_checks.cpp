@@ -14,9 +14,9 @@
 #include "diagnostics/law/noise_law.hpp"
 #include "diagnostics/law/noise_words.hpp"
 #include "diagnostics/law/residual_law.hpp"
-#include "diagnostics/residuals/explained.hpp"
-#include "diagnostics/residuals/residual_offset.hpp"
 #include "diagnostics/residuals/channel_residuals.hpp"
+#include "diagnostics/residuals/explained.hpp"
+#include "diagnostics/residuals/residual_line.hpp"
 #include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -41,18 +41,15 @@ Limits limits_of(std::vector<ChannelTests> const& all) {
   return {std::max(1, static_cast<int>(all.size())), limit_together(white), limit_together(with_input)};
 }
 
-constexpr char const* offset_first = "the misfit is mostly a constant: add the offset first (`residual_offset`)";
-
 // pattern: of the residuals, where what the fit leaves is more than noise; else null.
 void check_share(ChannelResiduals const& of, ChannelTests const& tested, char const* pattern, Findings& findings) {
   char const* look = "check units, signs and columns, then the initial values and the priors, then the model";
-  if (tested.offset_cures())
-    look = offset_first;
+  if (tested.first_cure() != nullptr)
+    look = tested.first_cure();
   else if (tested.offset.fires)
     look =
         "an offset alone does not explain the misfit: check signs in the equation and of columns, and units, then the initial "
-        "values "
-        "and the priors, then the model";
+        "values and the priors, then the model";
   double const left = tested.unexplained;
   if (left > as_bad_as_the_mean(of.observed.size()))
     findings.push_back(worse_than_the_mean(left > useless_nmse || pattern != nullptr ? Severity::error : Severity::warning,
@@ -86,16 +83,19 @@ void check_outliers(ChannelResiduals const& of, std::vector<std::size_t> const& 
                       help});
 }
 
-void check_offset(ChannelResiduals const& of, ChannelTests const& tested, UserText const& text, Findings& findings) {
-  if (!tested.offset.fires) return;
-  findings.push_back(residual_offset(of.model(), of.described(), of.data().name, of.experiments.size() > 1, tested.offset,
-                                     tested.offset_size, tested.largest_offset, text));
+void check_line(ChannelResiduals const& of, ChannelTests const& tested, UserText const& text, Findings& findings) {
+  bool const several = of.experiments.size() > 1;
+  if (tested.offset.fires)
+    findings.push_back(residual_offset(of.model(), of.described(), of.data().name, several, tested.offset, tested.offset_size,
+                                       tested.largest_offset, text));
+  if (tested.trend.fires)
+    findings.push_back(residual_trend(of.model(), of.described(), of.data().name, several, tested.trend, tested.line, text));
 }
 
 std::string size_help(ChannelResiduals const& of, ChannelTests const& tested, bool larger, bool coloured, UserText const& text) {
   // An offset or an outlier makes residuals larger: it does not explain that they are small.
   if (larger && !tested.far.empty()) return "a few outlying samples make the noise appear larger: check these first";
-  if (larger && tested.offset_cures()) return offset_first;
+  if (char const* const first = tested.first_cure(); larger && first != nullptr) return first;
   if (of.noise_is_estimated())
     return "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: check the residuals";
   Channel const& channel = of.described();
@@ -125,7 +125,7 @@ void check_size(ChannelResiduals const& of, ChannelTests const& tested, Limits c
 }
 
 std::string memory_help(ChannelResiduals const& of, ChannelTests const& tested) {
-  if (tested.offset_cures()) return fmt::format("{}; then check the remaining residuals", offset_first);
+  if (char const* const first = tested.first_cure()) return fmt::format("{}; then check the remaining residuals", first);
   std::string help =
       "look for a force or dynamics that the model lacks, or for coloured noise; until this is resolved, the errors of the "
       "estimates can be several times their sds";
@@ -141,8 +141,7 @@ std::string memory_help(ChannelResiduals const& of, ChannelTests const& tested) 
 void check_memory(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, FitLine& line, Findings& findings) {
   CorrelationTest const& white = *tested.white;
   line.scores.push_back({{ScoreKind::whiteness}, white.p_value});
-  bool const offset_alone = tested.offset.fires && tested.offset.white_without;
-  if (white.fires(limits.white) && !offset_alone)
+  if (white.fires(limits.white) && !tested.white_otherwise())
     findings.push_back({FindingCode::residuals_not_white, Severity::warning, of.names(),
                         fmt::format("residuals of {} are correlated in time ({} of {} lags outside the 99 % band)", of.name(),
                                     white.outside, white.correlation.size()),
@@ -186,7 +185,7 @@ FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Li
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
   line.scores = {{{ScoreKind::nmse}, nmse(of.observed, of.predicted)}, {{ScoreKind::rmse}, rmse(of.observed, of.predicted)}};
   Findings shape;
-  check_offset(of, tested, text, shape);
+  check_line(of, tested, text, shape);
   check_size(of, tested, limits, text, line, shape);
   check_outliers(of, tested.far, text, shape);
   if (tested.white) check_memory(of, tested, limits, line, shape);
@@ -239,8 +238,11 @@ FitCheck check_scored(std::vector<ChannelResiduals> const& scored, UserText cons
   for (ChannelResiduals const& each : scored) tested.push_back(test_channel(each));
   for (std::size_t k = 0; k < scored.size(); ++k)
     for (std::size_t j = 0; j < scored.size(); ++j)
-      if (scored[j].described().name == scored[k].described().name)
+      if (scored[j].described().name == scored[k].described().name) {
         tested[k].largest_offset = std::max(tested[k].largest_offset, std::fabs(tested[j].offset_size));
+        tested[k].line.largest_slope = std::max(tested[k].line.largest_slope, std::fabs(tested[j].line.slope));
+        tested[k].line.largest_value = std::max(tested[k].line.largest_value, tested[j].line.largest_value);
+      }
   Limits const limits = limits_of(tested);
   for (std::size_t k = 0; k < scored.size(); ++k)
     check.lines.push_back(check_channel(scored[k], tested[k], limits, text, check.findings));

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnostics/residuals/residual_offset.hpp"
+#include "diagnostics/residuals/residual_line.hpp"
 #include "likelihood/model_target.hpp"
 #include "result/finding.hpp"
 #include "result/report.hpp"

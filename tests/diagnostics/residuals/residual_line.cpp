@@ -1,5 +1,5 @@
-// An offset of a sensor: what it is told from, and a cure that is followed as it is written.
-#include "diagnostics/residuals/residual_offset.hpp"
+// An offset or a drift of a sensor: what it is told from, and cures that are followed as they are written.
+#include "diagnostics/residuals/residual_line.hpp"
 
 #include <doctest/doctest.h>
 
@@ -104,7 +104,39 @@ TEST_CASE("noise, drifts, transients and oscillations are no offset") {
   CHECK_FALSE(offset_test(series([](double i, Stream& s) { return 1 + 2 * std::sin(i / 7) + 0.1 * s.normal(); }), true).fires);
 }
 
-TEST_CASE("white series have an offset in fewer than one of a thousand") {
+TEST_CASE("a line in time is a trend where it is most of a misfit, whatever its size") {
+  std::vector<double> time;
+  for (int i = 0; i < samples; ++i) time.push_back(3 + 0.02 * i);
+  TrendTest const large = trend_test(series([](double i, Stream& s) { return 0.02 * i - 10 + s.normal(); }), time);
+  CHECK(large.fires);
+  CHECK(large.white_without);
+  CHECK(large.share == doctest::Approx(75.0 / 76).epsilon(0.01));  // 30^2/12 beside 1
+  CHECK(large.standard_errors == doctest::Approx(0.02 * samples * std::sqrt(samples / 12.0)).epsilon(0.1));
+  CHECK(trend_test(series([](double i, Stream& s) { return i / samples + s.normal(); }), time).fires);
+  CHECK(trend_test(series([](double i, Stream& s) { return i > 700 && i < 750 ? std::nan("") : i / samples + s.normal(); }), time)
+            .fires);
+  // Not in equal steps.
+  for (std::size_t i = 0; i < time.size(); ++i) time[i] = 1e-5 * static_cast<double>(i * i);
+  std::vector<double> bent = series([](double, Stream& s) { return s.normal(); });
+  for (std::size_t i = 0; i < time.size(); ++i) bent[i] += 2 * time[i];
+  CHECK(trend_test(bent, time).white_without);
+  CHECK(trend_test(bent, time).fires);
+}
+
+TEST_CASE("noise, steps, transients, oscillations and wander are no trend") {
+  std::vector<double> time;
+  for (int i = 0; i < samples; ++i) time.push_back(0.02 * i);
+  auto const fires = [&](auto const& value) { return trend_test(series(value), time).fires; };
+  CHECK_FALSE(fires([](double, Stream& s) { return s.normal(); }));
+  CHECK_FALSE(fires([](double i, Stream& s) { return (i < 700 ? 0 : 5) + s.normal(); }));
+  CHECK_FALSE(fires([](double i, Stream& s) { return 20 * std::exp(-i / 200) + s.normal(); }));
+  CHECK_FALSE(fires([](double i, Stream& s) { return 4 * std::sin(i / 20) + s.normal(); }));
+  CHECK_FALSE(fires([](double i, Stream& s) { return 10 * std::pow(i / samples - 0.5, 2) + 0.1 * s.normal(); }));
+  double wander = 0;
+  CHECK_FALSE(fires([&](double, Stream& s) { return wander += s.normal(); }));
+}
+
+TEST_CASE("white series have an offset in fewer than one of a thousand, and no trend") {
   int found = 0;
   for (std::uint64_t key = 0; key < 1000; ++key) {
     Stream stream({key, Purpose::test, 0, 0});
@@ -112,6 +144,9 @@ TEST_CASE("white series have an offset in fewer than one of a thousand") {
     for (int i = 0; i < 200; ++i) values.push_back(stream.normal());
     found += offset_test(values, true).fires ? 1 : 0;
     found += offset_test(values, false).fires ? 1 : 0;
+    std::vector<double> time;
+    for (int i = 0; i < 200; ++i) time.push_back(i);
+    found += trend_test(values, time).fires ? 1 : 0;
   }
   CHECK(found == 0);
 }
@@ -151,12 +186,50 @@ TEST_CASE("a stated noise, a weighted mean and a sum keep their form in the cure
   }
 }
 
-TEST_CASE("a good fit, a drift of the sensor and an offset that the model has are not named") {
+TEST_CASE("a drift of a sensor is named with lines that remove it") {
+  std::string const plain = "observe z ~ normal(y, sd = sigma)";
+  json const findings = findings_of_fit(plain, "", -1.2, 0.1);
+  json const* const found = of_code(findings, "residual_trend");
+  REQUIRE_MESSAGE(found != nullptr, findings.dump());
+  std::string const message = found->at("message"), begin = "the residuals of z follow a line in time: a slope of ";
+  CAPTURE(message);
+  REQUIRE(message.starts_with(begin));
+  CHECK(std::stod(message.substr(begin.size())) == doctest::Approx(0.1).epsilon(0.05));
+  CHECK(message.find(" mm/s, ") != std::string::npos);
+  CHECK(of_code(findings, "residual_offset") == nullptr);
+  for (json const& each : findings) CHECK(each.at("help").get<std::string>().find("disturbance") == std::string::npos);
+  std::string const help = found->at("help"), time = quoted_part(help, 1), offset = quoted_part(help, 2),
+                    drift = quoted_part(help, 3);
+  CHECK(time == "time t [s]");
+  CHECK(offset == "parameter z_offset [mm] ~ normal(0, sd = 5)");
+  CHECK(drift == "parameter z_drift [mm/s] ~ normal(0, sd = 0.5)");
+  std::string const statement = quoted_part(help, 4);
+  CHECK(statement == "observe z ~ normal(y + z_offset + z_drift*t, sd = sigma)");
+  json const cured = findings_of_fit(statement, "  " + time + "\n  " + offset + "\n  " + drift, -1.2, 0.1);
+  CHECK_MESSAGE(cured.empty(), cured.dump());
+}
+
+TEST_CASE("a model that names the time or holds an offset keeps both in the cure of a drift") {
+  std::string const more = "  time tau [s]\n  parameter b [mm] ~ normal(0, sd = 5)\n  parameter z_drift [1/s] = 1 [1/s]\n";
+  std::string const noise = "observe z ~ normal(y + b, sd = sigma)";
+  json const findings = findings_of_fit(noise, more, -1.2, 0.1);
+  json const* const found = of_code(findings, "residual_trend");
+  REQUIRE_MESSAGE(found != nullptr, findings.dump());
+  std::string const help = found->at("help"), drift = quoted_part(help, 1), statement = quoted_part(help, 2);
+  CHECK(drift == "parameter z_drift_2 [mm/s] ~ normal(0, sd = 0.5)");
+  CHECK(statement == "observe z ~ normal(y + b + z_drift_2*tau, sd = sigma)");
+  json const cured = findings_of_fit(statement, more + "  " + drift, -1.2, 0.1);
+  CHECK_MESSAGE(of_code(cured, "residual_trend") == nullptr, cured.dump());
+  CHECK_MESSAGE(of_code(cured, "residuals_not_white") == nullptr, cured.dump());
+}
+
+TEST_CASE("a good fit, a drift of the sensor and an offset that the model has are no offset") {
   std::string const plain = "observe z ~ normal(y, sd = sigma)";
   CHECK(of_code(findings_of_fit(plain, "", 0), "residual_offset") == nullptr);
   json const drifts = findings_of_fit(plain, "", 0, 0.1);
   CHECK(of_code(drifts, "residual_offset") == nullptr);
-  CHECK(of_code(drifts, "residuals_not_white") != nullptr);
+  CHECK(of_code(drifts, "residual_trend") != nullptr);
+  CHECK(of_code(findings_of_fit(plain, "", 0), "residual_trend") == nullptr);
   std::string const with_offset = "observe z ~ normal(y + b, sd = sigma)";
   CHECK(of_code(findings_of_fit(with_offset, "  parameter b [mm] ~ normal(0, sd = 5)", 1.3), "residual_offset") == nullptr);
   // An offset that is held is not declared twice.

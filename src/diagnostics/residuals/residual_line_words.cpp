@@ -1,40 +1,20 @@
-// The test of a mean, and the words that give it a place in the model.
-#include "diagnostics/residuals/residual_offset.hpp"
+// The words that give an offset or a trend a place in the model.
+#include "diagnostics/residuals/residual_line.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/numeric/elementary.hpp"
-#include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "core/text/without_index.hpp"
 #include "diagnostics/law/noise_words.hpp"
 #include "diagnostics/law/round_number.hpp"
-#include "diagnostics/residuals/residual_tests.hpp"
 #include "result/experiment_words.hpp"
 
 namespace sysid {
 namespace {
-
-constexpr double no_chance = 6;  // standard errors
-
-std::vector<double> scored_values(std::span<double const> series) {
-  std::vector<double> values;
-  std::copy_if(series.begin(), series.end(), std::back_inserter(values), [](double each) { return !std::isnan(each); });
-  return values;
-}
-
-/// Sum of squares of the autocovariances, each times the number of samples.
-double covariances(CorrelationTest const& test, std::span<double const> series) {
-  double power = 0, sum = 0;
-  for (double const each : series)
-    if (!std::isnan(each)) power += each * each;
-  for (double const each : test.correlation) sum += each * each;
-  return power * power * sum;
-}
 
 bool is_number(Model const& model, NodeId node) { return model.graph[node].operation == Operation::constant; }
 
@@ -78,7 +58,7 @@ WholeChannel whole_channel(Model const& model, std::string const& element) {
 /// An offset of a temperature is an interval.
 std::string unit_of_offset(Channel const& channel) {
   if (!channel.unit || channel.unit_text().empty()) return {};
-  return fmt::format(" [{}{}]", channel.unit->offset != 0 ? "delta_" : "", channel.unit_text());
+  return (channel.unit->offset != 0 ? "delta_" : "") + channel.unit_text();
 }
 
 std::string cure_of_held(Parameter const& held, bool several) {
@@ -100,20 +80,29 @@ bool reads_samples(Model const& model, NodeId node) {
       node, [](Node const& leaf) { return leaf.leaf_kind == LeafKind::measured || leaf.leaf_kind == LeafKind::previous; });
 }
 
+/// What to add to what the noise of the channel lies about: lines of the model, and the statement with `sum` in it.
+std::string added_to(Channel const& channel, std::string const& declarations, std::string const& sum, UserText const& text) {
+  std::optional<std::string> const written = text.noise_statement_with ? text.noise_statement_with(channel, sum) : std::nullopt;
+  if (written) return fmt::format("add {} to the model and write `{}`", declarations, *written);
+  return fmt::format(
+      "copy the model from its module into your file, and in the copy add {}, and add `{}` to the first argument of the "
+      "distribution in `observe {}`",
+      declarations, sum, without_index(channel.name));
+}
+
+/// A parameter of the channel whose prior allows three times `size`.
+std::string declaration(std::string const& name, Channel const& channel, Model const& model, bool several, std::string const& unit,
+                        double size) {
+  return fmt::format("`parameter {}{}{}{} ~ normal(0, sd = {:g})`", name, whole_channel(model, channel.name).size,
+                     several ? " per experiment" : "", unit.empty() ? "" : " [" + unit + "]", round_number_above(3 * size));
+}
+
 std::string cure(Model const& model, Channel const& channel, bool several, double size, UserText const& text) {
   NodeId const location = channel.noise.arguments.front();
   if (Parameter const* const held = added_parameter(model, location)) return cure_of_held(*held, several);
-  WholeChannel const whole = whole_channel(model, channel.name);
-  std::string const name = free_name(whole.name + "_offset", taken_names(model, text.mentions));
-  std::string const declaration =
-      fmt::format("parameter {}{}{}{} ~ normal(0, sd = {:g})", name, whole.size, several ? " per experiment" : "",
-                  unit_of_offset(channel), round_number_above(3 * size));
-  std::optional<std::string> const written = text.noise_statement_with ? text.noise_statement_with(channel, name) : std::nullopt;
-  std::string const added = written ? fmt::format("add `{}` to the model and write `{}`", declaration, *written)
-                                    : fmt::format(
-                                          "copy the model from its module into your file, and in the copy add `{}`, and add `{}` "
-                                          "to the first argument of the distribution in `observe {}`",
-                                          declaration, name, whole.name);
+  std::string const name = free_name(without_index(channel.name) + "_offset", taken_names(model, text.mentions));
+  std::string const added =
+      added_to(channel, declaration(name, channel, model, several, unit_of_offset(channel), size), name, text);
   if (reads_samples(model, location))
     return fmt::format(
         "if the equation lacks a constant term, {}; if the sensor has an offset, the past samples already contain a part of it, "
@@ -125,51 +114,33 @@ std::string cure(Model const& model, Channel const& channel, bool several, doubl
       added);
 }
 
+std::string unit_of_slope(Channel const& channel, std::string const& time_unit) {
+  std::string const unit = unit_of_offset(channel);
+  return (unit.empty() || unit == "-" ? "1" : unit) + "/" + time_unit;
+}
+
+std::string cure(Model const& model, Channel const& channel, bool several, Trend const& trend, UserText const& text) {
+  constexpr char const* otherwise =
+      "look for what changes slowly during the record: a temperature, a force that grows, creep, a part that wears";
+  NodeId const location = channel.noise.arguments.front();
+  if (model.graph.depends(location, [](Node const& leaf) { return leaf.leaf_kind == LeafKind::time; }))
+    return fmt::format("this channel has a term in time already: check the priors of its coefficients; otherwise {}", otherwise);
+  auto const taken = taken_names(model, text.mentions);
+  auto const named = [&](char const* suffix) { return free_name(without_index(channel.name) + suffix, taken); };
+  std::string const drift = named("_drift"), declared = text.time_name ? text.time_name(channel) : "",
+                    time = declared.empty() ? free_name("t", taken) : declared;
+  std::string declarations = declared.empty() ? fmt::format("`time {} [s]`, ", time) : "", sum = drift + "*" + time;
+  if (added_parameter(model, location) == nullptr) {  // what drifts has some value at time 0
+    std::string const offset = named("_offset");
+    declarations += declaration(offset, channel, model, several, unit_of_offset(channel), trend.largest_value) + " and ";
+    sum = offset + " + " + sum;
+  }
+  declarations += declaration(drift, channel, model, several, unit_of_slope(channel, trend.time_unit), trend.largest_slope);
+  return fmt::format("if the sensor drifts, estimate its drift: {}; otherwise {}", added_to(channel, declarations, sum, text),
+                     otherwise);
+}
+
 }  // namespace
-
-// In means of neighbours, so that the number of products stays small.
-double squared_standard_error(std::span<double const> values) {
-  constexpr std::size_t most = 2000;
-  std::size_t const width = (values.size() + most - 1) / most, count = values.size() / width;
-  std::vector<double> means;
-  for (std::size_t i = 0; i < count; ++i) means.push_back(mean(values.subspan(i * width, width)));
-  double const center = mean(means);
-  auto const covariance = [&](std::size_t lag) {
-    double sum = 0;
-    for (std::size_t i = 0; i + lag < count; ++i) sum += (means[i] - center) * (means[i + lag] - center);
-    return sum / static_cast<double>(count);
-  };
-  double sum = -covariance(0);
-  for (std::size_t lag = 0; lag + 1 < count; lag += 2) {
-    double const pair = covariance(lag) + covariance(lag + 1);
-    if (!(pair > 0)) break;
-    sum += 2 * pair;
-  }
-  return std::max(sum, covariance(0) / static_cast<double>(count)) / static_cast<double>(count);
-}
-
-OffsetTest offset_test(std::span<double const> residuals, bool ordered) {
-  OffsetTest test;
-  std::vector<double> const values = scored_values(residuals);
-  constexpr std::size_t fewest = 20;
-  if (values.size() < fewest) return test;
-  double const center = mean(values), variance = population_variance(values);
-  double const squared_error = ordered ? squared_standard_error(values) : variance / static_cast<double>(values.size());
-  test.share = center * center / (center * center + variance);
-  test.standard_errors = std::fabs(center) / std::sqrt(squared_error);
-  if (!(test.standard_errors > no_chance)) return test;
-  if (!ordered) {
-    test.fires = test.share > 0.5;
-    return test;
-  }
-  std::vector<double> centred(residuals.begin(), residuals.end());
-  for (double& each : centred) each -= center;
-  CorrelationTest const before = whiteness(residuals), after = whiteness(centred);
-  test.white_without = !after.fires();
-  constexpr double little = 0.05;
-  test.fires = before.fires() && (test.white_without || covariances(after, centred) < little * covariances(before, residuals));
-  return test;
-}
 
 bool offset_can_be_added(Model const& model, Channel const& channel) {
   Distribution const& noise = channel.noise;
@@ -187,6 +158,20 @@ Finding residual_offset(Model const& model, Channel const& channel, std::string 
                       channel.unit_text().empty() ? "" : " " + channel.unit_text(), significant(test.standard_errors, 2),
                       fmt::format("{:.3g} %", 100 * test.share)),
           cure(model, channel, several, largest, text)};
+}
+
+Finding residual_trend(Model const& model, Channel const& channel, std::string const& experiment, bool several,
+                       TrendTest const& test, Trend const& trend, UserText const& text) {
+  return {
+      FindingCode::residual_trend,
+      Severity::warning,
+      {channel.name, experiment},
+      fmt::format("the residuals of {} follow a line in time: a slope of {} {}, {} times its standard error, explains {} of their "
+                  "mean square",
+                  channel.name + on_experiment(experiment, several), significant(trend.slope, 3),
+                  unit_of_slope(channel, trend.time_unit), significant(test.standard_errors, 2),
+                  fmt::format("{:.3g} %", 100 * test.share)),
+      cure(model, channel, several, trend, text)};
 }
 
 }  // namespace sysid
