@@ -234,8 +234,12 @@ Findings forecast_findings(CheckedDictionary const& dictionary, std::vector<Diff
     DifferenceErrors const& each = errors[e];
     std::string const& target = dictionary.equations[e].text;
     if (each.one_step && *each.one_step > std::max(beyond_expected * each.own_noise, rounding * each.sd)) {
-      lost(fmt::format("the error of `{}` one sample ahead on {} is {} times that on the rows of the discovery", target, held_out,
-                       significant(*each.one_step / each.own_noise, 3)),
+      lost(each.own_noise > 0
+               ? fmt::format("the error of `{}` one sample ahead on {} is {} times that on the rows of the discovery", target,
+                             held_out, significant(*each.one_step / each.own_noise, 3))
+               : fmt::format("the error of `{}` one sample ahead on {} is {} % of the sd of the samples there, and on the rows of "
+                             "the discovery it has none",
+                             target, held_out, percent(*each.one_step, each.sd)),
            "the equation does not hold on these rows: look for missing terms, and for another amplitude or input");
       continue;
     }

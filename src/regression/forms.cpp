@@ -8,6 +8,8 @@
 namespace sysid::regression {
 namespace {
 
+std::string nothing_refused(Settings const&, int) { return {}; }
+
 Form const form_rows[] = {
     {"weak",
      "integrals with test functions, which are differentiated in place of the data; the covariance of the residuals follows "
@@ -16,12 +18,12 @@ Form const form_rows[] = {
     {"savitzky_golay", "local polynomials, inputs filtered in the same way", savitzky_golay::settings(), &savitzky_golay::refuse,
      &savitzky_golay::project},
     {"smoothing_spline", "a spline through each channel, inputs filtered in the same way", smoothing_spline::settings(),
-     &no_refusal, &smoothing_spline::project},
-    {"central", "central differences, for records without noise", {}, &no_refusal, &central::project},
-    {"measured", "each derivative is measured in its own channel", {}, &no_refusal, &measured::project},
+     &nothing_refused, &smoothing_spline::project},
+    {"central", "central differences, for records without noise", {}, &nothing_refused, &central::project},
+    {"measured", "each derivative is measured in its own channel", {}, &nothing_refused, &measured::project},
 };
 
-Form const samples{"samples", "terms of earlier samples; the noise is a moving average", difference::settings(), &no_refusal,
+Form const samples{"samples", "terms of earlier samples; the noise is a moving average", difference::settings(), &nothing_refused,
                    &difference::project};
 
 }  // namespace

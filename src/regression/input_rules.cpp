@@ -70,6 +70,13 @@ std::optional<std::vector<Experiment>> under(std::span<Experiment const> experim
   return any ? std::optional(std::move(changed)) : std::nullopt;
 }
 
+/// The first that an experiment has in place of `rule`.
+std::optional<InputRule> another_rule(std::span<Experiment const> experiments, int input, InputRule rule) {
+  for (Experiment const& each : experiments)
+    if (InputRule const own = each.inputs[static_cast<std::size_t>(input)].rule(); own != rule) return own;
+  return std::nullopt;
+}
+
 Concern concern_of(int input, InputRule stated, InputRule rule, double ratio) {
   Concern concern{.kind = Concern::Kind::other_rule, .value = ratio};
   concern.input = input;
@@ -106,7 +113,7 @@ std::optional<Concern> better_rule(Dictionary const& dictionary, std::span<Exper
       double const ratio = after.squaredNorm() / before.squaredNorm();
       if (!(ratio < least) || !everywhere(before, after)) continue;
       least = ratio * clearly_less;  // of rules that are as good, the simpler
-      best = concern_of(input, experiments.front().inputs[static_cast<std::size_t>(input)].rule(), row.rule, ratio);
+      best = concern_of(input, *another_rule(experiments, input, row.rule), row.rule, ratio);
     }
   return best;
 }

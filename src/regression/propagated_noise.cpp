@@ -13,7 +13,7 @@ std::vector<Columns> noise_of_columns(Dictionary const& dictionary, std::span<Ex
   std::vector<Experiment> moved(experiments.begin(), experiments.end());
   for (std::size_t e = 0; e < moved.size(); ++e)
     for (std::size_t c = 0; c < stated.channels.size(); ++c) {
-      Stream stream({seed, Purpose::noise, e, c});
+      Stream stream({seed, Purpose::probe, e, c});
       for (double& value : moved[e].measured[c]) value += part * *stated.channels[c].noise_sd * stream.normal();
     }
   std::unique_ptr<Projection> const other = form.project(stated, moved, settings);

@@ -309,7 +309,8 @@ SolverSettings steps_for_tracking(SolverSettings const& solver) {
 SolverSettings tracking_solver(TrackedProgram const& program, SolverSettings solver, ExecutionOptions const& execution,
                                Experiment const& experiment, StatePrior const& first, TrackedPrior const& parameters) {
   if (program.program->source.map || solver.as_model) return solver;
-  constexpr int rows_compared = 400, most_substeps = 64;
+  constexpr int rows_compared = 400;
+  int const most_substeps = std::max(64, 2 * solver.substeps);  // those of the fit are compared once, however many
   Experiment const part = slice(experiment, 0, std::min<int>(rows_compared, static_cast<int>(experiment.time.size())), 0);
   LaneArray const start = parameters_of(program, {}, moments_of(program, first, parameters));
   LaneArray coarse, fine;
@@ -318,15 +319,15 @@ SolverSettings tracking_solver(TrackedProgram const& program, SolverSettings sol
     SolverSettings finer = solver;
     finer.substeps *= 2;
     bool const now = records_along(program, finer, execution, part, start, fine);
-    double largest = 0;
-    for (int i = 0; solved && now && i < static_cast<int>(part.time.size()); ++i)
+    bool agree = solved && now;
+    for (int i = 0; agree && i < static_cast<int>(part.time.size()); ++i)
       for (auto const& channel : program.channels) {
         int const row = i * program.records;
         if (std::isnan(fine(row + channel.innovation, 0))) continue;
-        largest = std::max(largest, std::fabs(coarse(row + channel.innovation, 0) - fine(row + channel.innovation, 0)) /
-                                        std::sqrt(fine(row + channel.variance, 0)));
+        double const apart = std::fabs(coarse(row + channel.innovation, 0) - fine(row + channel.innovation, 0));
+        agree = agree && apart < 0.01 * std::sqrt(fine(row + channel.variance, 0));
       }
-    if (solved && now && largest < 0.01) return solver;
+    if (agree) return solver;
     std::swap(coarse, fine);
     solved = now;
   }

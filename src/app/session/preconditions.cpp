@@ -17,6 +17,7 @@
 #include "model/simulated_parameters.hpp"
 #include "regression/choice/selector.hpp"
 #include "regression/column/columns.hpp"
+#include "regression/column/signals.hpp"
 
 namespace sysid {
 
@@ -180,7 +181,8 @@ std::optional<Diagnostic> refusal(Task const& task, SelectTask const& what, std:
 
 std::optional<Diagnostic> refusal(Task const& task, DiscoverTask const& what, CheckedFile const& file,
                                   std::vector<ExperimentData> const& data) {
-  if (std::string const why = regression::find_form(what.form)->refuse(what.form_settings); !why.empty())
+  int const derivatives = derivatives_needed(file.dictionaries[static_cast<std::size_t>(what.dictionary)].numbers);
+  if (std::string const why = regression::find_form(what.form)->refuse(what.form_settings, derivatives); !why.empty())
     return refused_settings(task, what.form, why);
   if (std::string const why = regression::find_selector(what.selector)->refuse(what.selector_settings); !why.empty())
     return refused_settings(task, what.selector, why);

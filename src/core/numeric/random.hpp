@@ -29,6 +29,7 @@ enum class Purpose : std::uint32_t {
   jump = 19,         // moves between models
   average = 20,      // seeds of the members of an averaged prediction
   disturbance = 21,  // disturbances and random starts of made data
+  probe = 22,        // noise that is added to a record to see what noise does
 };
 
 /// Names a stream: seed of the run, purpose, index (chain, particle, draw, lane) and step (iteration, sample, population).

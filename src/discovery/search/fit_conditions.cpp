@@ -117,9 +117,9 @@ RecordLimits::RecordLimits(WholeDictionary const& dictionary) : dictionary_(dict
     }
   }
   rounded_ = rounded_inputs(records, dictionary.model().inputs.size());
-  shape_.assign(channels, 0);
-  other_errors_.assign(channels, 0);
-  own_errors_.assign(channels, 0);
+  learnt_.shape.assign(channels, 0);
+  learnt_.other_errors.assign(channels, 0);
+  learnt_.own_errors.assign(channels, 0);
 }
 
 bool RecordLimits::settle_step(FittedTerms const& lead, FitConditions& conditions) {
@@ -155,9 +155,9 @@ bool RecordLimits::settle_step(FittedTerms const& lead, FitConditions& condition
       double const size = std::min(root_mean_square(moved), root_mean_square(residuals_of(sizes, channel, runs)));
       if (std::isfinite(size)) of_inputs = size * std::sqrt(peak_of_spectrum(moved));
     }
-    own_errors_[c] = std::max(error[c], least_accuracy * sizes.size(channel));
-    other_errors_[c] = std::max(of_inputs, own_errors_[c]);
-    floor.push_back(hypotenuse(rounding_[c], other_errors_[c]));
+    learnt_.own_errors[c] = std::max(error[c], least_accuracy * sizes.size(channel));
+    learnt_.other_errors[c] = std::max(of_inputs, learnt_.own_errors[c]);
+    floor.push_back(hypotenuse(rounding_[c], learnt_.other_errors[c]));
   }
   if (!conditions.noise.carried) conditions.noise.floor = std::move(floor);
   return conditions.substeps != before;
@@ -171,15 +171,15 @@ bool RecordLimits::settle_noise(FittedTerms const& lead, FitConditions& conditio
   alike.noise = {};
   std::vector<SegmentSlopes> const runs = dictionary_.residuals(lead, alike);
   std::vector<std::vector<std::vector<double>>> relative;
-  for (Experiment const& each : records) relative.emplace_back(shape_.size(), std::vector<double>(each.time.size(), 1.0));
-  std::vector<double> shape(shape_.size(), 0);
+  for (Experiment const& each : records) relative.emplace_back(learnt_.shape.size(), std::vector<double>(each.time.size(), 1.0));
+  std::vector<double> shape(learnt_.shape.size(), 0);
   for (std::size_t c = 0; c < shape.size(); ++c)
     shape[c] = lead.fit.noise_sd[c] < told_noise * conditions.noise.floor[c]
                    ? shape_of_rounding(c, relative)
                    : shape_of_growth(c, runs, dictionary_.segments(conditions.halved), relative);
-  if (shape == shape_) return false;
+  if (shape == learnt_.shape) return false;
   bool const any = std::any_of(shape.begin(), shape.end(), [](double each) { return each != 0; });
-  shape_ = std::move(shape);
+  learnt_.shape = std::move(shape);
   conditions.noise.relative = any ? std::move(relative) : Relative{};
   return true;
 }
@@ -187,21 +187,21 @@ bool RecordLimits::settle_noise(FittedTerms const& lead, FitConditions& conditio
 // Once: along the first structure that leaves no more than the bound.
 bool RecordLimits::settle_carried(FittedTerms const& lead, FitConditions& conditions) {
   if (rounded_.otherwise.empty() || conditions.noise.carried) return false;
-  for (std::size_t c = 0; c < shape_.size(); ++c)
+  for (std::size_t c = 0; c < learnt_.shape.size(); ++c)
     if (!(lead.fit.noise_sd[c] < told_noise * conditions.noise.floor[c])) return false;
   auto steps = sample_steps(dictionary_, lead, conditions, true);
   if (!steps) return false;
   auto carried = std::make_shared<std::vector<CarriedErrors>>();
-  std::vector<int> state_of_channel(shape_.size(), -1);
+  std::vector<int> state_of_channel(learnt_.shape.size(), -1);
   auto const channels = channels_of_states(dictionary_);
   for (std::size_t x = 0; x < channels->size(); ++x) state_of_channel[(*channels)[x]] = static_cast<int>(x);
-  std::vector<double> squares(shape_.size(), 0), counts(shape_.size(), 0);
+  std::vector<double> squares(learnt_.shape.size(), 0), counts(learnt_.shape.size(), 0);
   for (std::size_t e = 0; e < steps->size(); ++e) {
     SampleSteps& of = (*steps)[e];
     CarriedErrors each{std::move(of.ahead), std::move(of.here), std::move(of.next), rounded_.sds[e], state_of_channel, {}};
-    for (std::size_t c = 0; c < shape_.size(); ++c) {
+    for (std::size_t c = 0; c < learnt_.shape.size(); ++c) {
       each.own_sd.push_back(rounding_of_samples_[e][c]);
-      for (double& sd : each.own_sd.back()) sd = hypotenuse(sd, own_errors_[c]);
+      for (double& sd : each.own_sd.back()) sd = hypotenuse(sd, learnt_.own_errors[c]);
     }
     auto const rows = static_cast<int>(each.input_sd.size());
     RowWhitener const whitener(each, 0, rows, [](int) { return true; });
@@ -211,17 +211,17 @@ bool RecordLimits::settle_carried(FittedTerms const& lead, FitConditions& condit
     }
     carried->push_back(std::move(each));
   }
-  for (std::size_t c = 0; c < shape_.size(); ++c) conditions.noise.floor[c] = std::sqrt(squares[c] / counts[c]);
+  for (std::size_t c = 0; c < learnt_.shape.size(); ++c) conditions.noise.floor[c] = std::sqrt(squares[c] / counts[c]);
   conditions.noise.carried = std::move(carried);
   conditions.noise.relative.clear();
-  shape_.assign(shape_.size(), carried_shape);
+  learnt_.shape.assign(learnt_.shape.size(), carried_shape);
   return true;
 }
 
 // What is known of each sample: its last digit, and errors that are alike in all.
 double RecordLimits::shape_of_rounding(std::size_t channel, Relative& relative) const {
   if (!(rounding_[channel] > 0)) return 0;
-  double const least = other_errors_[channel];
+  double const least = learnt_.other_errors[channel];
   for (std::size_t e = 0; e < relative.size(); ++e)
     for (std::size_t i = 0; i < rounding_of_samples_[e][channel].size(); ++i)
       relative[e][channel][i] = hypotenuse(rounding_of_samples_[e][channel][i], least) / hypotenuse(rounding_[channel], least);

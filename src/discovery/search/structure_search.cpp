@@ -179,6 +179,7 @@ class Searcher {
   // Segments of twice the length: if the structure that is best there follows as well as the leading one did before.
   bool climb() {
     Standing const before = now_;
+    RecordLimits::Learnt learnt = limits_.learnt();
     std::vector<Segment> const shorter = dictionary_.segments(now_.conditions.halved);
     std::vector<Segment> const parts = dictionary_.segments(--now_.conditions.halved);
     ShootingPoint const& from = before.lead.fit.point;
@@ -197,7 +198,10 @@ class Searcher {
     std::vector<double> const& sds = before.lead.fit.noise_sd;
     for (std::size_t c = 0; good && c < sds.size(); ++c)
       good = now_.lead.fit.noise_sd[c] <= joinable_growth * std::max(sds[c], now_.conditions.noise.floor[c]);
-    if (!good) now_ = before;
+    if (!good) {
+      now_ = before;
+      limits_.take_back(std::move(learnt));
+    }
     return good;
   }
 

@@ -204,8 +204,10 @@ class Run {
     double total = 0;
     for (std::size_t m = 0; m < logs.size(); ++m)
       for (std::size_t j = 0; j < logs[m].size(); ++j) total += next_.models[m].weight[j] = elementary::exp(logs[m][j] - highest);
-    for (Particles& particles : next_.models)
+    for (Particles& particles : next_.models) {
       for (double& w : particles.weight) w /= total;
+      if (!(particles.weight_sum() > 0)) particles = {};  // as good as none: neither widths nor a kernel can be made of them
+    }
     return true;
   }
 

@@ -169,7 +169,8 @@ bool temper(Target const& target, EvidenceTask const& task, std::uint64_t most, 
   if (!second.finished) return false;
   double const difference = second.log_evidence - first.log_evidence;
   evidence.method = EvidenceMethod::smc;
-  evidence.log_evidence = first.log_evidence + elementary::log(0.5 * (1 + elementary::exp(difference)));
+  evidence.log_evidence =
+      std::max(first.log_evidence, second.log_evidence) + elementary::log(0.5 * (1 + elementary::exp(-std::fabs(difference))));
   evidence.error = std::max(0.5 * hypotenuse(first.error, second.error), 0.5 * std::fabs(difference));
   evidence.effective = first.effective + second.effective;
   evidence.reason.clear();
@@ -220,6 +221,8 @@ Evidence estimate_evidence(Target const& target, EvidenceTask const& task, Ledge
   if (!draws) {
     marginal::prefer_weighted(task.method, evidence);
     if (task.method == EvidenceMethod::bridge) evidence.doubt = "bridge sampling needs draws of the posterior";
+    if (task.method == EvidenceMethod::importance && evidence.log_evidence && evidence.method != EvidenceMethod::importance)
+      evidence.doubt = "importance sampling has no usable weighted draws around the modes";
     return evidence;
   }
   Evidence by_draws = evidence;

@@ -20,6 +20,7 @@ constexpr std::uint64_t resampling_step = 1'500'000;
 constexpr int least_moves = 4, most_moves = 60;  // per power
 constexpr double worth = 0.5;                    // of the particles, after a weighting
 constexpr double forgotten = 0.15;               // correlation of ranks with those before the moves
+constexpr double hardly_moved = 0.5;             // the same after all moves, from which the particles are still where they were
 constexpr int climbed = 16;                      // of the first particles, where no modes are known
 constexpr double mode_share = 0.2;               // of the proposals
 
@@ -189,6 +190,7 @@ class Tempering {
       std::vector<std::vector<double>> const now = ranked();
       for (std::size_t k = 0; k < now.size(); ++k) kept = std::max(kept, correlation(before[k], now[k]));
     }
+    if (kept > hardly_moved) unmoved_ = true;
   }
 
   void jump(Mixture const& mixture, double power) {

@@ -135,14 +135,14 @@ Choice choose(LinearProblem const& problem, Settings const& settings, SelectorCo
   Relevance relevance(problem);
   Eigen::VectorXd before = relevance.mean();
   Choice choice;
-  choice.converged = false;
+  choice.converged = relevance.empty();
   int const most = static_cast<int>(settings.integer("iterations"));
   double const prune = settings.real("prune"), tolerance = settings.real("tolerance");
   for (int iteration = 0; iteration < most && !relevance.empty(); ++iteration) {
     if (context.interrupted && context.interrupted()) break;
     relevance.iterate(prune);
     choice.iterations = iteration + 1;
-    choice.converged = iteration > 0 && (relevance.mean() - before).cwiseAbs().sum() < tolerance;
+    choice.converged = relevance.empty() || (iteration > 0 && (relevance.mean() - before).cwiseAbs().sum() < tolerance);
     if (choice.converged) break;
     before = relevance.mean();
   }

@@ -91,8 +91,9 @@ struct Form {
   std::string_view name;
   std::string_view summary;
   std::span<SettingRow const> settings;
-  /// Why values that are each allowed do not go together; empty when they do.
-  std::string (*refuse)(Settings const&);
+  /// Why values that are each allowed do not go together, or not with a dictionary that needs so many derivatives of a sample
+  /// (`derivatives_needed`); empty when they do.
+  std::string (*refuse)(Settings const&, int derivatives);
   /// Experiments have at least two rows each; their inputs and channels are those of the dictionary. A fatal concern of any
   /// equation means that its columns are empty.
   std::unique_ptr<Projection> (*project)(Dictionary const&, std::span<Experiment const>, Settings const&);

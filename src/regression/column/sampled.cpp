@@ -146,9 +146,11 @@ constexpr SettingRow rows[] = {
 
 std::span<SettingRow const> settings() { return rows; }
 
-std::string refuse(Settings const& settings) {
+std::string refuse(Settings const& settings, int derivatives) {
   if (settings.integer("window") % 2 == 0) return "window must be odd";
   if (settings.integer("order") >= settings.integer("window")) return "order must be smaller than window";
+  if (settings.integer("order") < derivatives)
+    return fmt::format("order must be {} at least: the equation needs this derivative of what is measured", derivatives);
   return {};
 }
 

@@ -13,7 +13,7 @@ namespace sysid::regression {
 
 namespace savitzky_golay {
 std::span<SettingRow const> settings();
-std::string refuse(Settings const& settings);
+std::string refuse(Settings const& settings, int derivatives);
 /// Local polynomials of degree `order` on `window` samples.
 std::unique_ptr<Projection> project(Dictionary const&, std::span<Experiment const>, Settings const&);
 }  // namespace savitzky_golay

@@ -38,6 +38,21 @@ std::vector<Symbol> symbols_below(Dictionary const& dictionary, std::span<NodeId
   return symbols;
 }
 
+int derivatives_needed(Dictionary const& dictionary) {
+  std::vector<NodeId> roots;
+  for (Equation const& equation : dictionary.equations) {
+    roots.push_back(equation.known);
+    for (Term const& term : equation.terms) roots.push_back(term.expression);
+  }
+  int needed = 0;
+  for (Symbol const& symbol : symbols_below(dictionary, roots)) {
+    if (symbol.kind != Symbol::Kind::state) continue;
+    int const channel = base_channel(dictionary, symbol.index, symbol.order);
+    if (channel >= 0) needed = std::max(needed, symbol.order - dictionary.channels[static_cast<std::size_t>(channel)].order);
+  }
+  return needed;
+}
+
 std::string symbol_text(Dictionary const& dictionary, int state, int order) {
   return dictionary.states[static_cast<std::size_t>(state)] + std::string(static_cast<std::size_t>(order), '\'');
 }

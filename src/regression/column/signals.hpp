@@ -19,6 +19,8 @@ int base_channel(Dictionary const& dictionary, int state, int order);
 Symbol const* symbol_of(Dictionary const& dictionary, NodeId leaf);
 /// Symbols below the roots, in the dictionary's order.
 std::vector<Symbol> symbols_below(Dictionary const& dictionary, std::span<NodeId const> roots);
+/// How many derivatives of a measured sample the equations need at most.
+int derivatives_needed(Dictionary const& dictionary);
 /// "y''": a state's name with its order as primes.
 std::string symbol_text(Dictionary const& dictionary, int state, int order);
 

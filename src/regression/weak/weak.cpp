@@ -242,10 +242,13 @@ class WeakProjection : public Projection {
 
 std::span<SettingRow const> settings() { return rows; }
 
-std::string refuse(Settings const& settings) {
+std::string refuse(Settings const& settings, int derivatives) {
   auto const half = settings.integer("half_width"), step = settings.integer("step");
   if (half > 0 && half < 4) return "half_width must be 0 or at least 4 samples";
   if (half > 0 && step > half) return "step must not be greater than half_width";
+  if (settings.integer("power") <= derivatives)
+    return fmt::format("power must be {} at least: the equation needs derivative {} of what is measured", derivatives + 1,
+                       derivatives);
   return {};
 }
 

@@ -8,7 +8,7 @@
 namespace sysid::regression::weak {
 
 std::span<SettingRow const> settings();
-std::string refuse(Settings const& settings);
+std::string refuse(Settings const& settings, int derivatives);
 
 /// Row k of an equation is integral phi_k (known - sum_j w_j term_j) dt with phi_k the bump of TestFunction, of integral 1, around
 /// a sample. Only measured samples enter a moved or potential piece (weak_pieces.hpp), so their noise passes linearly to first
