@@ -113,3 +113,11 @@ TEST_CASE("the tails of several sequences are those of each when it is sorted") 
     }
   }
 }
+
+TEST_CASE("weights are worth as many equal ones as their squares say") {
+  CHECK(effective_number(Values{2, 2, 2, 2}) == 4);
+  CHECK(effective_number(Values{5, 0, 0}) == 1);
+  CHECK(effective_number(Values{3, 1}) == 1.6);
+  CHECK(effective_number(Values{0, 0}) == 0);
+  CHECK(effective_number(Values{}) == 0);
+}

@@ -79,6 +79,17 @@ TEST_CASE("an input read under the wrong rule between its samples is named with 
   }
 }
 
+TEST_CASE("the rule that is replaced is the one of the record that has another") {
+  std::string const quiet = Made(900, {.noise = 2e-4}).csv();
+  std::string text = file(oscillator, "seed = 1", "input u = u [N] hold zero_order; ");
+  text.insert(text.find("data bench"),
+              "data other { file \"bench.csv\"; time t [s]; input u = u [N] hold linear; measure displacement = y [m] }\n");
+  text.replace(text.find("from bench"), 10, "from bench, other");
+  json const found = run(text, quiet).finding("input_rule");
+  REQUIRE_FALSE(found.is_null());
+  CHECK_MESSAGE(contains(found.at("message"), "`hold zero_order` in place of `hold linear`"), found.dump());
+}
+
 TEST_CASE("a forcing that was not recorded is missed by forms on samples too, and nothing is where all is there") {
   std::string const without_force = without(
       file("target = y''\nterms = y', y, y^2, y^3, 1", "spike_slab(derivatives = savitzky_golay), seed = 1", ""), "input u [N]\n");

@@ -187,6 +187,13 @@ TEST_CASE("ard agrees with scikit-learn on a recorded matrix") {
   }
 }
 
+TEST_CASE("ard that has dropped its last term has converged") {
+  LinearProblem const nothing = problem(7, 400, {0, 0, 0}, 1);
+  Choice const choice = choose(nothing, "ard", {{"prune", 10}});
+  CHECK(kept(choice).empty());
+  CHECK(choice.converged);
+}
+
 TEST_CASE("threshold drops by contribution, one term a round") {
   // Orthogonal: contributions are those of the terms alone, |w_j| |A_j| / |b|.
   LinearProblem p;

@@ -47,6 +47,12 @@ double corrected_variance(std::span<double const> values, double center) {
   return (sum + rest) / (static_cast<double>(values.size()) - 1);
 }
 
+double effective_number(std::span<double const> weights) {
+  double sum = 0, squares = 0;
+  for (double const each : weights) sum += each, squares += each * each;
+  return squares > 0 ? sum * sum / squares : 0;
+}
+
 std::vector<double> pooled(std::vector<std::vector<double>> const& chains) {
   std::vector<double> all;
   for (auto const& chain : chains) all.insert(all.end(), chain.begin(), chain.end());

@@ -29,6 +29,9 @@ double corrected_variance(std::span<double const> values);
 /// mean: theirs, corrected.
 double corrected_variance(std::span<double const> values, double mean);
 
+/// How many equal weights these are worth: (sum w)^2 / sum w^2, sums in the order of the weights; 0 where all are 0.     Kish 1965
+double effective_number(std::span<double const> weights);
+
 /// All chains, one behind the other.
 std::vector<double> pooled(std::vector<std::vector<double>> const& chains);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/statistics.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/descent.hpp"
 #include "search/laplace.hpp"
@@ -161,13 +162,8 @@ double worth_of_draws(Objective const& objective, Independence const& mixture, s
   for (std::size_t n = 0; n < keys.size(); ++n) log_weight[n] -= log_q[n];
   double const highest = *std::max_element(log_weight.begin(), log_weight.end());
   if (!std::isfinite(highest)) return 0;
-  double sum = 0, squares = 0;
-  for (double const each : log_weight) {
-    double const weight = elementary::exp(each - highest);
-    sum += weight;
-    squares += weight * weight;
-  }
-  return sum * sum / squares / static_cast<double>(keys.size());
+  for (double& each : log_weight) each = elementary::exp(each - highest);
+  return effective_number(log_weight) / static_cast<double>(keys.size());
 }
 
 }  // namespace sysid::metropolis

@@ -7,6 +7,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
 #include "inference/evidence/mixture.hpp"
 #include "linear_algebra/decompositions.hpp"
 #include "search/laplace.hpp"
@@ -132,9 +133,8 @@ class Tempering {
 
   double next_power(double power) const {
     auto const effective = [&](double rise) {
-      double ignored = 0, sum = 0, square = 0;
-      for (double const each : weighted(rise, ignored)) sum += each, square += each * each;
-      return square > 0 ? sum * sum / square : 0;
+      double ignored = 0;
+      return effective_number(weighted(rise, ignored));
     };
     // Particles without a likelihood are lost with the first step, however small it is.
     auto const alive =

@@ -7,6 +7,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/generalised_pareto.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
 #include "inference/evidence/ensemble_walk.hpp"
 #include "inference/evidence/mixture.hpp"
 #include "search/laplace.hpp"
@@ -82,33 +83,14 @@ std::vector<double> judge(Target const& target, WalkedDraws& draws, std::vector<
   draws.effective = 0;
   std::vector<double> weights;
   if (!std::isfinite(largest)) return weights;
-  double sum = 0, square = 0;
-  for (double const each : draws.log_weights) {
-    weights.push_back(elementary::exp(each - largest));
-    sum += weights.back();
-    square += weights.back() * weights.back();
-  }
-  draws.effective = sum * sum / square;
+  for (double const each : draws.log_weights) weights.push_back(elementary::exp(each - largest));
+  draws.effective = effective_number(weights);
   double const k = smooth_weights(draws.log_weights, pareto_tail_length(draws.theta.width(), 1)).k;
   std::vector<double> const sds = sds_of(declared(target, draws.theta), weights);
   bool const healthy = draws.effective >= least_effective && k < worst_k;
   draws.confirmed = healthy && agree(sds, before, as_before) && agree(sds, sds_of(declared(target, draws.walked), {}), as_wide);
   before = sds;
   return healthy ? weights : std::vector<double>();
-}
-
-/// Each draw as often as its weight says.
-LaneArray resampled(LaneArray const& draws, std::vector<double> const& weights, int count) {
-  double total = 0;
-  for (double const each : weights) total += each;
-  LaneArray out(draws.rows(), count);
-  std::size_t at = 0;
-  double passed = weights.front();
-  for (int w = 0; w < count; ++w) {
-    while (at + 1 < weights.size() && (w + 0.5) / count * total > passed) passed += weights[++at];
-    for (int i = 0; i < out.rows(); ++i) out(i, w) = draws(i, static_cast<int>(at));
-  }
-  return out;
 }
 
 /// A walker that has strayed into a place of next to no mass may stay there, and be one of them all: the mixture that was fitted to
@@ -137,6 +119,19 @@ LaneArray last_of(LaneArray const& states, int count) {
 }
 
 }  // namespace
+
+LaneArray resampled(LaneArray const& draws, std::vector<double> const& weights, int count) {
+  double total = 0;
+  for (double const each : weights) total += each;
+  LaneArray out(draws.rows(), count);
+  std::size_t at = 0;
+  double passed = weights.front();
+  for (int w = 0; w < count; ++w) {
+    while (at + 1 < weights.size() && (w + 0.5) / count * total > passed) passed += weights[++at];
+    for (int i = 0; i < out.rows(); ++i) out(i, w) = draws(i, static_cast<int>(at));
+  }
+  return out;
+}
 
 WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uint64_t most, StreamKey key, Ledger& ledger,
                          std::function<bool()> const& stop) {

@@ -30,4 +30,8 @@ struct WalkedDraws {
 WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uint64_t most, StreamKey key, Ledger& ledger,
                          std::function<bool()> const& stop);
 
+/// `count` of the draws [P x N], each as often as its weight says: the one at which the share (w + 1/2)/count of all weight is
+/// reached. [P x count]
+LaneArray resampled(LaneArray const& draws, std::vector<double> const& weights, int count);
+
 }  // namespace sysid::marginal

@@ -7,6 +7,7 @@
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/generalised_pareto.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
 #include "inference/evidence/component.hpp"
 #include "inference/evidence/walked_draws.hpp"
 #include "search/laplace.hpp"
@@ -211,10 +212,7 @@ void add_widths(Target const& target, std::vector<Mode> const& modes, Population
 WeightedDraws summarised(Target const& target, std::vector<Mode> const& modes, Population const& population) {
   WeightedDraws result;
   result.draws = static_cast<int>(population.places.size());
-  double square = 0;
-  for (double const each : population.weight) square += each * each;
-  double const sum = sum_of(population.weight);
-  result.effective = sum * sum / square;
+  result.effective = effective_number(population.weight);
   std::vector<double> logs;
   for (double const each : population.weight) logs.push_back(each > 0 ? elementary::log(each) : -infinity);
   double const k = smooth_weights(logs, pareto_tail_length(result.draws, 1)).k;
@@ -233,16 +231,7 @@ bool as_wide_as(Mode const& mode, WeightedDraws const& draws) {
 
 /// Where the weighted draws are, each place as often as its weight says.
 LaneArray first_walkers(Population const& population) {
-  std::vector<double> const weight = cut_weights(population);
-  double const total = sum_of(weight);
-  LaneArray start(static_cast<int>(population.places.front().size()), walker_count);
-  std::size_t at = 0;
-  double passed = weight.front();
-  for (int w = 0; w < walker_count; ++w) {
-    while (at + 1 < weight.size() && (w + 0.5) / walker_count * total > passed) passed += weight[++at];
-    for (int i = 0; i < start.rows(); ++i) start(i, w) = population.places[at](i);
-  }
-  return start;
+  return marginal::resampled(to_lanes(population.places), cut_weights(population), walker_count);
 }
 
 void set_moments(Target const& target, LaneArray const& theta, std::vector<double> const& weight, WeightedDraws& result) {

@@ -269,6 +269,17 @@ TEST_CASE("an interruption ends a track that follows, with its results; one of a
   CHECK(!std::filesystem::exists(beam.folder.path() / "stopped/posterior/track.csv"));
 }
 
+TEST_CASE("a fit of very many steps between samples is tracked by as many") {
+  std::string text = oscillator;
+  text.replace(text.rfind("rk4"), 3, "rk4(substeps = 100)");
+  text.replace(text.find("rows 501..1500"), 14, "rows 501..600");
+  Beam const beam(text);
+  TrackOptions options = beam.options();
+  options.data = "beam.later";
+  CHECK(beam.run(options).exit == 0);
+  CHECK(beam.table().size() == 101);
+}
+
 TEST_CASE("what cannot be tracked is refused, with the reason") {
   Beam const beam(oscillator + "best = fit oscillator to beam.train with map, seed = 1, solver = rk4\n");
   TrackOptions options = beam.options();
