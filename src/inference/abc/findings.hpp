@@ -11,8 +11,8 @@ namespace sysid::abc {
 Finding no_population(PopulationRecord const& record, double threshold, int particles, std::string const& stopped_by,
                       Ledger const& ledger);
 
-/// Models that died by chance, populations that stand on few particles, thresholds that cannot fall, failed simulations, budgets
-/// that ended the run, and what its spread means.
+/// Models that died by chance, populations that stand on few particles, thresholds that cannot fall, failed simulations, and
+/// budgets that ended the run.
 Findings check_populations(SelectionResult const& result, Plan const& plan);
 
 }  // namespace sysid::abc

@@ -5,7 +5,7 @@
 
 namespace sysid::checkpoint {
 
-// Of what back ends store: another one is refused. 2: numbers are byte strings of CBOR.
+// Of what back ends store: another one is refused.
 constexpr int format = 3;
 
 nlohmann::json identity(std::string_view backend, Settings const& settings, std::uint64_t seed, Target const& target) {

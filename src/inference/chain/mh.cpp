@@ -240,7 +240,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     std::uint64_t const after = state.next[static_cast<std::size_t>(chain)] - plan.burn_in;
     state.record.add(chain, state.chains, move, after % plan.stride == 0);
   };
-  auto const all_lags = [&](std::uint64_t iterations) {
+  auto const all_beyond = [&](std::uint64_t iterations) {
     return std::all_of(state.next.begin(), state.next.end(), [&](std::uint64_t n) { return n >= iterations; });
   };
 
@@ -256,7 +256,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     }
     return stopped;
   };
-  while (!stopped && !all_lags(plan.burn_in) && !(stopped = context.stop_requested())) {
+  while (!stopped && !all_beyond(plan.burn_in) && !(stopped = context.stop_requested())) {
     if (given_up([&] { burn_in(target, plan, walks, key, context.ledger, state); })) break;
     look();
   }
@@ -268,7 +268,7 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     ++state.next[static_cast<std::size_t>(chain)];
     record(chain, move);
   };
-  while (!stopped && !all_lags(plan.samples) && !(stopped = context.stop_requested())) {
+  while (!stopped && !all_beyond(plan.samples) && !(stopped = context.stop_requested())) {
     auto const batch = [&] {
       StreamKey const now = key.with_step(state.next.front());
       if (at_ridge(state)) {

@@ -33,7 +33,7 @@ struct PosteriorSample {
   int size() const { return theta.width(); }
 };
 
-/// The first half of each chain, or the second; no more than `most` draws, evenly spread. Draws of which nothing finite is known
+/// The first half of each chain, or the second; fewer than twice `most` draws, evenly spread. Draws of which nothing finite is known
 /// are left out with those that other chains have at their place. theta of the first half: those of all chains at one place are
 /// neighbours; of the second: chain after chain.
 PosteriorSample half_of(Target const& target, Draws const& draws, bool second, int most);

@@ -42,7 +42,7 @@ struct WeightedDraws {
 /// confirmed, mean and sd are those of the walkers. That takes 10,000 to 60,000 densities more: above some thousand rows fewer, or
 /// nothing of it is done.
 ///
-/// Nothing (no draws) above 40 parameters, without modes, and of a target with a gradient, whose densities are dear.
+/// Nothing (no draws) above 40 parameters, without modes, and of a target whose densities are dear (`is_expensive`).
 WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& modes, std::uint64_t seed, Ledger& ledger,
                              std::function<bool()> const& stop, Mode const* stated = nullptr);
 

@@ -39,7 +39,7 @@ struct TermChoice {
                              // spike_slab, reversible_jump: inclusion probability
   double measure_error = 0;  // one standard error, where it is sampled by reversible_jump
   double precision = 0;      // ard: of the coefficient's prior, column scaled to unit root mean square; infinite: dropped
-  int dropped_in = 0;        // threshold: the round, from 1; 0: kept
+  int dropped_in = 0;        // threshold: the round, from 1; 0: kept, or left out by an exchange
   double mean = 0,
          sd = 0;  // of the method: spike_slab and reversible_jump average over supports, ard's posterior; threshold: least squares
 };
