@@ -94,9 +94,11 @@ std::optional<Concern> better_rule(Dictionary const& dictionary, std::span<Exper
   std::vector<int> used;
   for (std::size_t j = 0; j < found.terms.size(); ++j)
     if (!found.terms[j].excluded) used.push_back(static_cast<int>(j));
+  Dictionary alone = dictionary;  // the other equations need not be projected again
+  alone.equations = {stated};
   auto const residual = [&](std::span<Experiment const> on) {
-    std::unique_ptr<Projection> const projection = method.form->project(dictionary, on, method.form_settings);
-    return any_fatal(projection->concerns(equation)) ? Eigen::VectorXd() : residual_of(projection->columns(equation), used);
+    std::unique_ptr<Projection> const projection = method.form->project(alone, on, method.form_settings);
+    return any_fatal(projection->concerns(0)) ? Eigen::VectorXd() : residual_of(projection->columns(0), used);
   };
   InputsRead const read = inputs_of(dictionary, stated);
   if (read.any.empty()) return std::nullopt;
