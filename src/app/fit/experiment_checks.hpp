@@ -1,4 +1,4 @@
-// Whether the experiments of a fit agree: on the parameters that they share, and as members of one population.
+// Whether the experiments of a fit agree on the parameters that they share.
 #pragma once
 #include <string>
 
@@ -14,9 +14,5 @@ std::string without_shared_parameters(FinishedFit const& fit);
 /// disagree: a parameter that is not the same in all, a clock, a unit or a sensor that is another. Sds and likelihoods count
 /// residuals that are not white as the independent ones that they are worth. The most distant parameter is named first.
 Findings check_shared_parameters(FinishedFit& fit);
-
-/// Members that the others do not resemble, up to a quarter of them, by draws of theirs against those of the others: such members
-/// widen the population until they look usual in it. At least five members; by the tail of Student's t distribution.
-Findings check_members(ParameterSpace const& space, Draws const& draws);
 
 }  // namespace sysid

@@ -18,6 +18,7 @@
 #include "diagnostics/identifiability/influence_check.hpp"
 #include "diagnostics/inputs/input_checks.hpp"
 #include "diagnostics/law/disturbance_terms.hpp"
+#include "diagnostics/member_check.hpp"
 #include "diagnostics/model_checks.hpp"
 #include "diagnostics/prior_checks.hpp"
 #include "model/linear_states.hpp"
