@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/text/diagnostic.hpp"
+#include "core/text/free_name.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 
@@ -123,13 +124,15 @@ std::optional<std::string> noise_statement_with(Source const& source, Channel co
   return unparse(ast::ModelStatement{*observation});
 }
 
-std::string time_name(Source const& source, Channel const& channel) {
+TimeName time_name(Source const& source, Channel const& channel) {
   Diagnostics ignored;
   auto tree = parse(source, ignored);
-  if (ast::Model const* const model = tree ? model_of(*tree, channel) : nullptr)
-    for (ast::ModelStatement const& statement : model->statements)
-      if (auto const* const time = std::get_if<ast::TimeDeclaration>(&statement)) return time->time.name.text;
-  return {};
+  ast::Model const* const model = tree ? model_of(*tree, channel) : nullptr;
+  if (model == nullptr) return {};
+  for (ast::ModelStatement const& statement : model->statements)
+    if (auto const* const time = std::get_if<ast::TimeDeclaration>(&statement)) return {time->time.name.text, true};
+  std::string_view const text = std::string_view(source.text()).substr(model->span.begin, model->span.end - model->span.begin);
+  return {free_name("t", [&](std::string const& name) { return mentions(text, name); })};
 }
 
 std::optional<std::string> heavy_tailed_statement(Source const& source, Channel const& channel) {

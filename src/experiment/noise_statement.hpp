@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/text/source.hpp"
+#include "diagnostics/residuals/user_text.hpp"
 #include "model/model.hpp"
 
 namespace sysid {
@@ -12,8 +13,8 @@ namespace sysid {
 /// the noise lies about. Nothing where it is not in the text itself, but in a module.
 std::optional<std::string> noise_statement_with(Source const& source, Channel const& channel, std::string const& sum);
 
-/// `t` of `time t [s]` in the model of `channel`. Empty where it has no such statement or stands in a module.
-std::string time_name(Source const& source, Channel const& channel);
+/// `t` of `time t [s]` in the model of `channel`; where it has no such statement, a name that does not stand in it.
+TimeName time_name(Source const& source, Channel const& channel);
 
 /// `observe displacement ~ student_t(y, 4, scale = sigma)`: the same with heavy tails, of a channel with `normal(y, sd = sigma)`,
 /// or with a variance or precision. Nothing where it is written otherwise, stands in a module, or has a number without unit that

@@ -58,8 +58,7 @@ std::string_view Source::line(int number, int file) const {
   return line;
 }
 
-bool mentions(Source const& source, std::string_view name) {
-  std::string_view const text = source.text();
+bool mentions(std::string_view text, std::string_view name) {
   auto const belongs = [&](std::size_t at) {
     return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
   };
@@ -67,5 +66,7 @@ bool mentions(Source const& source, std::string_view name) {
     if (!(at > 0 && belongs(at - 1)) && !belongs(at + name.size())) return true;
   return false;
 }
+
+bool mentions(Source const& source, std::string_view name) { return mentions(source.text(), name); }
 
 }  // namespace sysid

@@ -56,7 +56,8 @@ class Source {
   std::vector<File> files_;
 };
 
-/// Whether the name stands anywhere in the text itself, comments included.
+/// Whether the name stands anywhere in the text, comments included; of a source, in the text itself.
+bool mentions(std::string_view text, std::string_view name);
 bool mentions(Source const& source, std::string_view name);
 
 }  // namespace sysid

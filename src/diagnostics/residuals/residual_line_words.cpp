@@ -127,9 +127,9 @@ std::string cure(Model const& model, Channel const& channel, bool several, Trend
     return fmt::format("this channel has a term in time already: check the priors of its coefficients; otherwise {}", otherwise);
   auto const taken = taken_names(model, text.mentions);
   auto const named = [&](char const* suffix) { return free_name(without_index(channel.name) + suffix, taken); };
-  std::string const drift = named("_drift"), declared = text.time_name ? text.time_name(channel) : "",
-                    time = declared.empty() ? free_name("t", taken) : declared;
-  std::string declarations = declared.empty() ? fmt::format("`time {} [s]`, ", time) : "", sum = drift + "*" + time;
+  std::string const drift = named("_drift");
+  TimeName const time = text.time_name ? text.time_name(channel) : TimeName{};
+  std::string declarations = time.declared ? "" : fmt::format("`time {} [s]`, ", time.text), sum = drift + "*" + time.text;
   if (added_parameter(model, location) == nullptr) {  // what drifts has some value at time 0
     std::string const offset = named("_offset");
     declarations += declaration(offset, channel, model, several, unit_of_offset(channel), trend.largest_value) + " and ";
