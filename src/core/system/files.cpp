@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -90,12 +91,15 @@ int write_and_close(int descriptor, std::string_view bytes, bool durable) {
   return error;
 }
 
-/// Makes the rename itself durable. Some file systems cannot; the file is whole in any case.
-void flush_folder(std::filesystem::path const& folder) {
-  int const descriptor = open_file(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
-  if (descriptor < 0) return;
-  (void)::fsync(descriptor);
-  ::close(descriptor);
+/// Flushed to the disk; 0, or the error of the first call that failed, after which nothing is there. mode: of the file whose place
+/// it takes: whoever could read the old bytes can read the new, and no one else.
+int write_partial(std::filesystem::path const& partial, std::string_view bytes, std::optional<mode_t> mode) {
+  int const descriptor = open_file(partial, O_WRONLY | O_CREAT | O_TRUNC);
+  if (descriptor < 0) return errno;
+  if (mode) (void)::fchmod(descriptor, *mode & 07777U);
+  int const error = write_and_close(descriptor, bytes, true);
+  if (error != 0) ::unlink(partial.c_str());
+  return error;
 }
 
 }  // namespace
@@ -177,17 +181,36 @@ void write_file(std::filesystem::path const& path, std::string_view bytes) {
     if (!ignored) target = real;
   }
   std::filesystem::path const partial = partial_path(target);
-  int const descriptor = open_file(partial, O_WRONLY | O_CREAT | O_TRUNC);
-  if (descriptor < 0) fail("write", path, errno);
-  if (there)
-    (void)::fchmod(descriptor, facts.st_mode & 07777U);  // whoever could read the old bytes can read the new, and no one else
-  int error = write_and_close(descriptor, bytes, true);
-  if (error == 0 && ::rename(partial.c_str(), target.c_str()) != 0) error = errno;
-  if (error != 0) {
+  int error = write_partial(partial, bytes, there ? std::optional(facts.st_mode) : std::nullopt);
+  if (error == 0 && ::rename(partial.c_str(), target.c_str()) != 0) {
+    error = errno;
     ::unlink(partial.c_str());
-    fail("write", path, error);
   }
+  if (error != 0) fail("write", path, error);
   flush_folder(target.parent_path());
+}
+
+void stage_file(std::filesystem::path const& path, std::string_view bytes) {
+  if (left) return;
+  struct stat facts = {};
+  bool const there = ::stat(path.c_str(), &facts) == 0;
+  if (there && S_ISDIR(facts.st_mode)) fail("write", path, EISDIR);
+  bool const regular = there && S_ISREG(facts.st_mode);
+  if (int const error = write_partial(partial_path(path), bytes, regular ? std::optional(facts.st_mode) : std::nullopt))
+    fail("write", path, error);
+}
+
+void rename_staged(std::filesystem::path const& path) {
+  if (left) return;
+  if (::rename(partial_path(path).c_str(), path.c_str()) != 0 && errno != ENOENT) fail("write", path, errno);
+}
+
+void flush_folder(std::filesystem::path const& folder) {
+  if (left) return;
+  int const descriptor = open_file(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+  if (descriptor < 0) return;
+  (void)::fsync(descriptor);
+  ::close(descriptor);
 }
 
 void make_folder(std::filesystem::path const& path) {

@@ -12,7 +12,7 @@
 
 namespace sysid {
 
-/// From here on `write_file`, `make_folder` and `remove_file` do nothing: another process of the same run does it.
+/// From here on what writes, makes, renames and removes files does nothing: another process of the same run does it.
 void leave_files_to_another();
 bool files_are_left();
 
@@ -37,6 +37,17 @@ std::filesystem::path partial_path(std::filesystem::path path);
 /// either the old bytes or all of the new. On failure the temporary file is removed and IoError "cannot write `PATH`: reason" is
 /// thrown. A symbolic link is followed, permissions are kept; a device or pipe is written directly.
 void write_file(std::filesystem::path const& path, std::string_view bytes);
+
+/// The first half of `write_file`: the bytes stand under `partial_path(path)`, flushed, and what is at `path` stays as it is until
+/// `rename_staged`. IoError as there.
+void stage_file(std::filesystem::path const& path, std::string_view bytes);
+
+/// The second half: what `stage_file` wrote takes the place of what is at `path`, a symbolic link included. Nothing where it has
+/// been done. To be made durable by `flush_folder`.
+void rename_staged(std::filesystem::path const& path);
+
+/// Makes renames and removals in a folder durable. Some file systems cannot; the files are whole in any case.
+void flush_folder(std::filesystem::path const& folder);
 
 /// The folder with all above it; nothing when it is there. IoError otherwise.
 void make_folder(std::filesystem::path const& path);
