@@ -8,6 +8,8 @@
 
 #include "core/system/files.hpp"
 #include "exchange/refused.hpp"
+#include "report/file/replacement.hpp"
+#include "report/file/standing_files.hpp"
 
 namespace sysid {
 namespace {
@@ -48,16 +50,17 @@ ResultsFolder find_results(fs::path const& folder) {
                   "run the file and give the folder of its results, or add --stan or --latex");
   if (!fs::is_directory(folder)) throw no_results_folder(folder);
   fs::path const given = named(folder);
-  if (fs::exists(given / "summary.json")) return one_task(given);
+  if (summary_stands(given)) return one_task(given);
   ResultsFolder found;
   found.run = given;
   std::set<fs::path> tasks;
   for (fs::directory_entry const& entry : fs::directory_iterator(given))
-    if (fs::exists(entry.path() / "summary.json")) tasks.insert(entry.path());
+    if (summary_stands(entry.path())) tasks.insert(entry.path());
   for (fs::path const& task : tasks) {
     found.results.push_back(read_stored_result(task));
     if (found.file.empty()) found.file = recorded_file(task);
   }
+  if (tasks.empty() && holds_result(given)) throw no_complete_result(folder, run_again());
   if (tasks.empty())
     throw refused(fmt::format("`{}` contains no results", folder.string()),
                   "give the folder of a task, such as results/posterior, or of a whole run, such as results");

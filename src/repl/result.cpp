@@ -8,6 +8,7 @@
 
 #include "core/system/files.hpp"
 #include "report/file/number_table.hpp"
+#include "report/file/replacement.hpp"
 #include "report/file/stored_files.hpp"
 
 namespace sysid::repl {
@@ -87,7 +88,7 @@ Result read_result(std::filesystem::path const& folder, std::string const& task,
   result.kind = kind;
   result.folder = folder;
   Json summary;
-  if (std::filesystem::exists(folder / "summary.json")) summary = Json::parse(read_whole_summary(folder));
+  if (summary_stands(folder)) summary = Json::parse(read_whole_summary(folder));
   if (!summary.is_object()) return result;
   if (summary.contains("parameters") && kind == TaskKind::fit)
     for (auto const& [name, each] : summary["parameters"].items()) {

@@ -15,7 +15,7 @@
 #include "check/checked/task_kinds.hpp"
 #include "core/system/interrupt.hpp"
 #include "core/text/wrapped.hpp"
-#include "report/file/task_folder.hpp"
+#include "report/file/replacement.hpp"
 
 namespace sysid::repl {
 namespace {
@@ -43,7 +43,7 @@ void keep(Context& context, Session& session, Task const& task, int index, std::
 
 /// Whether the folder of a task holds results of the task as it is written now, whoever has computed them.
 bool holds_own_result(Session const& session, Task const& task) {
-  if (!std::filesystem::exists(session.result_folder(task) / "summary.json")) return false;
+  if (!summary_stands(session.result_folder(task))) return false;
   try {
     return !stored_otherwise(session, task, stated_seed(task));
   } catch (UserError const&) {
@@ -126,7 +126,7 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
   });
   clear_interrupt();
   if (claimed && ended) context.results.made.insert(name);
-  bool const stands = std::filesystem::exists(session.result_folder(*place) / "summary.json");
+  bool const stands = summary_stands(session.result_folder(*place));
   // A run that was stopped may have left the result of an earlier text where it was.
   bool const something = ended && (kind_of(*place) == TaskKind::simulate ||
                                    (exit == ExitCode::interrupted ? holds_own_result(session, *place) : stands));

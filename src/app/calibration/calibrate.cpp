@@ -25,6 +25,7 @@
 #include "core/system/interrupt.hpp"
 #include "diagnostics/verdict.hpp"
 #include "inference/table.hpp"
+#include "report/file/replacement.hpp"
 #include "report/file/stored_files.hpp"
 #include "report/file/stored_report.hpp"
 #include "simulate/thread_pool.hpp"
@@ -324,6 +325,9 @@ std::vector<int> possible_fits(Session& session, std::vector<int> const& fits) {
 
 /// All that can be refused is refused before the first begins.
 ExitCode calibrate_all(Session& session, std::vector<int> const& fits, CalibrateOptions const& options) {
+  // What a killed run had ready is put in its place before anyone looks.
+  for (int const index : fits) (void)summary_stands(session.result_folder(session.file.tasks[static_cast<std::size_t>(index)]));
+  ranks::wait_for_all();
   std::vector<int> open;
   ExitCode worst = ExitCode::success;
   for (int const index : possible_fits(session, fits)) {

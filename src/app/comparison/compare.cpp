@@ -17,6 +17,7 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "model/lags.hpp"
+#include "report/file/replacement.hpp"
 #include "report/file/stored_files.hpp"
 
 namespace sysid {
@@ -71,12 +72,12 @@ StoredSummary read_summary(fs::path const& folder) {
 std::vector<StoredSummary> results_in(fs::path const& folder) {
   if (!fs::is_directory(folder)) throw no_results_folder(folder);
   std::vector<StoredSummary> found;
-  if (fs::exists(folder / "summary.json")) {
+  if (summary_stands(folder)) {
     found.push_back(read_summary(folder));
   } else {
     std::set<fs::path> tasks;
     for (fs::directory_entry const& entry : fs::directory_iterator(folder))
-      if (fs::exists(entry.path() / "summary.json")) tasks.insert(entry.path());
+      if (summary_stands(entry.path())) tasks.insert(entry.path());
     for (fs::path const& task : tasks) found.push_back(read_summary(task));
   }
   std::vector<std::string> others;  // results without an evidence or an error of prediction

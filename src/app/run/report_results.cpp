@@ -14,6 +14,8 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "experiment/prior_density.hpp"
+#include "report/file/replacement.hpp"
+#include "report/file/standing_files.hpp"
 #include "report/file/stored_report.hpp"
 #include "report/file/task_folder.hpp"
 #include "report/page/comparison.hpp"
@@ -25,12 +27,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_result(fs::path const& folder) { return fs::exists(folder / "summary.json") || fs::exists(folder / "report.cbor"); }
+bool is_result(fs::path const& folder) { return summary_stands(folder) || fs::exists(folder / "report.cbor"); }
 
 Report whole_result(fs::path const& folder) {
-  if (!fs::exists(folder / "summary.json"))
-    throw UserError(
-        result_error("", fmt::format("`{}` contains no complete result: it has no `summary.json`", folder.string()), run_again()));
+  if (!summary_stands(folder)) throw no_complete_result(folder, run_again());
   Report report = read_result(folder);
   for (PriorInfo& prior : report.priors) add_density(prior);
   if (auto finding = made_from_earlier(folder)) report.findings.push_back(std::move(*finding));
@@ -67,13 +67,18 @@ StoredRun stored_run(fs::path const& folder) {
   }
   std::stable_sort(run.tasks.begin(), run.tasks.end(),
                    [](StoredTask const& a, StoredTask const& b) { return a.report.place < b.report.place; });
-  if (run.tasks.empty() && run.unfinished.empty())
+  if (run.tasks.empty() && run.unfinished.empty()) {
+    // What a run refuses to write over without being forced is not nothing.
+    if (holds_result(folder)) throw no_complete_result(folder, run_again());
+    for (fs::path const& task : found)
+      if (holds_result(task)) throw no_complete_result(task, run_again());
     throw UserError({Severity::error,
                      "",
                      fmt::format("`{}` contains no results", folder.string()),
                      std::nullopt,
                      {},
                      "give the folder of a task, such as results/posterior, or of a whole run, such as results"});
+  }
   return run;
 }
 

@@ -17,6 +17,7 @@
 #include "core/ranks/ranks.hpp"
 #include "core/system/files.hpp"
 #include "core/system/interrupt.hpp"
+#include "report/file/replacement.hpp"
 
 namespace sysid {
 namespace {
@@ -57,6 +58,9 @@ ExitCode run_claimed(Session& session, std::function<bool(Task const&)> const& a
     }
     return true;
   };
+  // What a killed run had ready is put in its place before anyone looks.
+  for (Task const& task : file.tasks) (void)summary_stands(session.result_folder(task));
+  ranks::wait_for_all();
   std::set<Task const*> complete_already;
   for (Task const& task : file.tasks)
     if (asked(task) && options.resume && kept(task)) complete_already.insert(&task);

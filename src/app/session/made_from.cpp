@@ -9,6 +9,7 @@
 #include "app/session/task_rows.hpp"
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
+#include "report/file/replacement.hpp"
 #include "report/file/stored_files.hpp"
 
 namespace sysid {
@@ -22,7 +23,7 @@ std::string numbered(char const* key, std::size_t place) { return place == 0 ? k
 
 std::optional<std::string> digest_of(std::filesystem::path const& folder) {
   auto const summary = folder / "summary.json";
-  if (!std::filesystem::exists(summary)) return std::nullopt;
+  if (!summary_stands(folder)) return std::nullopt;
   return sha256(read_regular_file(summary));
 }
 
@@ -45,7 +46,7 @@ Facts made_from(Session const& session, Task const& task) {
 
 std::optional<Finding> made_from_earlier(std::filesystem::path const& folder) {
   auto const path = folder / "summary.json";
-  if (!std::filesystem::exists(path)) return std::nullopt;
+  if (!summary_stands(folder)) return std::nullopt;
   auto const summary = nlohmann::json::parse(read_summary(folder));
   auto const text = [&](std::string const& key) {
     auto const& versions = summary.at("versions");

@@ -184,7 +184,7 @@ std::vector<PriorInfo> declared_priors(Session const& session, int model_index) 
   return priors;
 }
 
-void keep_result(Session& session, Task const& task, Report& report) {
+void keep_result(Session& session, Task const& task, Report& report, std::vector<std::string> const& written) {
   report.formulas = formulas(report.equations);
   report.fixed = fixed_parameters(report);
   if (!report.resolved_text.empty()) report.resolved_files = resolved_files(session, task, report.resolved_text);
@@ -194,7 +194,7 @@ void keep_result(Session& session, Task const& task, Report& report) {
     report.timing.emplace_back("exchanges", static_cast<std::int64_t>(ranks::exchanges()));
     report.timing.emplace_back("exchange_seconds", ranks::exchange_seconds());
   }
-  std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures());
+  std::vector<std::string> const undrawn = write_result(report, session.result_folder(task), session.options.pictures(), written);
   session.out << terminal_summary(report, session.options.surface);
   if (!undrawn.empty()) session.notices << fmt::format("{}: {}\n", task.name, undrawn_words(undrawn));
 }

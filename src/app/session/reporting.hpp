@@ -30,8 +30,9 @@ void add_repetition(Session const& session, Task const& task, Report& report, Re
 std::vector<PriorInfo> declared_priors(Session const& session, int model);
 
 /// Writes the folder of a task's results and prints their summary; a notice names pictures that could not be drawn. The formulas
-/// and fixed values of the report are set from its texts first: the writers of results parse nothing.
-void keep_result(Session& session, Task const& task, Report& report);
+/// and fixed values of the report are set from its texts first: the writers of results parse nothing. written: as `write_result`
+/// takes it.
+void keep_result(Session& session, Task const& task, Report& report, std::vector<std::string> const& written = {});
 
 /// SHA-256 of a model's text.
 std::string model_digest(Session const& session, std::string const& model);

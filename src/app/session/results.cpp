@@ -4,14 +4,15 @@
 #include <fmt/format.h>
 
 #include "core/system/files.hpp"
-#include "report/file/task_folder.hpp"
+#include "report/file/replacement.hpp"
+#include "report/file/standing_files.hpp"
 
 namespace sysid {
 
 std::filesystem::path checkpoint_path(std::filesystem::path const& folder) { return folder / "checkpoint.cbor"; }
 
 bool complete(std::filesystem::path const& folder) {
-  return std::filesystem::exists(folder / "summary.json") && !std::filesystem::exists(checkpoint_path(folder));
+  return summary_stands(folder) && !std::filesystem::exists(checkpoint_path(folder));
 }
 
 ClaimedFolder::MadeFolders::MadeFolders(std::filesystem::path const& folder) {
@@ -43,6 +44,7 @@ std::vector<std::string> ClaimedFolder::MadeFolders::with_lock(std::filesystem::
 ClaimedFolder::ClaimedFolder(std::filesystem::path const& folder, RunOptions const& options)
     : made_(folder), lock_(folder), removed_(made_.with_lock(folder)) {
   if (files_are_left()) return;
+  complete_replacement(folder);
   if (!options.resume && !options.force) {
     if (std::filesystem::exists(checkpoint_path(folder)))
       throw UserError(result_error("", fmt::format("`{}` contains an interrupted run", folder.string()), resume_or_replace()));

@@ -16,6 +16,7 @@
 #include "report/file/csv.hpp"
 #include "report/file/number_table.hpp"
 #include "report/file/selection.hpp"
+#include "report/file/standing_files.hpp"
 #include "report/file/stored_files.hpp"
 #include "report/file/task_folder.hpp"
 #include "result/selection.hpp"

@@ -12,7 +12,7 @@
 #include "core/text/diagnostic.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "report/file/sealed_cbor.hpp"
-#include "report/file/task_folder.hpp"
+#include "report/file/standing_files.hpp"
 #include "search/journal.hpp"
 
 namespace sysid {

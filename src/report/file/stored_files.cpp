@@ -9,6 +9,7 @@
 
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
+#include "report/file/replacement.hpp"
 #include "report/file/result_files.hpp"
 
 namespace sysid {
@@ -68,6 +69,7 @@ std::string sealed_summary(std::string text) {
 }
 
 std::string read_summary(fs::path const& folder) {
+  (void)summary_stands(folder);
   fs::path const path = folder / "summary.json";
   std::string text = read_regular_file(path);
   auto const place = text.find(key);

@@ -8,6 +8,7 @@
 #include "core/text/diagnostic.hpp"
 #include "report/file/csv.hpp"
 #include "report/file/number_table.hpp"
+#include "report/file/replacement.hpp"
 #include "report/file/report_cbor.hpp"
 #include "report/file/stored_files.hpp"
 #include "report/file/task_folder.hpp"
@@ -138,7 +139,7 @@ void read_jump_draws(fs::path const& path, SelectedModel& model) {
 
 Report read_result(fs::path const& folder) {
   fs::path const path = folder / "report.cbor";
-  if (!fs::exists(path) && fs::exists(folder / "summary.json"))
+  if (summary_stands(folder) && !fs::exists(path))
     throw UserError(result_error("E6209", fmt::format("the results in `{}` have no `report.cbor`", folder.string()),
                                  run_again("they were written by an earlier version of sysid, or the file was lost: ")));
   read_whole_summary(folder);  // the columns are those that were written

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -16,9 +17,11 @@
 #include "report/file/csv.hpp"
 #include "report/file/discovery.hpp"
 #include "report/file/function.hpp"
+#include "report/file/replacement.hpp"
 #include "report/file/report_cbor.hpp"
 #include "report/file/result_files.hpp"
 #include "report/file/selection.hpp"
+#include "report/file/stored_files.hpp"
 #include "report/file/summary_json.hpp"
 #include "report/page/html.hpp"
 
@@ -28,114 +31,69 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_result_file(std::string const& name, std::string const& task) {
-  return result_file_row(name) != nullptr || is_exported_file(name, task);
-}
+/// Each file of the figures: its name in figures/, and its content.
+using PutFigure = std::function<void(std::string const& name, std::string const& content)>;
 
-bool is_figure_file(std::string const& name) {
-  for (char const* ending : {".svg", ".png", ".pdf", ".txt", ".gnuplot"})
-    if (name.ends_with(ending)) return true;
-  return false;
-}
-
-std::string task_of(fs::path const& folder) { return (folder / "").lexically_normal().parent_path().filename(); }
-
-std::vector<fs::path> files_of_result(fs::path const& folder) {
-  std::vector<fs::path> out;
-  std::error_code ignored;
-  for (fs::directory_entry const& entry : fs::directory_iterator(folder, ignored))
-    if (is_result_file(entry.path().filename(), task_of(folder))) out.push_back(entry.path());
-  for (fs::directory_entry const& entry : fs::directory_iterator(folder / "figures", ignored))
-    if (is_figure_file(entry.path().filename())) out.push_back(entry.path());
-  return out;
-}
-
-}  // namespace
-
-bool holds_result(fs::path const& folder) { return !files_of_result(folder).empty() || fs::exists(folder / tracked_rows); }
-
-void require_no_result(fs::path const& folder) {
-  if (holds_result(folder))
-    throw UserError(result_error("", fmt::format("`{}` already contains results", folder.string()), replace_results()));
-}
-
-namespace {
-
-/// The summary first: where it stands, the result is whole.
-void remove_summary(fs::path const& folder) {
-  if (std::error_code ignored; fs::exists(folder / "summary.json", ignored)) remove_file(folder / "summary.json");
-}
-
-}  // namespace
-
-void remove_result(fs::path const& folder, fs::path const& but) {
-  if (folder / "summary.json" != but) remove_summary(folder);
-  for (fs::path const& file : files_of_result(folder))
-    if (file != but) remove_file(file);
-  if (folder / tracked_rows != but) remove_file(folder / tracked_rows);
-}
-
-void remove_partial(fs::path const& folder) {
-  std::vector<fs::path> left;
-  std::error_code ignored;
-  auto const look = [&](fs::path const& where, auto const& written) {
-    for (fs::directory_entry const& entry : fs::directory_iterator(where, ignored)) {
-      fs::path const whole = entry.path().parent_path() / entry.path().stem();
-      if (entry.path() == partial_path(whole) && written(whole.filename().string())) left.push_back(entry.path());
+/// Returns the pictures that gnuplot did not draw.
+std::vector<std::string> put_figures(std::vector<DrawnFigure> const& figures, std::vector<FigureFormat> const& pictures,
+                                     PutFigure const& put) {
+  std::vector<std::string> undrawn;
+  for (DrawnFigure const& each : figures) {
+    put(each.figure.name + ".gnuplot", each.figure.script);
+    for (FigureFormat const format : pictures) {
+      std::string const name = fmt::format("{}.{}", each.figure.name, extension(format));
+      auto const picture = format == FigureFormat::svg && each.svg ? each.svg : draw(each.figure, format);
+      if (picture)
+        put(name, *picture);
+      else
+        undrawn.push_back(name);
     }
-  };
-  look(folder, [&](std::string const& name) {
-    return is_result_file(name, task_of(folder)) || name == "checkpoint.cbor" || name == "claim" || name == tracked_rows;
-  });
-  look(folder / "figures", &is_figure_file);
-  for (fs::path const& file : left) remove_file(file);
+  }
+  return undrawn;
 }
 
-std::vector<std::string> write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures) {
-  make_folder(folder);
-  // What takes long is made while the results of before still stand.
-  std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
-  std::string const page = report_html(report, drawn), record = record_bytes(report);
-  remove_summary(folder);
-  // Tables are replaced one by one, so that a run that is killed meanwhile has left some of either result, never none.
-  std::vector<fs::path> earlier_tables;
-  for (fs::path const& file : files_of_result(folder)) {
-    if (is_stored_table(file.filename().string()))
-      earlier_tables.push_back(file);
-    else
-      remove_file(file);
-  }
-  FileDigests digests;
-  auto const write = [&](std::string const& name, std::string const& content) {
-    write_file(folder / known_result_file(name), content);
-    if (is_stored_table(name)) digests[name] = sha256(content);
-  };
-  for (std::size_t c = 0; c < report.draws.chains.size(); ++c) write(draws_file(c), draws_csv(report, static_cast<int>(c)));
+/// Every table of a result, with its name.
+template <class Put>
+void put_tables(Report const& report, Put const& put) {
+  for (std::size_t c = 0; c < report.draws.chains.size(); ++c) put(draws_file(c), draws_csv(report, static_cast<int>(c)));
   if (report.selection)
-    for (auto const& [name, content] : selection_files(report)) write(name, content);
+    for (auto const& [name, content] : selection_files(report)) put(name, content);
   if (report.discovery) {
-    for (auto const& [name, content] : discovery_files(report)) write(name, content);
+    for (auto const& [name, content] : discovery_files(report)) put(name, content);
     std::vector<std::string> const names = free_run_files(report);
-    for (std::size_t r = 0; r < names.size(); ++r) write(names[r], predict_csv(report, report.discovery->free_runs[r]));
+    for (std::size_t r = 0; r < names.size(); ++r) put(names[r], predict_csv(report, report.discovery->free_runs[r]));
   }
-  if (report.calibration) write("ranks.csv", ranks_csv(report));
+  if (report.calibration) put("ranks.csv", ranks_csv(report));
   std::vector<std::string> const function_names = function_files(report);
-  for (std::size_t f = 0; f < report.functions.size(); ++f) write(function_names[f], function_csv(report.functions[f]));
+  for (std::size_t f = 0; f < report.functions.size(); ++f) put(function_names[f], function_csv(report.functions[f]));
   std::vector<std::string> const prediction_names = prediction_files(report);
-  for (std::size_t p = 0; p < report.predictions.size(); ++p)
-    write(prediction_names[p], predict_csv(report, report.predictions[p]));
+  for (std::size_t p = 0; p < report.predictions.size(); ++p) put(prediction_names[p], predict_csv(report, report.predictions[p]));
   std::vector<std::string> const states_names = states_files(report);
-  for (std::size_t e = 0; e < report.states.size(); ++e) write(states_names[e], predict_csv(report, report.states[e]));
-  if (report.criteria && !report.criteria->pointwise.empty()) write("pointwise.csv", pointwise_csv(report));
-  // What an interrupted run left may have more tables than its end: chains of models that died later.
-  for (fs::path const& file : earlier_tables)
-    if (!digests.contains(file.filename().string())) remove_file(file);
-  std::vector<std::string> undrawn = write_figures(drawn, folder, pictures);
-  write_file(folder / "report.html", page);
-  write_file(folder / "report.cbor", record);
-  for (auto const& [name, content] : report.resolved_files) write_file(folder / known_result_file(name), content);
-  write_file(folder / "timing.json", timing_json(report));
-  write_file(folder / "summary.json", summary_json(report, digests));
+  for (std::size_t e = 0; e < report.states.size(); ++e) put(states_names[e], predict_csv(report, report.states[e]));
+  if (report.criteria && !report.criteria->pointwise.empty()) put("pointwise.csv", pointwise_csv(report));
+}
+
+}  // namespace
+
+std::vector<std::string> write_result(Report const& report, fs::path const& folder, std::vector<FigureFormat> const& pictures,
+                                      std::vector<std::string> const& written) {
+  NewFiles files(folder);
+  for (std::string const& name : written) files.take(name);
+  make_folder(folder);
+  std::vector<DrawnFigure> const drawn = drawn_figures(report, !pictures.empty());
+  FileDigests digests;
+  put_tables(report, [&](std::string const& name, std::string const& content) {
+    files.write(known_result_file(name), content);
+    if (is_stored_table(name)) digests[name] = sha256(content);
+  });
+  std::vector<std::string> undrawn = put_figures(
+      drawn, pictures, [&](std::string const& name, std::string const& content) { files.write("figures/" + name, content); });
+  files.write("report.html", report_html(report, drawn));
+  files.write("report.cbor", record_bytes(report));
+  for (auto const& [name, content] : report.resolved_files) files.write(known_result_file(name), content);
+  files.write("timing.json", timing_json(report));
+  files.write("summary.json", summary_json(report, digests));
+  files.replace();
   return undrawn;
 }
 
@@ -149,20 +107,9 @@ std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures) {
 
 std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, fs::path const& folder,
                                        std::vector<FigureFormat> const& pictures) {
-  std::vector<std::string> undrawn;
   if (!figures.empty()) make_folder(folder / "figures");
-  for (DrawnFigure const& each : figures) {
-    write_file(folder / "figures" / (each.figure.name + ".gnuplot"), each.figure.script);
-    for (FigureFormat const format : pictures) {
-      std::string const name = fmt::format("{}.{}", each.figure.name, extension(format));
-      auto const picture = format == FigureFormat::svg && each.svg ? each.svg : draw(each.figure, format);
-      if (picture)
-        write_file(folder / "figures" / name, *picture);
-      else
-        undrawn.push_back(name);
-    }
-  }
-  return undrawn;
+  return put_figures(figures, pictures,
+                     [&](std::string const& name, std::string const& content) { write_file(folder / "figures" / name, content); });
 }
 
 std::string undrawn_words(std::vector<std::string> const& undrawn) {

@@ -1,4 +1,4 @@
-// A task's folder of results: what its files are called, that nothing is overwritten unasked, and the writing of all of them.
+// A task's folder of results: what its files are called, and the writing of all of them.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,29 +10,14 @@
 
 namespace sysid {
 
-/// The table of `track`, which grows while rows arrive: a result as soon as it is there, and not written by `write_result`.
-inline constexpr char const* tracked_rows = "track.csv";
-
-/// True when the folder holds a result of before. A checkpoint is none.
-bool holds_result(std::filesystem::path const& folder);
-
-/// UserError when it holds a result.
-void require_no_result(std::filesystem::path const& folder);
-
-/// Removes the files of a result (draws of more chains than a new run has would otherwise stay), with the pictures, texts and
-/// scripts that lie in its figures/. but: a file that stays, whatever its name.
-void remove_result(std::filesystem::path const& folder, std::filesystem::path const& but = {});
-
-/// Removes what a killed run left half written, of the files that a run writes into its folder; those of other names stay. To be
-/// called by whoever holds the folder's lock.
-void remove_partial(std::filesystem::path const& folder);
-
 /// draws_N.csv, predict.csv (predict_EXPERIMENT.csv when there are several), states.csv (the same), pointwise.csv, figures/,
-/// report.html, report.cbor, resolved.sysid, timing.json and, last of all, summary.json: where it stands, the result is whole.
-/// `pictures`: what figures are drawn as, beside their scripts; with none the page has none either. Returns what `write_figures`
-/// does; IoError names the file that could not be written.
+/// report.html, report.cbor, resolved.sysid, timing.json and summary.json, in the place of an earlier result, which stays as it is
+/// until all of them are written (`NewFiles`). `pictures`: what figures are drawn as, beside their scripts; with none the page has
+/// none either. written: files of this result that stand ready under their partial names. Returns what `write_figures` does;
+/// IoError names the file that could not be written.
 std::vector<std::string> write_result(Report const& report, std::filesystem::path const& folder,
-                                      std::vector<FigureFormat> const& pictures = {FigureFormat::svg});
+                                      std::vector<FigureFormat> const& pictures = {FigureFormat::svg},
+                                      std::vector<std::string> const& written = {});
 
 /// All figures of a report, drawn where `pictures` are wanted and gnuplot is there.
 std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures);
