@@ -57,6 +57,7 @@ class Tracking {
     table_.finish();
     return std::move(gathered_);
   }
+  std::vector<std::string> taken_over() { return table_.taken_over(); }
 
  private:
   bool lives() const { return fit_.options.follow || fit_.options.record == "-"; }
@@ -191,12 +192,13 @@ ExitCode track(Session& session, TrackOptions const& options) {
     TrackedFit const fit = tracked_fit(session, options);
     session.find_results_in(folder, task);
     Report report = track_head(session, fit);
-    GatheredTrack const gathered = Tracking(session, fit, report).run();
+    Tracking tracking(session, fit, report);
+    GatheredTrack const gathered = tracking.run();
     fill_report(session, fit, gathered, report);
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
     report.timing.emplace_back("wall_seconds", wall.count());
     report.timing.emplace_back("rows_per_second", static_cast<double>(gathered.rows) / wall.count());
-    keep_result(session, task, report);
+    keep_result(session, task, report, tracking.taken_over());
     return gathered.alarms.empty() ? ExitCode::success : ExitCode::doubtful;
   } catch (Interrupted const&) {
     session.notices << fmt::format("{}: interrupted; nothing is kept\n", task.name);

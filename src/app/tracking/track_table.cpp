@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <utility>
@@ -16,7 +15,7 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "report/file/csv.hpp"
-#include "report/file/task_folder.hpp"
+#include "report/file/standing_files.hpp"
 
 namespace sysid {
 namespace {
@@ -54,8 +53,7 @@ TrackedUnits units_of(Model const& model, std::vector<TrackedParameter> const& t
 
 TrackTable::TrackTable(std::filesystem::path const& folder, TrackedUnits const& units, std::string const& head, bool follows)
     : units_(units), path_(folder / tracked_rows), written_(follows ? path_ : partial_path(path_)), follows_(follows) {
-  file_ = ::open(written_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
-  if (file_ < 0) fail();
+  if (!follows_) open();
   lines_ = head + "# units =";
   char const* comma = " ";
   auto const unit = [&](std::string const& name, std::string const& text) {
@@ -68,12 +66,11 @@ TrackTable::TrackTable(std::filesystem::path const& folder, TrackedUnits const& 
   for (std::string const& name : units_.channels)
     lines_ += "," + csv_field(name + "_innovation") + "," + csv_field(name + "_expected_sd");
   lines_ += ",squared,samples,alarm\n";
-  flush();
 }
 
 TrackTable::~TrackTable() {
   if (file_ >= 0) ::close(file_);
-  if (!follows_ && !finished_) ::unlink(written_.c_str());
+  if (!follows_ && !kept_) ::unlink(written_.c_str());
 }
 
 void TrackTable::add(TrackedRow const& row) {
@@ -94,7 +91,15 @@ void TrackTable::add(TrackedRow const& row) {
   if (follows_ || lines_.size() > enough) flush();
 }
 
+// Rows that are there at once are a result, so the earlier one goes only now.
+void TrackTable::open() {
+  if (follows_) remove_result(path_.parent_path(), path_);
+  file_ = ::open(written_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  if (file_ < 0) fail();
+}
+
 void TrackTable::flush() {
+  if (file_ < 0) open();
   std::size_t at = 0;
   while (at < lines_.size()) {
     ssize_t const count = ::write(file_, lines_.data() + at, lines_.size() - at);
@@ -107,8 +112,12 @@ void TrackTable::flush() {
 
 void TrackTable::finish() {
   flush();
-  if (!follows_ && (::fsync(file_) != 0 || std::rename(written_.c_str(), path_.c_str()) != 0)) fail();
-  finished_ = true;
+  if (!follows_ && ::fsync(file_) != 0) fail();
+}
+
+std::vector<std::string> TrackTable::taken_over() {
+  kept_ = true;
+  return follows_ ? std::vector<std::string>() : std::vector<std::string>{tracked_rows};
 }
 
 void TrackTable::fail() const { throw IoError(fmt::format("cannot write `{}`: {}", written_.string(), std::strerror(errno))); }

@@ -21,23 +21,27 @@ TrackedUnits units_of(Model const& model, std::vector<TrackedParameter> const& t
 
 class TrackTable {
  public:
-  /// head: the comment lines. follows: each row is written at once and in one piece into track.csv itself; else rows are gathered
-  /// in track.csv.partial, which becomes track.csv when all have been.
+  /// head: the comment lines. follows: each row is written at once and in one piece into track.csv itself, and an earlier result
+  /// goes before the first; else rows are gathered in track.csv.partial, which becomes track.csv with the other files of the
+  /// result.
   TrackTable(std::filesystem::path const& folder, TrackedUnits const& units, std::string const& head, bool follows);
   ~TrackTable();
   TrackTable(TrackTable const&) = delete;
 
   void add(TrackedRow const& row);
-  /// All rows are there: the table gets its name.
+  /// All rows are there.
   void finish();
+  /// The files that stand ready for the result, which whoever asks takes over: none of a table that has its name already.
+  std::vector<std::string> taken_over();
 
  private:
+  void open();
   void flush();
   void fail() const;
 
   TrackedUnits const& units_;
   std::filesystem::path path_, written_;
-  bool follows_, finished_ = false;
+  bool follows_, kept_ = false;
   int file_ = -1;
   std::string lines_;
 };
