@@ -13,6 +13,7 @@
 #include "report/figure/figures.hpp"
 #include "report/figure/gnuplot.hpp"
 #include "report/file/report_cbor.hpp"
+#include "report/file/standing_files.hpp"
 #include "report/file/stored_report.hpp"
 #include "temporary_folder.hpp"
 

@@ -8,6 +8,7 @@
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
 #include "example.hpp"
+#include "report/file/standing_files.hpp"
 #include "report/file/stored_files.hpp"
 #include "report/file/task_folder.hpp"
 #include "temporary_folder.hpp"
