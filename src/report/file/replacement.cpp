@@ -91,7 +91,9 @@ void complete_replacement(fs::path const& folder) {
 
 bool summary_stands(fs::path const& folder) {
   std::error_code ignored;
-  if (!files_are_left() && fs::exists(folder / staged_list, ignored)) {
+  // Who reads a folder that came from elsewhere loses no pictures of his own to a link in it.
+  bool const own = !fs::is_symlink(folder / "figures", ignored);
+  if (own && !files_are_left() && fs::exists(folder / staged_list, ignored)) {
     std::optional<FolderLock> lock;
     try {
       lock.emplace(folder);

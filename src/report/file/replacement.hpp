@@ -42,8 +42,8 @@ class NewFiles {
 /// Steps 3 and 4, where a killed run has come to 2. To be called by whoever holds the folder's lock.
 void complete_replacement(std::filesystem::path const& folder);
 
-/// Whether a summary stands there, and so a whole result; `complete_replacement` comes first, unless a run is just doing so or the
-/// folder cannot be written.
+/// Whether a summary stands there, and so a whole result; `complete_replacement` comes first, unless a run is just doing so, the
+/// folder cannot be written, or its figures/ is a link: then it is left to the next run.
 bool summary_stands(std::filesystem::path const& folder);
 
 }  // namespace sysid
