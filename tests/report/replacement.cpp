@@ -208,6 +208,20 @@ TEST_CASE("while a run has the lock its renames are left to it") {
   CHECK(all_files(folder.path()) == FilesByName{{"summary.json", "new"}});
 }
 
+TEST_CASE("reading a folder whose figures are a link removes nothing behind it; a run does as without a link") {
+  TemporaryFolder const folder;
+  fs::path const results = folder.path() / "results";
+  make_folder(results);
+  write_file(folder.path() / "mine.svg", "mine");
+  fs::create_directory_symlink("..", results / "figures");
+  stage_file(results / "summary.json", "new");
+  write_file(results / staged_list, "summary.json\n");
+  CHECK_FALSE(summary_stands(results));
+  CHECK(fs::exists(folder.path() / "mine.svg"));
+  complete_replacement(results);
+  CHECK(summary_stands(results));
+}
+
 TEST_CASE("a list that is none of ours moves and removes nothing") {
   for (char const* text : {"", "mine", "summary.json\n../draws_1.csv\n", "summary.json\nfigures/../notes.svg\n", "draws_1.csv\n"}) {
     CAPTURE(text);

@@ -7,12 +7,14 @@
 
 #include "app/answer.hpp"
 #include "app/running.hpp"
+#include "app/session/left_by_kill.hpp"
 #include "app/session/reporting.hpp"
 #include "app/stored_pages.hpp"
 #include "report/figure/gnuplot.hpp"
 #include "report/file/report_cbor.hpp"
 #include "report/file/sealed_cbor.hpp"
 #include "report/file/stored_files.hpp"
+#include "report/file/stored_report.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -246,6 +248,26 @@ TEST_CASE("a page that cannot be written is an error of input and output, whatev
   DishRun const run;
   for (fs::path const& results : {run.results, run.results / "posterior"})
     CHECK_THROWS_AS(report_results(results, run.folder.path() / "nowhere" / "page.html", false), IoError);
+}
+
+TEST_CASE("after a kill `report` sees what the next run sees") {
+  DishRun const run;
+  fs::path const fit = run.results / "posterior", forecast = run.results / "forecast";
+  std::string const page = read_file(fit / "report.html");
+  leave_half_renamed(fit);
+  CHECK(refusal(fit, run.folder.path()) == "");
+  CHECK(read_file(fit / "report.html") == page);
+  leave_half_renamed(fit);
+  CHECK(refusal(run.results, run.folder.path()) == "");
+  leave_half_renamed(fit);
+  CHECK(read_result(fit).task == "posterior");
+  leave_half_written(fit);
+  CHECK(refusal(run.results, run.folder.path()) == "");  // the prediction is there
+  CHECK(refusal(fit, run.folder.path()).starts_with("`results/posterior` contains no results\n"));
+  fs::remove(forecast / "summary.json");
+  fs::remove(forecast / "report.cbor");
+  CHECK(refusal(forecast, run.folder.path())
+            .starts_with("`results/forecast` contains no complete result: it has no `summary.json`\n"));
 }
 
 TEST_CASE("what is missing or damaged is named, and the page of before stays") {

@@ -10,6 +10,7 @@
 
 #include "app/answer.hpp"
 #include "app/run/report_results.hpp"
+#include "app/session/left_by_kill.hpp"
 #include "core/system/folder_lock.hpp"
 #include "core/system/interrupt.hpp"
 #include "report/file/sealed_cbor.hpp"
@@ -63,6 +64,63 @@ TEST_CASE("results that exist already are kept unless force is asked for") {
   RunOptions options;
   options.force = true;
   CHECK(run("k", output.path(), {}, options).exit <= ExitCode::doubtful);
+}
+
+TEST_CASE("a run that was killed while it wrote its files is run again as if it had not been") {
+  TemporaryFolder const output;
+  std::filesystem::path const fit = output.path() / "posterior";
+  ExitCode const exit = run("k", output.path(), {"fit"}).exit;
+  std::string const summary = content(fit / "summary.json");
+  RunOptions resume, force;
+  resume.resume = force.force = true;
+  for (RunOptions const& options : {RunOptions(), resume, force}) {
+    CAPTURE(options.resume);
+    CAPTURE(options.force);
+    leave_half_written(fit);
+    CHECK(run("k", output.path(), {"predict"}).messages.find("error[E6202]: there are no draws of `posterior`") !=
+          std::string::npos);
+    CHECK(run("k", output.path(), {"fit"}, options).exit == exit);
+    CHECK(content(fit / "summary.json") == summary);
+    for (auto const& entry : std::filesystem::recursive_directory_iterator(fit)) CHECK(entry.path().extension() != ".partial");
+  }
+}
+
+TEST_CASE("a run that was killed while its files got their names has a result, for everything that comes next") {
+  TemporaryFolder const output;
+  std::filesystem::path const fit = output.path() / "posterior";
+  ExitCode const exit = run("k", output.path()).exit;
+  std::string const summary = content(fit / "summary.json");
+  RunOptions resume, force;
+  resume.resume = force.force = true;
+  auto const whole = [&] {
+    CHECK(content(fit / "summary.json") == summary);
+    CHECK_FALSE(std::filesystem::exists(fit / staged_list));
+    CHECK_NOTHROW(read_whole_summary(fit));
+  };
+  leave_half_renamed(fit);
+  CHECK(run("k", output.path(), {"fit"}).messages.starts_with("sysid: error: `OUT/posterior` already contains results\n"));
+  whole();
+  leave_half_renamed(fit);
+  CHECK(run("k", output.path(), {}, resume).exit == exit);
+  whole();
+  leave_half_renamed(fit);
+  CHECK(run("k", output.path(), {"predict"}, force).exit <= ExitCode::doubtful);
+  whole();
+  leave_half_renamed(fit);
+  CHECK(run("k", output.path(), {"fit"}, force).exit <= ExitCode::doubtful);
+  whole();
+}
+
+TEST_CASE("files of a result that have lost their summary are named as such, and replaced if that is asked for") {
+  TemporaryFolder const output;
+  CHECK(run("k", output.path(), {"fit"}).exit <= ExitCode::doubtful);
+  std::filesystem::remove(output.path() / "posterior/summary.json");
+  CHECK(run("k", output.path(), {"fit"}).messages ==
+        "sysid: error: `OUT/posterior` contains no complete result: it has no `summary.json`\n"
+        "help: add --force to replace them, or -o DIR to write elsewhere\n");
+  RunOptions options;
+  options.force = true;
+  CHECK(run("k", output.path(), {"fit"}, options).exit <= ExitCode::doubtful);
 }
 
 TEST_CASE("a prediction without stored draws says what to run first") {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "app/running.hpp"
+#include "app/session/left_by_kill.hpp"
 #include "app/tracking/followed_rows.hpp"
 #include "app/tracking/track_report.hpp"
 #include "core/numeric/random.hpp"
@@ -85,8 +86,9 @@ struct Beam {
     track.result = folder.path() / "results/posterior";
     return track;
   }
-  TrackResult run(TrackOptions const& options, std::string const& output = "tracked") const {
+  TrackResult run(TrackOptions const& options, std::string const& output = "tracked", bool force = false) const {
     RunOptions run;
+    run.force = force;
     run.output = folder.path() / output;
     run.figures = false;
     Source source((folder.path() / "beam.sysid").string(), text_);
@@ -267,6 +269,68 @@ TEST_CASE("an interruption ends a track that follows, with its results; one of a
   clear_interrupt();
   CHECK(stopped.exit == 75);
   CHECK(!std::filesystem::exists(beam.folder.path() / "stopped/posterior/track.csv"));
+}
+
+TEST_CASE("a track that was killed is run again as if it had not been; rows that it followed are not overwritten unasked") {
+  Beam const beam;
+  TrackOptions options = beam.options();
+  options.first_row = 501;
+  options.last_row = 700;
+  int const exit = beam.run(options).exit;
+  std::filesystem::path const folder = beam.folder.path() / "tracked/posterior";
+  std::string const table = read_file(folder / "track.csv"), summary = read_file(folder / "summary.json");
+  auto const same = [&] { return read_file(folder / "track.csv") == table && read_file(folder / "summary.json") == summary; };
+  // While its rows were gathered, and while its files were written.
+  test::leave_half_written(folder);
+  std::filesystem::rename(folder / "track.csv", folder / "track.csv.partial");
+  CHECK(beam.run(options).exit == exit);
+  CHECK(same());
+  CHECK(!std::filesystem::exists(folder / "track.csv.partial"));
+  // While they got their names.
+  test::leave_half_renamed(folder);
+  write_file(folder / staged_list, read_file(folder / staged_list) + "track.csv\n");
+  std::filesystem::rename(folder / "track.csv", folder / "track.csv.partial");
+  CHECK_THROWS_WITH_AS(beam.run(options), doctest::Contains("already contains results"), UserError);
+  CHECK(same());
+  CHECK(beam.run(options, "tracked", true).exit == exit);
+  CHECK(same());
+  // While it followed.
+  remove_result(folder, folder / "track.csv");
+  CHECK_THROWS_WITH_AS(beam.run(options), doctest::Contains("it has no `summary.json`"), UserError);
+  CHECK(read_file(folder / "track.csv") == table);
+  CHECK(beam.run(options, "tracked", true).exit == exit);
+  CHECK(same());
+}
+
+TEST_CASE("a track that follows leaves an earlier result until its first row") {
+  Beam const beam;
+  TrackOptions options = beam.options();
+  options.first_row = 501;
+  options.last_row = 700;
+  beam.run(options);
+  std::filesystem::path const folder = beam.folder.path() / "tracked/posterior";
+  std::string const table = read_file(folder / "track.csv"), summary = read_file(folder / "summary.json");
+  options.follow = true;
+  options.first_row = 1600;
+  options.last_row = 0;
+  std::thread ending([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    request_interrupt();
+  });
+  try {
+    beam.run(options, "tracked", true);
+  } catch (UserError const&) {  // it has no rows
+  }
+  ending.join();
+  clear_interrupt();
+  CHECK(read_file(folder / "track.csv") == table);
+  CHECK(read_file(folder / "summary.json") == summary);
+  options.first_row = 501;
+  options.last_row = 560;
+  beam.run(options, "tracked", true);
+  CHECK(read_file(folder / "track.csv") != table);
+  CHECK(beam.table().size() == 61);
+  CHECK(read_file(folder / "summary.json") != summary);
 }
 
 TEST_CASE("a fit of very many steps between samples is tracked by as many") {
