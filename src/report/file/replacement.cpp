@@ -91,7 +91,7 @@ void complete_replacement(fs::path const& folder) {
 
 bool summary_stands(fs::path const& folder) {
   std::error_code ignored;
-  // Who reads a folder that came from elsewhere loses no pictures of his own to a link in it.
+  // Reading a folder that comes from elsewhere must not remove pictures behind a link in it.
   bool const own = !fs::is_symlink(folder / "figures", ignored);
   if (own && !files_are_left() && fs::exists(folder / staged_list, ignored)) {
     std::optional<FolderLock> lock;
