@@ -50,6 +50,9 @@ constexpr Row rows[] = {
      "use a part of the record without gaps: if the noise is correlated, the coefficients are biased"},
     {Kind::input_left, Severity::warning, FindingCode::input_in_residuals,
      "add that lag of the input to the terms, or that power of it: until then the coefficients are biased"},
+    {Kind::outside_better, Severity::warning, FindingCode::other_terms_fit,
+     "the equation only imitates what the dictionary lacks: add terms in the samples that this one reads, such as higher powers or "
+     "functions of them, and run again"},
     {Kind::explains_nothing, Severity::warning, FindingCode::unexplained_residual,
      "add terms or lags, or use a record in which the target depends on them more clearly"},
     {Kind::other_rule, Severity::warning, FindingCode::input_rule,

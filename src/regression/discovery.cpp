@@ -13,6 +13,7 @@
 #include "regression/column/dependence.hpp"
 #include "regression/error_concerns.hpp"
 #include "regression/input_rules.hpp"
+#include "regression/outside_term.hpp"
 #include "regression/propagated_noise.hpp"
 
 namespace sysid::regression {
@@ -408,6 +409,8 @@ Discovery discover(Dictionary const& dictionary, std::span<Experiment const> exp
     if (found.found && !dictionary.discrete && !(method.interrupted && method.interrupted()))
       if (auto concern = better_rule(dictionary, experiments, method, index, projection->columns(index), found))
         found.concerns.push_back(std::move(*concern));
+    if (found.found && dictionary.discrete && !(method.interrupted && method.interrupted()))
+      if (auto concern = outside_term(dictionary, experiments, method, index, found)) found.concerns.push_back(std::move(*concern));
     discovery.interrupted = discovery.interrupted || (method.interrupted && method.interrupted());
   }
   if (projection->residual_size() == ResidualSize::propagated)

@@ -29,6 +29,7 @@ struct Concern {
     not_white,         // of a difference equation; value: chi-squared over some lags
     short_runs,        // the same: missing samples leave few rows that follow one another; value: how many in the mean
     input_left,        // the same: its errors depend on `input`; value: the correlation
+    outside_better,    // the same: a term that the dictionary lacks describes the record far better; value: by how many nats
     explains_nothing,  // no term is chosen
     other_rule,        // input, rule: the residual is far smaller with it; value: by which factor the squares
     smoothed,          // terms that needed a smoothed derivative inside the weak form
