@@ -17,22 +17,30 @@ namespace {
 
 constexpr std::size_t least_draws = 50;  // fewer cannot tell a density
 
+PriorInfo const* prior_of(ParameterInfo const& parameter, std::span<PriorInfo const> priors) {
+  auto const found = std::ranges::find_if(priors, [&](PriorInfo const& each) { return each.name == parameter.name; });
+  return found == priors.end() ? nullptr : &*found;
+}
+
 /// The central 90 % of its prior; 0 where they are not known.
-double spread_of(ParameterInfo const& parameter, std::span<PriorInfo const> priors) {
+double spread_of(ParameterInfo const& parameter, PriorInfo const* prior) {
   if (parameter.improper != Improper::no) return infinity;
-  for (PriorInfo const& prior : priors)
-    if (prior.name == parameter.name && prior.q5 && prior.q95) return *prior.q95 - *prior.q5;
-  return 0;
+  return prior != nullptr && prior->q5 && prior->q95 ? *prior->q95 - *prior->q5 : 0;
+}
+
+/// Posteriors between bounds that are decades apart are compared with their prior on its own scale.
+bool is_logarithmic(PriorInfo const* prior) {
+  return prior == nullptr || !prior->numbers || prior->numbers->distribution.starts_with("log");
 }
 
 }  // namespace
 
-BoundCheck check_bounds(std::span<double const> draws, double lower, double upper, double prior_spread) {
+BoundCheck check_bounds(std::span<double const> draws, double lower, double upper, double prior_spread, BoundRule rule) {
   bool const one_bound = std::isfinite(lower) != std::isfinite(upper);
-  if (draws.size() < least_draws || (!std::isfinite(lower) && !std::isfinite(upper)) || (one_bound && (lower == 0 || upper == 0)))
-    return {};
+  bool const natural = one_bound && (lower == 0 || upper == 0) && !rule.also_natural;
+  if (draws.size() < least_draws || (!std::isfinite(lower) && !std::isfinite(upper)) || natural) return {};
   std::vector<double> x(draws.begin(), draws.end());
-  if (!one_bound && lower > 0 && upper >= 10 * lower) {
+  if (rule.logarithmic && !one_bound && lower > 0 && upper >= 10 * lower) {
     for (double& v : x) v = elementary::log(v);
     lower = elementary::log(lower);
     upper = elementary::log(upper);
@@ -60,11 +68,15 @@ std::string wrong_sign_at_bound(std::string const& parameter, double lower) {
       parameter);
 }
 
-Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws, std::span<PriorInfo const> priors) {
+Findings check_bounds(std::span<ParameterInfo const> parameters, Draws const& draws, std::span<PriorInfo const> priors,
+                      bool explains_nothing) {
   Findings findings;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     ParameterInfo const& info = parameters[p];
-    BoundCheck const check = check_bounds(draws.column(p), info.lower, info.upper, spread_of(info, priors));
+    PriorInfo const* const prior = prior_of(info, priors);
+    BoundCheck const check =
+        check_bounds(draws.column(p), info.lower, info.upper, spread_of(info, prior),
+                     {.logarithmic = is_logarithmic(prior), .also_natural = explains_nothing && !info.size_alone});
     if (!check.at_lower && !check.at_upper) continue;
     std::string help = "widen the prior, unless the bound is a physical limit";
     if (check.at_lower && info.lower >= 0 && !info.size_alone) help += "; " + wrong_sign_at_bound(info.name, info.lower);

@@ -16,8 +16,9 @@ namespace {
 
 constexpr double near = 0.05;    // prior widths
 constexpr double hopeless = 30;  // nats below the best optimum
-constexpr std::size_t most_modes = 12;
-constexpr double same_mode = 0.5;  // of the two modes' widths
+constexpr std::size_t many_modes = 12, most_modes = 64;
+constexpr double nearly_as_high = 5;  // nats below the best: of more mass than can be left out where there are many
+constexpr double same_mode = 0.5;     // of the two modes' widths
 
 constexpr int most_rounds = 60;
 constexpr int patient_rounds = 300;    // along a curved valley, of searches that may end highest
@@ -127,15 +128,17 @@ bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
   constexpr int usual = 2;  // places, of a search of any size
   // Modes may be ranked by their mass: neighbours need not be the next in density, and a narrow one may be higher than the best.
   std::vector<double> heights;
-  int places = 1, hits = 0;
+  int places = 1, hits = 0, high = 0;
   for (Mode const& mode : modes) {
     heights.push_back(mode.log_density);
+    if (mode.log_density > modes.front().log_density - nearly_as_high) ++high;
     if (std::fabs(modes.front().log_density - mode.log_density) < as_high) hits += mode.hits;
   }
   std::ranges::sort(heights);
   for (std::size_t m = 1; m < heights.size(); ++m)
     if (heights[m] - heights[m - 1] > as_high) ++places;
-  auto const w = static_cast<double>(places), n = static_cast<double>(searches);
+  // Places of one height are often one place and its images under a symmetry; but each has its mass.
+  auto const w = static_cast<double>(std::max(places, high)), n = static_cast<double>(searches);
   return hits < 2 || (places > usual && w * (w + 1) > tolerable * n * (n - 1));
 }
 
@@ -151,7 +154,8 @@ std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> clim
   std::vector<Mode> modes;
   for (Climber const& climber : distinct(objective, std::move(climbers))) {
     if ((stop && stop()) || modes.size() >= most_modes || !std::isfinite(climber.log_density)) break;
-    if (!modes.empty() && climber.log_density < modes.front().log_density - hopeless) break;
+    double const low = modes.size() < many_modes ? hopeless : nearly_as_high;
+    if (!modes.empty() && climber.log_density < modes.front().log_density - low) break;
     Eigen::MatrixXd const guess =
         climber.curvature.size() > 0 ? climber.curvature : Eigen::MatrixXd(objective.scale.cwiseAbs2().cwiseInverse().asDiagonal());
     Mode mode =

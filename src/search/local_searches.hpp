@@ -39,9 +39,8 @@ struct ClimbedTogether {
 ClimbedTogether climb_together(Objective const& objective, std::vector<Climber> climbers, int rounds, int as_many_again,
                                Ledger& ledger, std::function<bool()> const& stop, Journal* journal);
 
-/// Local searches from near their ends to these, with more patience for those that may end highest. Best first before that patience,
-/// which may change their order. affordable: rounds
-/// of so many searches that may be made.
+/// Local searches from near their ends to these, with more patience for those that may end highest. Best first before that
+/// patience, which may change their order. affordable: rounds of so many searches that may be made.
 void settle_all(Objective const& objective, std::vector<Climber>& climbers,
                 std::function<int(std::size_t searches)> const& affordable, Ledger& ledger, std::function<bool()> const& stop,
                 Journal* journal);
@@ -54,7 +53,8 @@ bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches);
 /// By falling mass for a posterior, else by falling density, with their shares of it.
 void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes);
 
-/// The modes that searches have ended in: of a finite density not more than 30 nats below the best, and at most 12. Ranked.
+/// The modes that searches have ended in: of a finite density not more than 30 nats below the best; beyond 12, not more than
+/// 5 nats below, and at most 64. Ranked.
 /// `stop` ends it early: the modes so far. laplace_steps: of each at most.
 std::vector<Mode> modes_of(Objective const& objective, std::vector<Climber> climbers, Ledger& ledger,
                            std::function<bool()> const& stop = {}, Journal* journal = nullptr,

@@ -91,7 +91,7 @@ bool is_notable(Mode const& mode) { return mode.share > notable_share; }
 
 /// One finding, however many there are: they call for one thing.
 std::optional<Finding> other_modes(Target const& target, std::vector<Mode> const& modes) {
-  constexpr std::size_t most_listed = 4;
+  constexpr std::size_t most_listed = 4, many = 24;
   std::vector<std::string> shares;
   Mode const* largest = nullptr;
   for (std::size_t i = 1; i < modes.size(); ++i) {
@@ -108,8 +108,9 @@ std::optional<Finding> other_modes(Target const& target, std::vector<Mode> const
       Severity::warning,
       {},
       count == 1 ? fmt::format("a second mode has about {} % of the posterior mass: {}", shares.front(), place)
-                 : fmt::format("{} further modes have about {}{} % of the posterior mass, the largest at {}", count,
-                               fmt::join(shares, ", "), count > most_listed ? ", ..." : "", place),
+                 : fmt::format("{} further modes have about {}{} % of the posterior mass, the largest at {}{}", count,
+                               fmt::join(shares, ", "), count > most_listed ? ", ..." : "", place,
+                               count > many ? "; where there are so many, others may not have been found" : ""),
       "compare the solutions: add data or prior knowledge that distinguishes them, or run more chains and report them all"};
 }
 

@@ -78,6 +78,34 @@ TEST_CASE("the finding names the parameter, the bound and its unit") {
   CHECK(findings[0].message == "the posterior of k is concentrated at the upper bound of its prior, 1e+05 N/m");
 }
 
+TEST_CASE("a bound of 0 alone is natural, but not where the fit explains nothing, and of a size always") {
+  auto const x = draws_of([](Stream& s) { return 0.01 * std::fabs(s.normal()); });
+  Draws draws{{"b"}, {""}, {{}}, 1};
+  for (double const v : x) draws.chains[0].values.push_back({v});
+  std::vector<ParameterInfo> infos = {{"b", "", 0, infinity}};
+  PriorInfo prior{"b", "", "half_normal(sd = 1)", {}};
+  prior.q5 = 0.06, prior.q95 = 1.96;
+  std::vector<PriorInfo> const priors = {prior};
+  CHECK(check_bounds(infos, draws, priors).empty());
+  CHECK(check_bounds(infos, draws, priors, true).size() == 1);
+  infos[0].size_alone = true;
+  CHECK(check_bounds(infos, draws, priors, true).empty());
+}
+
+TEST_CASE("a uniform prior over decades is compared on its own scale") {
+  // More than half as wide as the prior; in logarithms narrow, and densest at its upper end.
+  auto const x = draws_of([](Stream& s) { return 20 + 29.5 * s.uniform(); });
+  CHECK(check_bounds(x, 1, 50).at_upper);
+  CHECK_FALSE(check_bounds(x, 1, 50, 0, {.logarithmic = false}).at_upper);
+  Draws draws{{"f"}, {"Hz"}, {{}}, 1};
+  for (double const v : x) draws.chains[0].values.push_back({v});
+  std::vector<ParameterInfo> const infos = {{"f", "Hz", 1, 50}};
+  PriorInfo prior{"f", "Hz", "uniform(1, 50)", {}};
+  CHECK(check_bounds(infos, draws, std::vector<PriorInfo>{prior}).size() == 1);
+  prior.numbers = PriorNumbers{"uniform", {1, 50}, 1, 50, 1};
+  CHECK(check_bounds(infos, draws, std::vector<PriorInfo>{prior}).empty());
+}
+
 TEST_CASE("a lower bound that is not negative may be reached by a wrong sign") {
   auto const help = [](double lower, double upper, bool at_lower, bool size_alone = false) {
     auto const x = draws_of([&](Stream& s) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "inference/targets.hpp"
 #include "search/global/search.hpp"
@@ -57,6 +58,20 @@ TEST_CASE("a mode met once may have a neighbour that was missed, whatever was me
   CHECK(may_be_missed({mode(0, 1), mode(4, 9)}, 10));
   // Two copies with another mode between them in the order of mass are one place, and met as often as both.
   CHECK_FALSE(may_be_missed({mode(0, 1), mode(-5, 8), mode(0, 1)}, 10));
+  // But many of one height are as many places as they are.
+  std::vector<Mode> const many(20, mode(0, 2));
+  CHECK(may_be_missed(many, 64));
+  CHECK_FALSE(may_be_missed(many, 200));
+}
+
+TEST_CASE("nineteen modes of one height are all found, with equal shares") {
+  TestTarget const target({"f"}, {{Prior::uniform, 2.5, 97.5}}, 1, 0, [](std::vector<double> const& x, std::vector<double>& rows) {
+    rows[0] = std::sin(std::numbers::pi * x[0] / 5) / 0.1;
+  });
+  Bench bench(1);
+  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
+  CHECK(result.modes.size() == 19);
+  for (Mode const& each : result.modes) CHECK(each.share == doctest::Approx(1.0 / 19).epsilon(0.05));
 }
 
 TEST_CASE("searches that meet go on as one: eight cost little more than one") {

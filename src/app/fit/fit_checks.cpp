@@ -221,7 +221,14 @@ Findings hierarchy(FinishedFit& fit) {
 
 Findings failed_solves(FinishedFit& fit) { return failure_findings(fit.sampling); }
 
-Findings bounds(FinishedFit& fit) { return check_bounds(fit.target.parameters(), fit.result.draws, fit.report.priors); }
+Findings bounds(FinishedFit& fit) {
+  constexpr double nothing = 90;  // nmse [%] and above
+  std::vector<FitLine> const& lines = fit.report.fit;
+  bool const explains_nothing = !lines.empty() && std::ranges::all_of(lines, [](FitLine const& line) {
+    return find_score(line.scores, {ScoreKind::nmse}).value_or(0) >= nothing;
+  });
+  return check_bounds(fit.target.parameters(), fit.result.draws, fit.report.priors, explains_nothing);
+}
 
 // --- the fitted rows
 std::string without_constraints(FinishedFit const& fit) {

@@ -161,13 +161,19 @@ void check_memory(ChannelResiduals const& of, ChannelTests const& tested, Limits
   }
 }
 
-// Of residuals that the other tests take for noise: whether it is the normal noise of one size that the model has.
-void check_law(ChannelResiduals const& of, ChannelTests const& tested, int together, UserText const& text, Findings& findings) {
+// Of residuals that the other tests take for noise, but for single samples: whether it has the law and the one size that the model
+// has. Noise that grows with the signal has such samples where the signal is large; heavy tails are another cure for them.
+void check_law(ChannelResiduals const& of, int together, UserText const& text, Findings& findings) {
   Channel const& channel = of.described();
-  if (!channel.noise.row->gaussian || channel.noise.lower || channel.noise.upper) return;
-  std::vector<double> const residuals = without(of.residuals, tested.far);
+  bool const heavy_tails = channel.noise.row->name == "student_t";
+  if (!(channel.noise.row->gaussian || heavy_tails) || channel.noise.lower || channel.noise.upper) return;
+  bool const far_alone =
+      std::ranges::all_of(findings, [](Finding const& each) { return each.code == FindingCode::samples_far_off; });
+  if (!far_alone) return;
   std::vector<double> left;
-  for (std::size_t const place : of.places) left.push_back(residuals[place]);
+  for (std::size_t const place : of.places) left.push_back(of.residuals[place]);
+  ResidualLaw law = residual_law(left, of.predicted);
+  if (heavy_tails || !findings.empty()) law.tail_p = 1;  // expected, or named sample by sample
   LawWords const words{of.names(),
                        of.name(),
                        of.model().filtered(),
@@ -177,7 +183,7 @@ void check_law(ChannelResiduals const& of, ChannelTests const& tested, int toget
                          bool const interval = channel.unit && channel.unit->offset != 0;  // 0 degC is no zero
                          return text.proportional && !interval ? text.proportional(channel, relative) : std::nullopt;
                        }};
-  if (auto finding = noise_law(residual_law(left, of.predicted), rare / (2 * together), words)) findings.push_back(*finding);
+  if (auto finding = noise_law(law, rare / (2 * together), words)) findings = {std::move(*finding)};
 }
 
 FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, UserText const& text,
@@ -194,7 +200,7 @@ FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Li
   bool const coloured = ordered && tested.white->fires(limits.white);
   bool const drifts = ordered && tested.unexplained > less_than_half && trend_p_value(of.residuals) < rare / limits.channels;
   check_share(of, tested, coloured ? "are correlated in time" : drifts ? "have a trend in time" : nullptr, findings);
-  if (shape.empty()) check_law(of, tested, limits.channels, text, shape);
+  check_law(of, limits.channels, text, shape);
   findings.insert(findings.end(), shape.begin(), shape.end());
   return line;
 }

@@ -195,6 +195,20 @@ void prefer_weighted(EvidenceMethod method, Evidence& evidence) {
   evidence.doubt = too_large(*evidence.error);
 }
 
+/// Whether the draws of the fit tell another evidence than the populations: Laplace's approximation may be as wrong as these. The
+/// draws are bridged.
+std::string doubt_of_draws(Target const& target, EvidenceTask const& task, Evidence& evidence, Ledger& ledger,
+                           std::function<bool()> const& stop) {
+  Evidence bridged;
+  std::vector<Mode> const modes = sampled_modes(target, task.objective_kind, task.modes, task.seed, ledger, stop);
+  bool const known = estimate(target, task, modes, bridged, ledger, stop);
+  evidence.simulations += bridged.simulations;
+  if (!known || !bridged.log_evidence || !bridged.doubt.empty()) return {};
+  double const apart = std::fabs(*bridged.log_evidence - *evidence.log_evidence);
+  if (apart < 3 * hypotenuse(*evidence.error, *bridged.error)) return {};
+  return fmt::format("bridge sampling gives {:.2f} ± {:.2f}", *bridged.log_evidence, *bridged.error);
+}
+
 }  // namespace
 }  // namespace sysid::marginal
 
@@ -216,6 +230,8 @@ Evidence estimate_evidence(Target const& target, EvidenceTask const& task, Ledge
     constexpr std::uint64_t most = 1'000'000;
     if (!marginal::temper(target, task, most, evidence, ledger, stop))
       evidence.doubt = fmt::format("tempered SMC did not reach the posterior with {} simulations", evidence.simulations);
+    else if (draws && evidence.doubt.empty())
+      evidence.doubt = marginal::doubt_of_draws(target, task, evidence, ledger, stop);
     return evidence;
   }
   if (!draws) {

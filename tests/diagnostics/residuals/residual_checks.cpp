@@ -116,6 +116,30 @@ TEST_CASE("one spike neither hides what a fit misses nor is taken for it") {
   CHECK(find(findings, "explains_little") == nullptr);
 }
 
+TEST_CASE("noise that grows with the signal is named as such, not by its largest samples, under heavy tails, too") {
+  auto const record = [](int row, Stream& stream) {
+    double const signal = 2 * std::exp(-0.01 * (row - 101));
+    return signal * (1 + (row == 110 ? 1.2 : 0.1 * stream.normal())) + 0.001 * stream.normal();
+  };
+  std::string heavy = decay;
+  std::string const normal = "normal(y, sd = s)";
+  heavy.replace(heavy.find(normal), normal.size(), "student_t(y, 4, scale = s)");
+  for (std::string const& statements : {decay, heavy}) {
+    CAPTURE(statements);
+    json const findings = findings_of_late_rows(statements, record);
+    json const* const found = find(findings, "noise_law");
+    REQUIRE_MESSAGE(found != nullptr, findings.dump());
+    CHECK(found->at("message").get<std::string>().find("grow with the prediction") != std::string::npos);
+    CHECK(find(findings, "samples_far_off") == nullptr);
+  }
+  // A sample far off in noise of one size stays one.
+  json const plain = findings_of_late_rows(decay, [](int row, Stream& stream) {
+    return 2 * std::exp(-0.01 * (row - 101)) + (row == 110 ? 1.5 : 0.05 * stream.normal());
+  });
+  CHECK(find(plain, "samples_far_off") != nullptr);
+  CHECK(find(plain, "noise_law") == nullptr);
+}
+
 TEST_CASE("noise larger than the response is no fault of the fit") {
   json const findings =
       findings_of_late_rows(decay, [](int row, Stream& stream) { return 2 * std::exp(-0.05 * (row - 101)) + 3 * stream.normal(); });
