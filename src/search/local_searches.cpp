@@ -139,7 +139,7 @@ bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
     if (heights[m] - heights[m - 1] > as_high) ++places;
   // Places of one height are often one place and its images under a symmetry; but each has its mass.
   auto const w = static_cast<double>(std::max(places, high)), n = static_cast<double>(searches);
-  return hits < 2 || (places > usual && w * (w + 1) > tolerable * n * (n - 1));
+  return hits < 2 || (w > usual && w * (w + 1) > tolerable * n * (n - 1));
 }
 
 void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes) {

@@ -118,7 +118,7 @@ TEST_CASE("one spike neither hides what a fit misses nor is taken for it") {
 
 TEST_CASE("noise that grows with the signal is named as such, not by its largest samples, under heavy tails, too") {
   auto const record = [](int row, Stream& stream) {
-    double const signal = 2 * std::exp(-0.01 * (row - 101));
+    double const signal = 2 * std::exp(-0.004 * (row - 101));
     return signal * (1 + (row == 110 ? 1.2 : 0.1 * stream.normal())) + 0.001 * stream.normal();
   };
   std::string heavy = decay;
@@ -134,7 +134,7 @@ TEST_CASE("noise that grows with the signal is named as such, not by its largest
   }
   // A sample far off in noise of one size stays one.
   json const plain = findings_of_late_rows(decay, [](int row, Stream& stream) {
-    return 2 * std::exp(-0.01 * (row - 101)) + (row == 110 ? 1.5 : 0.05 * stream.normal());
+    return 2 * std::exp(-0.004 * (row - 101)) + (row == 110 ? 1.5 : 0.05 * stream.normal());
   });
   CHECK(find(plain, "samples_far_off") != nullptr);
   CHECK(find(plain, "noise_law") == nullptr);
