@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text/diagnostic.hpp"
 #include "linear_algebra/decompositions.hpp"
 
 namespace sysid {
@@ -180,6 +181,7 @@ void StartState::advance(Search& search, Slopes const& slopes) const {
 void StartState::estimate(Lanes parameters) const {
   int const width = parameters.width(), states = static_cast<int>(compiled_->model.states.size());
   int const first = parameters.rows() - states;
+  if (parameters.rows() != compiled_->parameter_rows()) throw InternalError("a start is estimated among other rows of parameters");
   {
     // The kernel reads the model's parameters only.
     ConstLanes const own(parameters.data(), first, width, parameters.stride());

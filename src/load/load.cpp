@@ -32,7 +32,8 @@ std::vector<BackendSettings> fitting_backends() {
 
 std::vector<BackendSettings> selecting_backends() {
   std::vector<BackendSettings> rows;
-  for (SelectorRow const& row : selectors()) rows.push_back({.name = row.name, .settings = row.settings});
+  for (SelectorRow const& row : selectors())
+    rows.push_back({.name = row.name, .settings = row.settings, .distances = row.run != nullptr});
   return rows;
 }
 

@@ -217,5 +217,11 @@ TEST_CASE("selection by likelihood and by distance take what is random") {
   CHECK(messages(with_tasks(white, "s = select m to exact with reversible_jump(samples = 1000)")).empty());
   CHECK(messages(with_tasks(white, "s = select m to exact with abc_smc")).empty());
   CHECK(messages(with_tasks("", "s = select m to bench with abc_smc")).empty());
+  // Each simulation of a distance draws its states; a likelihood has the start that rows determine.
+  std::string const estimated = ", start = estimated(rows = 5)";
+  CHECK(messages(with_tasks(white, "s = select m to exact with reversible_jump(samples = 1000)" + estimated)).empty());
+  CHECK(messages(with_tasks(white, "s = select m to exact with abc_smc" + estimated)).find("E3309") != std::string::npos);
+  CHECK(messages(with_tasks("", "s = select m to bench with abc_smc" + estimated)).find("E3309") != std::string::npos);
+  CHECK(messages(with_tasks("", "s = select m to exact with abc_smc" + estimated)).empty());
   CHECK(messages(with_tasks("", "s = select m to exact with abc_smc")).empty());
 }

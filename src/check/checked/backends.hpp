@@ -14,6 +14,7 @@ struct BackendSettings {
   bool optimum = false;    // its result is the largest density, no draws
   bool prior = true;       // that density contains the prior
   bool estimates = false;  // it samples the posterior of a likelihood that is known by unbiased estimates
+  bool distances = false;  // it compares distances of simulations, without a likelihood
 };
 
 /// Those that a file's tasks may name.

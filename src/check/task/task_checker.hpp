@@ -57,7 +57,8 @@ class TaskChecker {
   std::optional<Model> as_fitted(FitTask const& task, Model const& model);
   // The errors of the inputs of the experiments that a fit predicts.
   std::vector<double> predicted_input_errors(FitTask const& fit, std::vector<ExperimentUse> const& experiments);
-  // Of a back end that compares simulations.
+  // Of a back end that compares simulations: no start that rows determine where each simulation draws its states.
+  void suit_distances(SelectTask const& task);
   // Errors of inputs, of which a regression of terms knows nothing.
   void refuse_input_errors(std::vector<ExperimentUse> const& experiments);
   void suit_kalman(FitTask const& task, Model const& model);

@@ -184,6 +184,22 @@ void TaskChecker::suit_filter(FitTask& task, Model const& model) {
   }
 }
 
+void TaskChecker::suit_distances(SelectTask const& task) {
+  BackendSettings const* const selector = row_named(backends_.selecting, task.backend);
+  if (selector == nullptr || !selector->distances || diagnostics_.has_errors(before_)) return;
+  for (FitTask const& fit : task.fits) {
+    if (fit.start.kind != StartRule::Kind::estimated) continue;
+    std::optional<Model> const fitted = as_fitted(fit, file_.models[static_cast<std::size_t>(fit.model)]);
+    if (!fitted || !fitted->filtered()) continue;
+    // Each simulation draws its random states, so the first rows do not say where it began.
+    return diagnostics_.add(errors::disturbance_beside(
+        place_of_option("start"), errors::named("the random states of", fitted->name),
+        {"`start = estimated` in a selection by distances", {"start"}},
+        "remove the option, or give the initial values a distribution, `initial y ~ normal(0, sd = s)`: each simulation then draws "
+        "its start"));
+  }
+}
+
 Span TaskChecker::place_of_option(std::string const& name) const {
   for (ast::Option const& option : tree_.options)
     if (key_of(option) == name) return option.key ? option.span : head_span(option.value);
