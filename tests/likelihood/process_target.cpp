@@ -2,6 +2,8 @@
 // differences, and what it integrates out.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "gaussian_process/textbook.hpp"
@@ -169,6 +171,39 @@ model slow {
       CHECK(gradient(p, 0) == doctest::Approx(exact).epsilon(1e-6).scale(1));
     }
   }
+}
+
+TEST_CASE("the gradient does not depend on the unit of a coordinate without bounds") {
+  // The same prior and the same mean, with the stiffness in pascals and as a number near 2.
+  auto const gradient_of = [](std::string const& prior, std::string const& scale) {
+    ProcessCase const c(fmt::format(R"(
+model bent {{
+  input u
+  parameter stiffness {}
+  parameter s [mm] ~ half_normal(sd = 2)
+  parameter lu ~ log_normal(median = 1, sd = 0.5)
+  parameter sigma [mm] ~ log_uniform(0.05, 5)
+  function f(a) ~ gp(squared_exponential(amplitude = s, length = lu))
+  observe y [mm] ~ normal(3 [mm]*exp(-stiffness/{}) + f(u), sd = sigma)
+}}
+)",
+                                    prior, scale),
+                        25, 1);
+    REQUIRE(c.target->dimension() == 4);
+    LaneArray theta(4, 1), gradient(4, 1);
+    theta(0, 0) = c.model->model().parameters[0].to_si(prior.starts_with("[Pa]") ? 212e9 : 2.12);
+    theta(1, 0) = 0.1, theta(2, 0) = -0.2, theta(3, 0) = 0.3;
+    double value = 0;
+    Ledger ledger;
+    c.target->log_likelihood_gradient(theta, {&value, 1}, gradient, ledger);
+    REQUIRE(std::isfinite(value));
+    return std::vector<double>{gradient(0, 0), gradient(1, 0), gradient(2, 0), gradient(3, 0)};
+  };
+  std::vector<double> const number = gradient_of("~ normal(2.1, sd = 0.05)", "1");
+  std::vector<double> const pascals = gradient_of("[Pa] ~ normal(210e9, sd = 5e9)", "100 [GPa]");
+  CHECK(std::abs(number[0]) > 1e-3);
+  CHECK(pascals[0] * 1e11 == doctest::Approx(number[0]).epsilon(1e-5));
+  for (std::size_t p = 1; p < 4; ++p) CHECK(pascals[p] == doctest::Approx(number[p]).epsilon(1e-6).scale(1));
 }
 
 TEST_CASE("a lane is the same bytes whatever the batch and the threads") {

@@ -17,9 +17,6 @@ namespace {
 
 using gaussian_process::Marginal;
 
-/// Coordinates are of order one: the parametric part of a step this long loses a third of its digits, no more. Of a solver that
-/// chooses its steps a value is known to some parts of `roughness`, and the step is as much longer.
-double step_of(double roughness) { return std::clamp(0.1 * std::sqrt(roughness), 1e-5, 1e-3); }
 /// Where a sum of squares begins: only that it is fixed matters.
 double offset(int count) { return 100.0 * count + 1000.0; }
 
@@ -185,14 +182,16 @@ void ProcessTarget::log_likelihood_gradient(ConstLanes theta, std::span<double> 
 
 double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledger) const {
   int const dimension = this->dimension(), width = 2 * dimension + 1;
-  double const step = step_of(roughness());
+  std::vector<double> const steps = difference_steps();
   auto const clear = [&] {
     for (int p = 0; p < dimension; ++p) gradient(p, 0) = 0;
   };
   clear();
   LaneArray points(dimension, width);  // theta, then a step ahead and one behind along each coordinate
-  for (int p = 0; p < dimension; ++p)
+  for (int p = 0; p < dimension; ++p) {
+    double const step = steps[static_cast<std::size_t>(p)];
     for (int w = 0; w < width; ++w) points(p, w) = theta(p, 0) + (w == 2 * p + 1 ? step : w == 2 * p + 2 ? -step : 0);
+  }
   Batch const batch = evaluate(points);
   double total = 0;
   for (int c = 0; c < static_cast<int>(measured_.size()); ++c) {
@@ -211,14 +210,15 @@ double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledg
       if (!ahead || !behind) continue;  // at the edge of what can be computed: the coordinate is left alone
       bool const inputs_move =
           ahead->observations.inputs != behind->observations.inputs || ahead->observations.columns != behind->observations.columns;
+      double const apart = 2 * steps[static_cast<std::size_t>(p)];
       double slope = 0;
       if (inputs_move) {
-        slope = (marginal(*ahead, c, false).log_likelihood - marginal(*behind, c, false).log_likelihood) / (2 * step);
+        slope = (marginal(*ahead, c, false).log_likelihood - marginal(*behind, c, false).log_likelihood) / apart;
       } else {
         for (std::size_t k = 0; k < centre->parameters.size(); ++k)
           slope += result.gradient[static_cast<Eigen::Index>(k)] *
-                   (elementary::log(ahead->parameters[k]) - elementary::log(behind->parameters[k])) / (2 * step);
-        slope += result.values_gradient.dot(ahead->observations.values - behind->observations.values) / (2 * step);
+                   (elementary::log(ahead->parameters[k]) - elementary::log(behind->parameters[k])) / apart;
+        slope += result.values_gradient.dot(ahead->observations.values - behind->observations.values) / apart;
       }
       if (std::isfinite(slope)) gradient(p, 0) += slope;
     }
