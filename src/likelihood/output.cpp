@@ -13,13 +13,18 @@ namespace {
 /// Registers of records held at once.
 constexpr std::size_t most_numbers = 1U << 23;  // 64 MiB
 
-Kernel deviance_kernel(Model const& model, Distribution const& noise) {
-  Graph graph = model.graph;
+/// Of the noise as it is recorded, which is not the model's where moments stand for random states.
+Kernel deviance_kernel(CompiledModel const& compiled, int channel) {
+  DistributionRow const& noise = *compiled.noise[static_cast<std::size_t>(channel)];
+  auto const arguments = std::ranges::count_if(compiled.records, [&](CompiledModel::Record const& each) {
+    return each.kind == CompiledModel::Record::Kind::noise_argument && each.index == channel;
+  });
+  Graph graph = compiled.model.graph;
   std::vector<NodeId> leaves;
-  for (std::size_t a = 0; a < noise.arguments.size(); ++a) leaves.push_back(graph.leaf(LeafKind::parameter, static_cast<int>(a)));
+  for (int a = 0; a < static_cast<int>(arguments); ++a) leaves.push_back(graph.leaf(LeafKind::parameter, a));
   NodeId const x = graph.leaf(LeafKind::unknown, 0);
-  NodeId const density = noise.row->log_density(graph, x, leaves);
-  NodeId const gap = graph.subtract(noise.row->saturated(graph, x, leaves), density);
+  NodeId const density = noise.log_density(graph, x, leaves);
+  NodeId const gap = graph.subtract(noise.saturated(graph, x, leaves), density);
   leaves.push_back(x);
   NodeId const deviance[] = {graph.multiply(graph.constant(2), gap)};
   return compile_kernel(graph, leaves, deviance);
@@ -37,7 +42,7 @@ Output::Output(std::shared_ptr<CompiledModel const> compiled, std::shared_ptr<Pa
   for (std::size_t r = 0; r < compiled_->records.size(); ++r)
     if (compiled_->records[r].kind == CompiledModel::Record::Kind::centre)
       centre_row_[static_cast<std::size_t>(compiled_->records[r].index)] = static_cast<int>(r);
-  for (Channel const& channel : model.channels) deviance_.push_back(deviance_kernel(model, channel.noise));
+  for (int c = 0; c < static_cast<int>(model.channels.size()); ++c) deviance_.push_back(deviance_kernel(*compiled_, c));
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     Experiment const& experiment = experiments[e];
     Schedule schedule(*compiled_->trajectory, with_corrections(model, experiment), solver);

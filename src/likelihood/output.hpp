@@ -59,8 +59,9 @@ class Output {
   int start_states_ = 0;  // per experiment
   std::vector<Part> parts_;
   std::vector<Place> places_;
-  std::vector<int> centre_row_;   // per channel: its row among the records of a sample; the arguments of its noise follow
-  std::vector<Kernel> deviance_;  // per channel: noise arguments, sample -> deviance
+  std::vector<int>
+      centre_row_;  // per channel: its row among the records of a sample; the arguments of its noise, as recorded, follow
+  std::vector<Kernel> deviance_;  // per channel: these arguments, sample -> deviance
 };
 
 /// How a model's parameter comes into its data.
