@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "likelihood/linear_system.hpp"
 
@@ -76,6 +77,65 @@ model gusts {
   double const expected = value_at(extended, values);
   REQUIRE(std::isfinite(expected));
   CHECK(value_at(unscented, values) == doctest::Approx(expected).epsilon(1e-3));
+}
+
+TEST_CASE("sigma points lie on both sides of a jump of the equations and of a channel") {
+  std::string const text = R"(
+model stuck {
+  state x [m], z [m]
+  initial x ~ normal(0, sd = 0.3), z ~ normal(0.1, sd = 0.2)
+  parameter f [m/s] ~ log_uniform(0.1, 10)
+  x' = -f*sign(z)
+  z' = -0.5 [1/s]*z
+  observe first [m] ~ normal(z, sd = 0.05)
+  observe second [m] ~ normal(x, sd = 0.04)
+  observe side ~ normal(if z > 0 [m] then 1 else 0, sd = 0.5)
+}
+)";
+  Model const model = filtered_file(text).models.front();
+  double const h = 0.1, f = 1.7, measured[] = {0.03, -0.2, 0.8};
+  Experiment experiment;
+  experiment.time = {0, h};
+  experiment.scored = {0, 1};
+  for (double const y : measured) experiment.measured.push_back({0, y});
+  auto const of = [&](FilterRule rule) {
+    return value_at(ModelTarget(compile(model, false, "euler", rule), experiment, filter_options("euler", 1)), {f});
+  };
+  auto const density = [](double y, double mean, double variance) {
+    return -0.5 * ((y - mean) * (y - mean) / variance + std::log(2 * std::numbers::pi * variance));
+  };
+  // One step from two independent states: sign(z) is 1 at the mean and one point, -1 at the other, and points along x see none of
+  // it. What is linear passes by slopes.
+  auto const expected = [&](bool points) {
+    double const root = std::sqrt(3.0) * 0.2, mean_sign = points ? 2.0 / 3 : 1, with_sign = points ? root / 3 : 0;
+    double mean_x = -h * f * mean_sign, mean_z = 0.1 * (1 - 0.5 * h);
+    double var_x = 0.09, cov = -h * f * with_sign;
+    // Between samples the unscented filter takes Euler's step of P itself, the extended one the map that its step is.
+    double var_z = 0.04 * (points ? 1 - h : (1 - 0.5 * h) * (1 - 0.5 * h));
+    double total = 0;
+    double s = var_z + 0.0025;
+    total += density(measured[0], mean_z, s);
+    mean_x += cov / s * (measured[0] - mean_z);
+    mean_z += var_z / s * (measured[0] - mean_z);
+    var_x -= cov * cov / s;
+    cov -= cov * var_z / s;
+    var_z -= var_z * var_z / s;
+    s = var_x + 0.0016;
+    total += density(measured[1], mean_x, s);
+    mean_z += cov / s * (measured[1] - mean_x);
+    var_z -= cov * cov / s;
+    cov -= cov * var_x / s;
+    var_x -= var_x * var_x / s;
+    // The share of the points that lie behind the jump.
+    double const along_x = std::sqrt(3 / var_x) * cov, along_z = std::sqrt(3 * (var_z - cov * cov / var_x));
+    double behind = 0;
+    for (double const offset : {along_x, -along_x, along_z, -along_z})
+      if (points && mean_z + offset < 0) behind += 1.0 / 6;
+    return total + density(measured[2], 1 - behind, behind * (1 - behind) + 0.25);
+  };
+  CHECK(of(FilterRule::extended) == doctest::Approx(expected(false)).epsilon(1e-12));
+  CHECK(of(FilterRule::unscented) == doctest::Approx(expected(true)).epsilon(1e-12));
+  CHECK(std::abs(expected(true) - expected(false)) > 1e-3);
 }
 
 TEST_CASE("a disturbance that is held from sample to sample knows their interval, whatever the solver") {

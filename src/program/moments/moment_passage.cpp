@@ -1,11 +1,35 @@
 // The Cholesky factor, the points and what they give, written out entry by entry.
 #include "program/moments/moment_passage.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "expression/finite_slope.hpp"
 
 namespace sysid {
+namespace {
+
+/// Whether the value jumps where states move: what the slopes, 0 on either side, do not show.
+bool jumps_with_states(Graph const& graph, NodeId value) {
+  auto const is_state = [](Node const& leaf) { return leaf.leaf_kind == LeafKind::state; };
+  return std::ranges::any_of(graph.reachable({&value, 1}), [&](NodeId id) {
+    Node const& node = graph[id];
+    switch (node.operation) {
+      case Operation::sign:
+      case Operation::floor:
+      case Operation::less:
+      case Operation::less_equal:
+      case Operation::equal:
+        return graph.depends(id, is_state);
+      case Operation::select:
+        return graph.depends(node.a, is_state);
+      default:
+        return false;
+    }
+  });
+}
+
+}  // namespace
 
 MomentPassage::MomentPassage(Graph& graph, std::vector<NodeId> const& means, Symmetric const& covariance, MomentRule rule,
                              int first_column)
@@ -15,12 +39,22 @@ MomentRow MomentPassage::row(NodeId value) const {
   auto const reads_states = [&](NodeId id) {
     return graph_.depends(id, [](Node const& leaf) { return leaf.leaf_kind == LeafKind::state; });
   };
-  MomentRow result{value, {}, true};
+  MomentRow result{value, {}, true, {}};
   for (NodeId const state : means_) {
     result.slopes.push_back(finite_slope(graph_, value, state));
     result.linear = result.linear && !reads_states(result.slopes.back());
   }
+  if (linearises() || !jumps_with_states(graph_, value)) return result;
+  result.linear = false;
+  for (NodeId const state : means_)
+    result.read.push_back(graph_.depends(
+        value, [&](Node const& leaf) { return leaf.leaf_kind == LeafKind::state && leaf.index == graph_[state].index; }));
   return result;
+}
+
+bool MomentPassage::moves(MomentRow const& row, int k) const {
+  auto const state = static_cast<std::size_t>(k);
+  return !is_zero(row.slopes[state]) || (!row.read.empty() && row.read[state]);
 }
 
 /// Made at the first need. A state whose variance is not positive, as that of a known start, has no column.

@@ -35,7 +35,8 @@ class Symmetric {
 struct MomentRow {
   NodeId value = 0;
   std::vector<NodeId> slopes;  // by each state, at the mean
-  bool linear = true;          // the slopes read no state
+  bool linear = true;          // the slopes read no state and, where points pass, nothing jumps
+  std::vector<bool> read;      // by each state, where points pass through a jump: whether the value reads it; else empty
 };
 
 /// Of random states with means m and covariance P. Sigma points are m +- sqrt(c) times the columns of the Cholesky factor L of P, c
@@ -49,6 +50,8 @@ class MomentPassage {
   MomentPassage(Graph& graph, std::vector<NodeId> const& means, Symmetric const& covariance, MomentRule rule, int first_column);
 
   MomentRow row(NodeId value) const;
+  /// Whether what the row gives varies with state k, as far as the rule sees it.
+  bool moves(MomentRow const& row, int k) const;
   bool linearises() const { return rule_ == MomentRule::linearised; }
   NodeId expectation(MomentRow const& row);
   /// cov(x_j, row)

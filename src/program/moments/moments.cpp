@@ -146,7 +146,7 @@ class MomentWriter {
     auto const n = static_cast<std::size_t>(states_);
     for (std::size_t i = 0; i < n; ++i) {
       auto const row = exact.transition.begin() + static_cast<std::ptrdiff_t>(i * n);
-      rules_.push_back({exact.states[i], {row, row + states_}, true});
+      rules_.push_back({exact.states[i], {row, row + states_}, true, {}});
     }
     for (int i = 0; i < states_; ++i)
       for (int j = 0; j <= i; ++j)
@@ -243,12 +243,12 @@ class MomentWriter {
     // Whether what a row gives varies together with state j.
     auto const varies_with = [&](MomentRow const& row, int j) {
       for (int k = 0; k < states_; ++k)
-        if (!is_zero(row.slopes[static_cast<std::size_t>(k)]) && is(k, j)) return true;
+        if (passage_.moves(row, k) && is(k, j)) return true;
       return false;
     };
     auto const vary_together = [&](MomentRow const& a, MomentRow const& b) {
       for (int k = 0; k < states_; ++k)
-        if (!is_zero(b.slopes[static_cast<std::size_t>(k)]) && varies_with(a, k)) return true;
+        if (passage_.moves(b, k) && varies_with(a, k)) return true;
       return false;
     };
     for (int i = 0; i < states_; ++i) {
@@ -391,7 +391,8 @@ class MomentWriter {
       for (std::size_t i = 0; i < n; ++i) {
         if (some[i]) continue;
         bool there = !is_zero(whole_gain(d, i));
-        for (std::size_t k = 0; k < n && !at_once; ++k) there = there || (some[k] && !is_zero(rules_[i].slopes[k]));
+        for (std::size_t k = 0; k < n && !at_once; ++k)
+          there = there || (some[k] && passage_.moves(rules_[i], static_cast<int>(k)));
         if (there) some[i] = grown = true;
       }
     int next = static_cast<int>(source_.derivative.size());
