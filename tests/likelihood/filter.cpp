@@ -1,6 +1,8 @@
 // The likelihood of models with disturbances against the joint normal density of all samples at once.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -136,6 +138,33 @@ model stuck {
   CHECK(of(FilterRule::extended) == doctest::Approx(expected(false)).epsilon(1e-12));
   CHECK(of(FilterRule::unscented) == doctest::Approx(expected(true)).epsilon(1e-12));
   CHECK(std::abs(expected(true) - expected(false)) > 1e-3);
+}
+
+// z and u vary together with x, but not with one another; the Cholesky factor has an entry for them.
+TEST_CASE("sigma points pass through a channel of one of two independent forces") {
+  auto const value = [](std::string const& channel, FilterRule rule) {
+    Model const model = filtered_file(fmt::format(R"(
+model two_forces {{
+  state x, z, u
+  initial x ~ normal(0, sd = 1), z ~ normal(0, sd = 1), u ~ normal(0, sd = 1)
+  parameter k [1/s] ~ log_uniform(0.1, 10)
+  x' = -k*x + 1 [1/s]*(z + u)
+  z' = -0.5 [1/s]*z
+  u' = -0.7 [1/s]*u
+  observe seen ~ normal({}, sd = 0.3)
+}}
+)",
+                                                  channel))
+                            .models.front();
+    Experiment experiment;
+    experiment.time = {0, 0.1, 0.2, 0.3};
+    experiment.scored.assign(4, 1);
+    experiment.measured = {{0.3, 0.1, -0.5, 0.2}};
+    return value_at(ModelTarget(compile(model, false, "rk4", rule), experiment, filter_options("rk4", 4)), {1.5});
+  };
+  double const expected = value("u", FilterRule::extended);
+  REQUIRE(std::isfinite(expected));
+  CHECK(value("u + 1e-9*u^3", FilterRule::unscented) == doctest::Approx(expected).epsilon(1e-5));
 }
 
 TEST_CASE("a disturbance that is held from sample to sample knows their interval, whatever the solver") {

@@ -53,6 +53,7 @@ class MomentPassage {
   /// Whether what the row gives varies with state k, as far as the rule sees it.
   bool moves(MomentRow const& row, int k) const;
   bool linearises() const { return rule_ == MomentRule::linearised; }
+  bool by_points(MomentRow const& row) const { return rule_ == MomentRule::sigma_points && !row.linear; }
   NodeId expectation(MomentRow const& row);
   /// cov(x_j, row)
   NodeId with_state(MomentRow const& row, int j);
@@ -84,7 +85,6 @@ class MomentPassage {
   };
 
   int states() const { return static_cast<int>(means_.size()); }
-  bool by_points(MomentRow const& row) const { return rule_ == MomentRule::sigma_points && !row.linear; }
   std::vector<Point> const& points();
   NodeId at(NodeId value, std::vector<NodeId> const& states) const;
   Values values(NodeId value);

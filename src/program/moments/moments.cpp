@@ -230,6 +230,25 @@ class MomentWriter {
   NodeId column(int i, std::size_t p) const { return columns_[static_cast<std::size_t>(i) * weights_.size() + p]; }
 
   // --- which covariances there are
+  /// Of which states a sample corrects the means, by points along the columns of the Cholesky factor, whose entries are more than
+  /// those of the covariance.
+  std::vector<bool> corrected_by_points(MomentRow const& output, std::vector<std::vector<bool>> some) const {
+    auto const state = [&](int k) { return static_cast<std::size_t>((random_.first_column + k) % states_); };
+    for (int k = 0; k < states_; ++k)
+      for (int i = k + 1; i < states_; ++i)
+        for (int j = k + 1; j < states_; ++j)
+          if (some[state(i)][state(k)] && some[state(j)][state(k)]) some[state(i)][state(j)] = true;
+    std::vector<bool> corrected(static_cast<std::size_t>(states_));
+    for (int p = 0; p < states_; ++p) {
+      bool bends = false;
+      for (int k = p; k < states_; ++k)
+        bends = bends || (some[state(k)][state(p)] && passage_.moves(output, static_cast<int>(state(k))));
+      for (int i = p; i < states_; ++i)
+        if (bends && some[state(i)][state(p)]) corrected[state(i)] = true;
+    }
+    return corrected;
+  }
+
   void number_covariances() {
     std::vector<std::vector<bool>> some(static_cast<std::size_t>(states_), std::vector<bool>(static_cast<std::size_t>(states_)));
     auto const is = [&](int i, int j) { return some[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]; };
@@ -263,6 +282,12 @@ class MomentWriter {
           mark(i, j, source_.map ? vary_together(of_i, of_j) : varies_with(of_i, j) || varies_with(of_j, i));
           for (MomentRow const& output : outputs_) mark(i, j, varies_with(output, i) && varies_with(output, j));
         }
+      for (MomentRow const& output : outputs_) {
+        if (!passage_.by_points(output)) continue;
+        std::vector<bool> const corrected = corrected_by_points(output, some);
+        for (int i = 0; i < states_; ++i)
+          for (int j = 0; j <= i; ++j) mark(i, j, corrected[static_cast<std::size_t>(i)] && corrected[static_cast<std::size_t>(j)]);
+      }
       if (factored_)  // what an elimination from the last state on fills, the factors have
         for (int k = states_ - 1; k >= 0; --k)
           for (int i = 0; i < k; ++i)
