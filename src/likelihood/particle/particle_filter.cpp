@@ -170,8 +170,9 @@ class ParticleRun {
       std::span<double> const mean = means.row(static_cast<int>(d));
       for (std::size_t w = 0; w < weights_.size(); ++w) {
         auto const lane = static_cast<int>(w);
-        mean[w] += noise.white ? (states(noise.state, lane) + 0.5 * step * states(noise.state + 1, lane)) / steps_
-                               : states(noise.state, lane);
+        double const in_step =
+            noise.white ? states(noise.state, lane) + 0.5 * step * states(noise.state + 1, lane) : states(noise.state, lane);
+        mean[w] += in_step / steps_;
       }
     }
   }

@@ -35,7 +35,8 @@ struct PredictedParticles {
   ConstLanes densities;  // of the channels, logarithms; means nothing where the channel is not weighed
 };
 
-/// The means of disturbances over a sampling interval, in the order of the model's noises: of intensity 1.
+/// The means of disturbances over a sampling interval, in the order of the model's noises: of intensity 1; of those that keep their
+/// value from sample to sample, of variance 1.
 struct IntervalMeans {
   int sample;         // at which the interval begins
   ConstLanes values;  // [noises x N]; the particles are those of `predicted` at the next sample

@@ -270,6 +270,54 @@ model filter {
   CHECK(std::fabs(found.z) < 3);
 }
 
+TEST_CASE("particles: means of disturbances over a sampling interval do not depend on the steps of the solver") {
+  Model model = parsed_model(R"(
+model filter {
+  input w, e
+  state x
+  initial x = 0
+  parameter s ~ log_uniform(0.01, 10)
+  parameter q ~ log_uniform(0.01, 10)
+  x' = -2*x + w + e
+  observe output ~ normal(x, sd = 0.2)
+}
+)");
+  disturb(model, "s", true);
+  disturb(model, "q");
+  Experiment experiment;
+  experiment.name = "record";
+  double const gone = std::nan(""), h = 0.2;
+  experiment.measured = {{0.1, gone, gone, gone}};
+  for (int i = 0; i < 4; ++i) experiment.time.push_back(h * i);
+  experiment.scored.assign(4, 1);
+  auto const made = particle_model(model, "rk4");
+  REQUIRE(made->noises.size() == 2);
+  for (int const substeps : {1, 8}) {
+    CAPTURE(substeps);
+    SolverSettings solver;
+    solver.substeps = substeps;
+    Simulator const simulator(made->densities, Schedule(*made->densities, experiment, solver));
+    LaneArray parameters(made->first_start, 1);
+    parameters(0, 0) = parameters(1, 0) = 0.5;
+    StreamNormals normals({.seed = 6});
+    int intervals = 0;
+    double held = 0, white = 0;
+    ParticleView view;
+    view.moved = [&](IntervalMeans const& means) {
+      ++intervals;
+      for (int w = 0; w < 2000; ++w) {
+        held += std::pow(means.values(0, w), 2) / 6000;
+        white += std::pow(means.values(1, w), 2) / 6000;
+      }
+    };
+    ParticleFilter(*made, simulator, 2000).run(parameters, normals, view);
+    CHECK(intervals == 3);
+    // Variances of 6000 numbers: to 1.8 %.
+    CHECK(held == doctest::Approx(1).epsilon(0.08));
+    CHECK(white * h == doctest::Approx(1).epsilon(0.08));
+  }
+}
+
 TEST_CASE("particles: what a model remembers goes along with the particle that is chosen") {
   Model model = parsed_model(R"(
 model walk {
