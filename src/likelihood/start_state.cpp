@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numeric/not_finite.hpp"
 #include "core/text/diagnostic.hpp"
 #include "linear_algebra/decompositions.hpp"
 
@@ -36,6 +37,29 @@ Experiment window_of(Experiment const& experiment, int rows) {
   return window;
 }
 
+/// The standard deviation of the samples that are there; 0 where they are all the same, whatever rounding makes of their mean.
+double spread_of_samples(std::span<double const> samples) {
+  double sum = 0, square = 0;
+  double least = infinity, most = -infinity;
+  int n = 0;
+  for (double const y : samples)
+    if (!std::isnan(y)) sum += y, ++n, least = std::min(least, y), most = std::max(most, y);
+  if (!(least < most)) return 0;
+  for (double const y : samples)
+    if (!std::isnan(y)) square += (y - sum / n) * (y - sum / n);
+  return std::sqrt(square / n);
+}
+
+/// What a channel is measured in: how much it moves in the window. A record that begins at rest says so only further on.
+double unit_of_channel(std::span<double const> whole, std::size_t rows) {
+  std::span<double const> const window = whole.first(rows);
+  if (double const sd = spread_of_samples(window); sd > 0) return sd;
+  if (double const sd = spread_of_samples(whole); sd > 0) return sd;
+  for (double const y : window)
+    if (!std::isnan(y) && y != 0) return std::abs(y);
+  return 1;
+}
+
 int clamp_rows(Experiment const& experiment, int rows) { return std::min(rows, static_cast<int>(experiment.time.size())); }
 
 }  // namespace
@@ -53,18 +77,13 @@ StartState::StartState(std::shared_ptr<CompiledModel const> compiled, Experiment
     auto const& channel = experiment.measured[static_cast<std::size_t>(record.index)];
     if (channel.empty()) continue;
     std::vector<double> samples(channel.begin(), channel.begin() + rows_);
-    double sum = 0, square = 0;
-    int n = 0;
-    for (double const y : samples)
-      if (!std::isnan(y)) sum += y, ++n;
+    auto const n = std::ranges::count_if(samples, [](double y) { return !std::isnan(y); });
     if (n == 0) continue;
-    for (double const y : samples)
-      if (!std::isnan(y)) square += (y - sum / n) * (y - sum / n);
     record_.push_back(static_cast<int>(r));
-    weights_.push_back(square > 0 ? 1 / std::sqrt(square / n) : 1.0);
+    weights_.push_back(1 / unit_of_channel(channel, samples.size()));
     samples_.push_back(std::move(samples));
     count_ += rows_;
-    data_norm_ += n;
+    data_norm_ += static_cast<double>(n);
   }
   data_norm_ = std::sqrt(data_norm_);
 }

@@ -11,12 +11,12 @@
 
 namespace sysid {
 
-/// Least squares by Gauss-Newton on the measured channels of the window, each weighted by its own variance there, from the model's
-/// initial values; slopes by finite differences, each perturbation as large as moves the outputs by 1e-4 of their size, whatever
-/// the unit of the state. A move that makes the fit worse is halved. At least six moves are made, more until one changes the
-/// outputs by no more than 1e-6 of the misfit: a smooth function of the parameters, the same for any lane. States the window does
-/// not determine stay where they are (a ridge of 1e-10 relative). Where no such move is found the state is NaN, so that the
-/// simulation from it fails and is counted.
+/// Least squares by Gauss-Newton on the measured channels of the window, each in units of its sd there, or along the whole record
+/// where it does not move in the window, from the model's initial values; slopes by finite differences, each perturbation as large
+/// as moves the outputs by 1e-4 of their size, whatever the unit of the state. A move that makes the fit worse is halved. At least
+/// six moves are made, more until one changes the outputs by no more than 1e-6 of the misfit: a smooth function of the parameters,
+/// the same for any lane. States the window does not determine stay where they are (a ridge of 1e-10 relative). Where no such move
+/// is found the state is NaN, so that the simulation from it fails and is counted.
 class StartState {
  public:
   /// compiled: with a free start. experiment: begins at the row whose state is wanted; its first `rows` rows are the window.

@@ -91,6 +91,35 @@ TEST_CASE("the same numbers in another unit have the same likelihood, for every 
     }
 }
 
+TEST_CASE("a channel that is at rest in the window is weighed by how it moves later") {
+  for (double const size : {1.0, 1e-9}) {
+    Experiment experiment;
+    experiment.measured.resize(2);
+    double sum = 0, square = 0;
+    for (int i = 0; i < 40; ++i) {
+      experiment.time.push_back(0.05 * i);
+      double const position = i < 10 ? 0.1 : 0.1 * i;
+      experiment.measured[0].push_back(position * size);
+      experiment.measured[1].push_back((2 + (i % 2 == 0 ? 0.2 : -0.2)) * size);
+      sum += position / 40;
+      square += position * position / 40;
+    }
+    experiment.scored.assign(40, 1);
+    auto const compiled = compile(model_of(fmt::format("state y\ninitial y = {0:.17g}\nparameter r ~ log_uniform(0.01, 1000)\n"
+                                                       "y' = -r*y\nobserve resting ~ normal(y, sd = {0:.17g})\n"
+                                                       "observe other ~ normal(2*y, sd = {0:.17g})\n",
+                                                       size)),
+                                  true, "rk4");
+    StartState const start(compiled, experiment, 10, {.substeps = 1}, {});
+    LaneArray parameters(compiled->parameter_rows(), 1);
+    parameters(0, 0) = 0;  // y stays where it is
+    start.estimate(parameters);
+    // 0.1 by the first channel and 1 by the second, whose slope is 2 and whose sd in the window is 0.2.
+    double const first = 1 / (square - sum * sum), second = 4 / 0.04;
+    CHECK(parameters(1, 0) / size == doctest::Approx((0.1 * first + second) / (first + second)).epsilon(1e-7));
+  }
+}
+
 TEST_CASE("an estimated start does not depend on the initial value it begins at") {
   std::vector<double> const rates = {0.1, 0.5, 1, 3};
   std::vector<double> const expected = starts(1, 1, rates);
