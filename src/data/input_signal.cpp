@@ -67,7 +67,9 @@ double InputSignal::value(int interval, double s, bool from_left) const {
   if (s == 1 && record_->degree > 0 && record_->ends_at_samples) return sample(interval + 1);
   int which = 0;
   if (int const pieces = record_->pieces; pieces > 1) {
-    double const at = s * pieces;
+    // A place between two pieces is one, though the quotient that s is be off in the last bit: 15/22*22 is less than 15.
+    double const exactly = s * pieces, whole = std::round(exactly);
+    double const at = std::abs(exactly - whole) < 1e-9 ? whole : exactly;
     which = std::clamp(static_cast<int>(from_left ? std::ceil(at) - 1 : std::floor(at)), 0, pieces - 1);
     s = at - which;
   }

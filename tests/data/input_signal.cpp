@@ -284,3 +284,21 @@ TEST_CASE("input signals: lines on pieces of an interval jump between the pieces
   CHECK(signal.value(0, 1) == 6);
   CHECK(signal.view(1, 2).value(0, 0.75) == 9.5);
 }
+
+TEST_CASE("each step reads its own line, whatever their number") {
+  for (int const lines : {1, 8, 22, 23, 29, 50, 60, 104}) {
+    CAPTURE(lines);
+    std::vector<double> begin, end;
+    for (int i = 0; i < 2 * lines; ++i) {
+      begin.push_back(10 * i);
+      end.push_back(10 * i + 2);
+    }
+    InputSignal const signal = InputSignal::lines({0, 1}, begin, end, lines);
+    for (int step = 0; step < lines; ++step) {
+      CAPTURE(step);
+      CHECK(signal.value(0, (step + 0.0) / lines) == doctest::Approx(10 * step).epsilon(1e-12));
+      CHECK(signal.value(0, (step + 0.5) / lines) == doctest::Approx(10 * step + 1).epsilon(1e-12));
+      CHECK(signal.value(0, (step + 1.0) / lines, true) == doctest::Approx(10 * step + 2).epsilon(1e-12));
+    }
+  }
+}
