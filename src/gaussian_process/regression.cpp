@@ -10,6 +10,8 @@ namespace {
 /// Beyond so many observations a filter is the faster.
 constexpr Eigen::Index many = 300;
 
+constexpr double operations_per_second = 2e10;
+
 }  // namespace
 
 bool filters(Covariance const& covariance, Eigen::Index observations) { return observations > many && has_state_space(covariance); }
@@ -18,9 +20,14 @@ bool filters(Covariance const& covariance, Observations const& observations) {
 }
 
 DenseWork dense_work(double observations) {
-  constexpr double matrices = 3, operations_per_second = 2e10;
+  constexpr double matrices = 3;
   double const square = observations * observations;
   return {matrices * sizeof(double) * square, square * observations / operations_per_second};  // factor n^3/3, inverse 2 n^3/3
+}
+
+DenseWork posterior_work(double observations, double places) {
+  double const square = observations * observations;
+  return {sizeof(double) * square, square * (observations / 3 + places) / operations_per_second};
 }
 
 Marginal marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient) {

@@ -17,6 +17,8 @@ struct DenseWork {
   double bytes = 0, seconds = 0;
 };
 DenseWork dense_work(double observations);
+/// The same of predictions by that matrix, at so many places one after the other.
+DenseWork posterior_work(double observations, double places);
 
 /// As `dense_marginal`.
 Marginal marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient);

@@ -1,6 +1,7 @@
 // What a command line, a file or a system can do to the program: each is answered with the exit code that it is worth, 70 by none.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/asked.hpp"
@@ -165,14 +166,40 @@ TEST_CASE("a Gaussian process over more rows than memory takes as a matrix is re
   CHECK_MESSAGE(few.exit <= 1, few.text);
 }
 
+TEST_CASE("a free run of a Gaussian process says what its matrix takes, also where the fit did without one") {
+  if (sanitized) {
+    MESSAGE("no limit of the address space holds the shadow memory of sanitizers");
+    return;
+  }
+  LineDesk const desk;
+  std::string csv = "y\n";
+  for (int i = 0; i < 15000; ++i) csv += std::to_string(std::sin(0.1 * i) + 0.05 * (i % 7 - 3)) + "\n";
+  desk.save("rows.csv", csv);
+  desk.save("echo.sysid",
+            "model echo {\n  time discrete 1 [s]\n  function f(before) ~ gp(matern32(amplitude = 1, length = 1))\n"
+            "  parameter sigma ~ log_uniform(1e-2, 1)\n  observe y ~ normal(f(lag(measured(y), 1)), sd = sigma)\n}\n"
+            "data record { file \"rows.csv\"; step 1 [s]; measure y = y; split few = rows 1..20 }\n"
+            "best = fit echo to record with map, seed = 1\n"
+            "free = predict best on record.few with draws(1), prediction = free_run, seed = 1\n");
+  std::string const limited = "cd '" + desk.path(".").string() + "' && ulimit -v 2000000 && '" SYSID_PROGRAM "' ";
+  Said const fitted = said_by(limited + "fit echo.sysid --quiet --no-figures --threads 1");
+  CHECK_MESSAGE(fitted.exit <= 1, fitted.text);
+  Said const predicted = said_by(limited + "predict echo.sysid --quiet --no-figures --threads 1");
+  CHECK(predicted.exit == 65);
+  // The first row has none before it.
+  CHECK_MESSAGE(has(predicted, "error[E5003]: a free run of a Gaussian process that is fitted to 14999 rows needs about 1.8 GB"),
+                predicted.text);
+}
+
 TEST_CASE("a long simulation hears a request within a second, with any input") {
   LineDesk const desk;
   for (char const* input : {"gaussian(sd = 10)", "multisine(sd = 10, lowest = 5, highest = 400)"}) {
     desk.save("long.sysid", simulation(std::string("samples = 2000000, input x = ") + input));
-    desk.save("stop.sh",
-              "'" SYSID_PROGRAM
-              "' simulate long.sysid --quiet &\nwhile [ ! -e results ] && kill -0 $!; do sleep 0.05; done\nsleep 0.3\nkill -HUP $!\n"
-              "began=$(date +%s%N)\nwait $!\ncode=$?\necho \"$(( ($(date +%s%N) - began) / 1000000 )) ms\"\nexit $code\n");
+    desk.save(
+        "stop.sh",
+        "'" SYSID_PROGRAM
+        "' simulate long.sysid --quiet &\nwhile [ ! -e results ] && kill -0 $!; do sleep 0.05; done\nsleep 0.3\nkill -HUP $!\n"
+        "began=$(date +%s%N)\nwait $!\ncode=$?\necho \"$(( ($(date +%s%N) - began) / 1000000 )) ms\"\nexit $code\n");
     Said const said = said_by("cd '" + desk.path(".").string() + "' && sh stop.sh");
     CHECK_MESSAGE(said.exit == 75, said.text);
     auto const end = said.text.rfind(" ms");

@@ -6,9 +6,11 @@
 #include "app/session/fit_target.hpp"
 #include "core/system/memory.hpp"
 #include "core/system/progress_terminal.hpp"
+#include "core/text/words.hpp"
 #include "data/scored_samples.hpp"
 #include "data/start_rule.hpp"
 #include "gaussian_process/regression.hpp"
+#include "model/lags.hpp"
 
 namespace sysid {
 
@@ -29,8 +31,13 @@ std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_pt
   return std::make_unique<ProcessTarget>(std::move(model), space, std::move(experiments), std::move(options));
 }
 
+namespace {
+
+constexpr double worth_saying = 2;  // s
+
+}  // namespace
+
 void require_process_work(Session& session, ProcessModel const& model, std::vector<ExperimentData> const& data) {
-  constexpr double worth_saying = 2;  // s
   for (ProcessChannel const& channel : model.channels()) {
     Eigen::Index rows = 0;
     for (ExperimentData const& each : data) rows += scored_count(each.experiment, static_cast<std::size_t>(channel.channel));
@@ -41,6 +48,21 @@ void require_process_work(Session& session, ProcessModel const& model, std::vect
     if (seconds > worth_saying)
       session.notices << fmt::format("{} takes about {} of memory and {}; a fit computes thousands of them\n", what,
                                      format_bytes(bytes), format_duration(seconds));
+  }
+}
+
+void require_free_run_work(Session& session, ProcessTarget const& trained, ProcessModel const& model, std::size_t samples,
+                           int draws) {
+  if (!feeds_back(model.model())) return;
+  for (int c = 0; c < static_cast<int>(model.channels().size()); ++c) {
+    int const rows = trained.count(c);
+    auto const [bytes, seconds] = gaussian_process::posterior_work(rows, static_cast<double>(samples));
+    std::string const what = fmt::format("a free run of a Gaussian process that is fitted to {} rows", rows);
+    require_memory(what, bytes,
+                   "fit fewer rows: choose them with `split` in the data block; or predict with `prediction = one_step`");
+    if (seconds * draws > worth_saying)
+      session.notices << fmt::format("{} takes about {} of memory and {} with {}\n", what, format_bytes(bytes),
+                                     format_duration(seconds * draws), counted(draws, "draw"));
   }
 }
 

@@ -21,6 +21,11 @@ std::unique_ptr<ProcessTarget> process_target(FitTask const& fit, std::shared_pt
 /// much.
 void require_process_work(Session& session, ProcessModel const& model, std::vector<ExperimentData> const& data);
 
+/// The same before a prediction with so many draws along so many samples, where values that are drawn feed back: these need the
+/// matrix also where the fit did without it. trained: holds the fitted samples. model: as it predicts.
+void require_free_run_work(Session& session, ProcessTarget const& trained, ProcessModel const& model, std::size_t samples,
+                           int draws);
+
 /// The model with every process at zero, which derived quantities are computed with.
 std::shared_ptr<CompiledModel const> compile_parametric(ProcessModel const& model, bool free_start, std::string const& method);
 

@@ -56,7 +56,10 @@ ProcessForecast ProcessTrajectories::forecast(int e) const {
 }
 
 Trajectory::Result ProcessTrajectories::run(int e, ProcessForecast const& forecast, ConstLanes parameters) const {
-  return forecast_draws(forecast, *space_, draws(), parameters, what_.draws, prediction_noise(seed_, e));
+  LaneArray const spread_draws = draws();
+  require_free_run_work(session_, *trained_, *model_, data_[static_cast<std::size_t>(e)].experiment.time.size(),
+                        spread_draws.width());
+  return forecast_draws(forecast, *space_, spread_draws, parameters, what_.draws, prediction_noise(seed_, e));
 }
 
 }  // namespace sysid

@@ -58,6 +58,8 @@ class ProcessTarget : public Target {
     std::vector<double> parameters;  // hyper-parameters, then the noise's sd
   };
   std::optional<Regression> regression(ConstLanes parameters, int channel, bool coefficients) const;
+  /// Fitted samples of a channel, of all experiments.
+  int count(int channel) const;
   /// Variance of the fitted samples of a channel, SI, mean removed.
   double measured_variance(int channel) const;
 
@@ -66,7 +68,6 @@ class ProcessTarget : public Target {
   Batch evaluate(ConstLanes theta) const;
   std::optional<Regression> regression(Batch const& batch, int channel, int lane, bool coefficients) const;
   gaussian_process::Marginal marginal(Regression const& regression, int channel, bool with_gradient) const;
-  int count(int channel) const;
   /// log likelihood of one vector theta [P x 1], and its gradient [P x 1].
   double gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledger) const;
   void record(Batch const& batch, ConstLanes theta, std::span<double const> values, Ledger& ledger) const;
