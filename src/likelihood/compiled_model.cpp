@@ -263,6 +263,13 @@ std::string enclosing_place(Graph const& graph, NodeId node, Source const& sourc
   return {};
 }
 
+/// A state of the program behind those of the model.
+std::string further_state(Model const& model, std::size_t index) {
+  if (model.filtered()) return "a covariance";
+  std::size_t const memories = model.memories.size();
+  return index >= memories && index - memories < model.unknowns.size() ? model.unknowns[index - memories].name : "the value before";
+}
+
 }  // namespace
 
 std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source) {
@@ -270,7 +277,7 @@ std::string describe(Model const& model, Graph const& graph, NodeId node, Source
   std::string text = graph.format(node, [&](NodeId leaf) -> std::string {
     Node what = graph[leaf];
     auto const index = static_cast<std::size_t>(what.index);
-    if (what.leaf_kind == LeafKind::state && index >= model.states.size()) return "the value before";
+    if (what.leaf_kind == LeafKind::state && index >= model.states.size()) return further_state(model, index - model.states.size());
     if (what.lag > 0) {
       int const lag = std::exchange(what.lag, 0);
       return fmt::format("lag({}, {})", leaf_name(model, what), lag);
@@ -280,9 +287,7 @@ std::string describe(Model const& model, Graph const& graph, NodeId node, Source
         return index < model.parameters.size() ? model.parameters[index].name
                                                : model.states[index - model.parameters.size()].name + "(0)";
       case LeafKind::state:
-        if (index < model.states.size()) return model.states[index].name;
-        if (index < model.states.size() + model.memories.size()) return fmt::format("previous({})", index - model.states.size());
-        return model.unknowns[index - model.states.size() - model.memories.size()].name;
+        return model.states[index].name;
       case LeafKind::input:
         return model.inputs[index].name;
       case LeafKind::input_rate:

@@ -102,6 +102,25 @@ TEST_CASE("an implicit equation without a solution at the start is a failed solv
   CHECK(none.result.ledger.solves() == 1);
 }
 
+TEST_CASE("states of the program behind those of the model have the names of what they stand for") {
+  auto const said_of_state = [](Model const& model, std::size_t behind) {
+    Source const source("case.sysid", "");
+    Graph graph = model.graph;
+    NodeId const state = graph.leaf(LeafKind::state, static_cast<int>(model.states.size() + behind));
+    NodeId const root = graph.unary(Operation::square_root, state);
+    return describe(model, graph, root, source);
+  };
+  Model const swinging = checked(pendulum).models.front();
+  REQUIRE_FALSE(swinging.unknowns.empty());
+  CHECK(said_of_state(swinging, 0) == "`sqrt(" + swinging.unknowns[0].name + ")`");
+  CHECK(said_of_state(model_of("state x\ninitial x = 1\nparameter a ~ log_uniform(1, 2)\nx' = -a*x\n"
+                               "observe moved ~ normal(since_last(x), sd = 0.1)"),
+                      0) == "`sqrt(the value before)`");
+  CHECK(said_of_state(model_of("state x\ninitial x ~ normal(0, sd = 1)\nparameter a ~ log_uniform(1, 2)\nx' = -a*x\n"
+                               "observe o ~ normal(x, sd = 0.1)"),
+                      0) == "`sqrt(a covariance)`");
+}
+
 TEST_CASE("what the compiler made of a constraint is named with the constraint it was made of") {
   Source source("pendulum.sysid", pendulum);
   Diagnostics diagnostics;
