@@ -60,6 +60,10 @@ PriorFactor prior_factor(Covariance const& covariance, Eigen::MatrixXd const& in
       jitter);
 }
 
+PriorFactor observed_factor(Covariance const& covariance, Eigen::MatrixXd const& inputs, Numbers parameters, Jitter const& jitter) {
+  return factor(covariance, inputs, parameters, jitter);
+}
+
 Marginal dense_marginal(Covariance const& covariance, Observations const& observations, Numbers parameters, bool with_gradient,
                         Jitter const& policy) {
   Marginal result;

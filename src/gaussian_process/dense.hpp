@@ -26,6 +26,10 @@ struct PriorFactor {
 PriorFactor prior_factor(Covariance const& covariance, Eigen::MatrixXd const& inputs, Numbers parameters,
                          Jitter const& jitter = {});
 
+/// The same of the observations: parameters with the noise's sd behind the others.
+PriorFactor observed_factor(Covariance const& covariance, Eigen::MatrixXd const& inputs, Numbers parameters,
+                            Jitter const& jitter = {});
+
 /// parameters [P + 1]: the covariance's hyper-parameters, then the noise's sd >= 0. With K the covariance of g + noise, P its
 /// inverse with the mean's coefficients integrated out, alpha = P (y - H b):
 ///

@@ -1,16 +1,15 @@
 // The closed form by the inverse of the covariance.
 #include "gaussian_process/leave_one_out.hpp"
 
+#include "gaussian_process/dense.hpp"
 #include "linear_algebra/lapack.hpp"
 
 namespace sysid::gaussian_process {
 
 Prediction leave_one_out(Covariance const& covariance, Observations const& observations, Numbers parameters) {
-  Eigen::Index const count = observations.values.size();
-  Eigen::MatrixXd matrix(count, count);
-  covariance.fill_lower(observations.inputs, parameters.first(parameters.size() - 1), matrix);
-  matrix.diagonal().array() += parameters.back() * parameters.back();
-  if (!lapack::cholesky(matrix)) return {};
+  PriorFactor factored = observed_factor(covariance, observations.inputs, parameters);
+  if (!factored.fine) return {};
+  Eigen::MatrixXd& matrix = factored.lower;
   Eigen::MatrixXd weights = observations.values;
   lapack::solve_lower(matrix, weights);
   lapack::solve_lower_transposed(matrix, weights);

@@ -9,7 +9,8 @@ namespace sysid::gaussian_process {
 ///
 ///   mean_i = y_i - (K^-1 y)_i/(K^-1)_ii,   variance_i = 1/(K^-1)_ii                     Rasmussen & Williams 2006, eq. 5.12
 ///
-/// variances are those of an observation; parameters as for `dense_marginal`. Empty where K is not positive definite.
+/// variances are those of an observation; parameters, and the jitter that K may need, as for `dense_marginal`. Empty where K is not
+/// positive definite even so.
 Prediction leave_one_out(Covariance const& covariance, Observations const& observations, Numbers parameters);
 
 }  // namespace sysid::gaussian_process

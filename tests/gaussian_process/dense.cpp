@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/numeric/not_finite.hpp"
+#include "gaussian_process/leave_one_out.hpp"
 #include "gaussian_process/made.hpp"
 #include "gaussian_process/textbook.hpp"
 #include "linear_algebra/decompositions.hpp"
@@ -243,6 +244,21 @@ TEST_CASE("jitter is used only where it is needed, reported, and limited") {
   CHECK(refused.outcome == Outcome::not_positive_definite);
   CHECK(refused.log_likelihood == -infinity);
   CHECK(DensePosterior(smooth, o, exact, {.first = 0, .growth = 10, .most = 0}).outcome() == Outcome::not_positive_definite);
+}
+
+TEST_CASE("observations that need jitter are predicted from the others, as they are fitted") {
+  Observations o;
+  o.inputs = made_inputs(30, 1, 1);
+  o.values = o.inputs.col(0).array().sin();
+  Covariance const smooth = kernel("squared_exponential");
+  std::vector<double> const exact = {1, 2, 0};
+  REQUIRE(dense_marginal(smooth, o, exact, false).jitter > 0);
+  Prediction const left_out = leave_one_out(smooth, o, exact);
+  REQUIRE(left_out.mean.size() == 30);
+  CHECK(left_out.mean.allFinite());
+  CHECK(left_out.variance.minCoeff() > 0);
+  // From the inner ones of 30 exact observations a smooth function is known well.
+  CHECK((left_out.mean - o.values).cwiseAbs().minCoeff() < 1e-3);
 }
 
 TEST_CASE("a gradient with jitter is that of the likelihood with jitter") {
