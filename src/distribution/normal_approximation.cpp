@@ -22,8 +22,9 @@ Normal of_student_t(Graph& graph, Nodes a) {
 
 Normal of_log_normal(Graph& graph, Nodes a) {
   Term const median(graph, a[0]), s(graph, a[1]);
-  Term const growth = exp(s * s);
-  return {median * sqrt(growth), median * sqrt(growth * (growth - 1.0))};
+  Term const square = s * s, growth = exp(square);
+  Term const beyond = expm1(square);  // 1 of exp hides a small sd
+  return {median * sqrt(growth), median * sqrt(growth * beyond)};
 }
 
 Normal of_counts(Graph& graph, Term mean, Term variance) {
