@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/system/memory.hpp"
 #include "distribution/location_scale.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -82,7 +83,7 @@ void Output::start(Lanes points) const {
 
 LaneArray Output::records(ConstLanes points, int experiment, std::vector<Outcome>& outcome) const {
   Part const& part = parts_[static_cast<std::size_t>(experiment)];
-  LaneArray out(part.samples * records_per_sample(), points.width());
+  LaneArray out(recorded_numbers(part.samples, records_per_sample()), points.width());
   outcome.assign(static_cast<std::size_t>(points.width()), {});
   part.simulator.records(parameters(points, experiment), 0, part.samples, out, outcome);
   return out;
@@ -92,7 +93,7 @@ void Output::centres(ConstLanes points, Lanes out) const {
   std::vector<Outcome> outcome;
   for (int e = 0; e < static_cast<int>(parts_.size()); ++e) {
     Part const& part = parts_[static_cast<std::size_t>(e)];
-    std::size_t const lane_size = static_cast<std::size_t>(std::max(1, part.samples * records_per_sample()));
+    std::size_t const lane_size = static_cast<std::size_t>(std::max(1, recorded_numbers(part.samples, records_per_sample())));
     int const at_once = static_cast<int>(std::max<std::size_t>(16, most_numbers / lane_size));
     for (int first = 0; first < points.width(); first += at_once) {
       int const width = std::min(at_once, points.width() - first);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/system/memory.hpp"
 #include "likelihood/trajectory.hpp"
 
 namespace sysid {
@@ -46,7 +47,7 @@ std::vector<std::vector<std::vector<double>>> PointwiseLikelihood::run(ConstLane
   int const last = end_;
   for (int first = 0; first < parameters.width(); first += densities_at_once) {
     int const width = std::min(densities_at_once, parameters.width() - first);
-    LaneArray out(last * channels(), width);
+    LaneArray out(recorded_numbers(last, channels()), width);
     records(parameters.columns(first, width), 0, last, out);
     for (int c = 0; c < channels(); ++c)
       for (int w = 0; w < width; ++w) {

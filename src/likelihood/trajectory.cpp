@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "core/numeric/normals.hpp"
@@ -240,18 +239,10 @@ std::vector<std::vector<double>> Trajectory::with_noise(LaneArray const& records
 }
 
 LaneArray Trajectory::no_records(int width) const {
-  std::int64_t const rows = std::int64_t{samples()} * static_cast<std::int64_t>(compiled_->records.size());
-  if (rows > std::numeric_limits<int>::max())
-    throw UserError({Severity::error,
-                     "E5003",
-                     fmt::format("{} samples of {} quantities are more numbers than a simulation records", samples(),
-                                 compiled_->records.size()),
-                     std::nullopt,
-                     {},
-                     "simulate fewer samples"});
+  int const rows = recorded_numbers(samples(), static_cast<int>(compiled_->records.size()));
   double const bytes = sizeof(double) * static_cast<double>(rows) * width;
   if (bytes > large) require_memory(fmt::format("a simulation of {} samples", samples()), bytes, "simulate fewer samples");
-  return {static_cast<int>(rows), width};
+  return {rows, width};
 }
 
 Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key, bool moments, int ahead) const {

@@ -1,8 +1,12 @@
 // Tables of uniforms: raw data leaves in, one row per step or sample out, by the same kernels that serve lanes.
 #include "simulate/schedule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "core/numeric/lanes.hpp"
 #include "core/text/diagnostic.hpp"
@@ -179,7 +183,16 @@ double Schedule::at_sample(UniformLeaf const& leaf, int sample) const {
 }
 
 UniformRows Schedule::tabulate_steps(UniformTable const& table) const {
-  return tabulate(table, (samples() - 1) * solver_.substeps, [this](UniformLeaf const& leaf, int row) {
+  std::int64_t const steps = std::int64_t{samples() - 1} * solver_.substeps;
+  if (steps > std::numeric_limits<int>::max())
+    throw UserError(
+        {Severity::error,
+         "E5003",
+         fmt::format("{} samples with {} steps between them are more steps than a simulation counts", samples(), solver_.substeps),
+         std::nullopt,
+         {},
+         "use fewer samples, or a smaller value of `substeps`"});
+  return tabulate(table, static_cast<int>(steps), [this](UniformLeaf const& leaf, int row) {
     return at_step(leaf, row / solver_.substeps, row % solver_.substeps);
   });
 }

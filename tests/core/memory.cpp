@@ -19,6 +19,12 @@ TEST_CASE("bytes are told in units of three digits at most") {
   CHECK(format_bytes(2.44e9) == "2.4 GB");
 }
 
+TEST_CASE("numbers of a simulation are counted, or refused where they are too many") {
+  CHECK(recorded_numbers(1000000, 2000) == 2000000000);
+  CHECK(recorded_numbers(0, 5) == 0);
+  CHECK_THROWS_AS(recorded_numbers(1000000, 2200), UserError);
+}
+
 TEST_CASE("more memory than there is is refused with both figures, a little is not") {
   CHECK(free_memory() > 1e6);
   CHECK_NOTHROW(require_memory("reading `a.csv`", 1000, "cut it"));

@@ -10,6 +10,7 @@
 
 #include "core/numeric/instruction_set.hpp"
 #include "core/numeric/random.hpp"
+#include "core/text/diagnostic.hpp"
 #include "program/interpreter/executor.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/systems.hpp"
@@ -69,6 +70,11 @@ std::vector<double> plain_duffing(Experiment const& record, double m, double c, 
 }
 
 }  // namespace
+
+TEST_CASE("more steps than can be counted are refused before their tables are made") {
+  SimulationProgram const program = compile(systems::duffing());
+  CHECK_THROWS_AS(Schedule(program, record(220000), {.substeps = 10000}), UserError);
+}
 
 TEST_CASE("trajectories equal a plain RK4 loop to rounding, sums a plain sum over them") {
   int const samples = 200, width = 5;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <limits>
 
@@ -54,6 +55,18 @@ std::string format_bytes(double bytes) {
     unit = larger;
   }
   return fmt::format("{:.{}f} {}", bytes, bytes < 9.95 && *unit != 'B' ? 1 : 0, unit);
+}
+
+int recorded_numbers(int samples, int quantities) {
+  std::int64_t const numbers = std::int64_t{samples} * quantities;
+  if (numbers > std::numeric_limits<int>::max())
+    throw UserError({Severity::error,
+                     "E5003",
+                     fmt::format("{} samples of {} quantities are more numbers than a simulation records", samples, quantities),
+                     std::nullopt,
+                     {},
+                     "use fewer samples"});
+  return static_cast<int>(numbers);
 }
 
 void require_memory(std::string const& what, double bytes, std::string const& help) {

@@ -14,4 +14,7 @@ std::string format_bytes(double bytes);
 /// UserError (E5003) where more is needed than there is. what: "reading `bench.csv`"; help: what to change.
 void require_memory(std::string const& what, double bytes, std::string const& help);
 
+/// Of each vector of parameters: the product. UserError (E5003) where it is beyond what rows of lanes are counted by.
+int recorded_numbers(int samples, int quantities);
+
 }  // namespace sysid

@@ -1,6 +1,7 @@
 // Records of the parametric model's trajectory program, as matrices.
 #include "likelihood/process/process_rows.hpp"
 
+#include "core/system/memory.hpp"
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
@@ -32,7 +33,8 @@ ProcessRecord::Records ProcessRecord::run(ConstLanes parameters) const {
   for (int r = 0; r < parameters.rows(); ++r)
     for (int w = 0; w < parameters.width(); ++w) result.parameters(r, w) = parameters(r, w);
   if (start_) start_->estimate(result.parameters);
-  result.values = LaneArray(samples() * static_cast<int>(model_->parametric()->records.size()), parameters.width());
+  int const rows = recorded_numbers(samples(), static_cast<int>(model_->parametric()->records.size()));
+  result.values = LaneArray(rows, parameters.width());
   simulator_.records(result.parameters, 0, samples(), result.values, result.outcome);
   return result;
 }

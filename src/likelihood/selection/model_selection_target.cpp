@@ -6,6 +6,7 @@
 
 #include "core/numeric/column_word.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/system/memory.hpp"
 #include "likelihood/selection/drawn_simulation.hpp"
 #include "likelihood/start_state.hpp"
 #include "simulate/thread_pool.hpp"
@@ -106,12 +107,12 @@ void ModelSelectionTarget::simulate_drawn(int model, int experiment, ConstLanes 
   Simulator const& recorder = part.recorders[static_cast<std::size_t>(experiment)];
   Schedule const& summed = part.simulators[static_cast<std::size_t>(experiment)].schedule();
   Experiment const& record = at(model).experiments[static_cast<std::size_t>(experiment)];
-  int const channels = sums.rows(), samples = summed.last_summed();
-  int const at_once = std::max(16, static_cast<int>(most_numbers / static_cast<std::size_t>(std::max(1, channels * samples))));
+  int const channels = sums.rows(), samples = summed.last_summed(), numbers = recorded_numbers(samples, channels);
+  int const at_once = std::max(16, static_cast<int>(most_numbers / static_cast<std::size_t>(std::max(1, numbers))));
   LaneArray const parameters = simulation_parameters(model, experiment, theta);
   for (int begin = 0; begin < theta.width(); begin += at_once) {
     int const width = std::min(at_once, theta.width() - begin);
-    LaneArray terms(channels * samples, width);
+    LaneArray terms(numbers, width);
     // A lane's numbers are those of its parameters, whatever lanes lie beside it.
     auto const redraw = [&](int sample, int lane, Lanes all) {
       for (int w = 0; w < all.width(); ++w) {
