@@ -44,12 +44,12 @@ Concerns places_outside(Eigen::MatrixXd const& inputs, Eigen::MatrixXd const& pl
     if (!(beyond > tolerated * width)) continue;
     Eigen::Index const count =
         (places.col(column).array() > high + tolerated * width || places.col(column).array() < low - tolerated * width).count();
-    concerns.push_back(
-        {.kind = Concern::Kind::far_outside,
-         .column = column,
-         .value = beyond / width,
-         .clause = fmt::format("{} of {} places lie outside the observations in input {}, by up to {:.3g} times their range", count,
-                               places.rows(), column + 1, beyond / width)});
+    std::string const far = width > 0 ? fmt::format("by up to {:.3g} times their range", beyond / width) : "which are all the same";
+    concerns.push_back({.kind = Concern::Kind::far_outside,
+                        .column = column,
+                        .value = beyond / width,
+                        .clause = fmt::format("{} of {} places lie outside the observations in input {}, {}", count, places.rows(),
+                                              column + 1, far)});
   }
   return concerns;
 }

@@ -20,7 +20,8 @@ struct Concern {
     jitter,            // value: what was added to the diagonal, relative to its mean
     no_convergence,    // value: evaluations
     restarts_differ,   // value: by how much the second best of several optima falls short, in log density
-    far_outside,       // column: an input beyond the observations' range; value: how far, in widths of that range
+    far_outside,       // column: an input beyond the observations' range; value: how far, in widths of that range; infinite where
+                       // all observations are at one place
   };
 
   Kind kind = Kind::not_finite;

@@ -229,6 +229,10 @@ TEST_CASE("equal inputs and places outside are found in the columns that are rea
   CHECK(concerns[0].column == 1);
   CHECK(concerns[0].value == doctest::Approx(1));
   CHECK(concerns[0].clause == "1 of 3 places lie outside the observations in input 2, by up to 1 times their range");
+  inputs.col(0).setConstant(1);
+  Concerns const constant = places_outside(inputs, places, {0});
+  REQUIRE(constant.size() == 1);
+  CHECK(constant[0].clause == "3 of 3 places lie outside the observations in input 1, which are all the same");
 }
 
 TEST_CASE("both routes end at the same optimum") {

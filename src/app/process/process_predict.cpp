@@ -1,6 +1,8 @@
 // `predict` with Gaussian processes: of each draw the functions that its samples leave possible, along other records.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/process/process_draws.hpp"
 #include "app/process/process_scores.hpp"
 #include "app/process/process_trajectories.hpp"
@@ -90,8 +92,11 @@ class ProcessPredict {
           {FindingCode::far_outside,
            Severity::warning,
            {each.process, each.input},
-           fmt::format("the input `{}` of `{}` lies outside its fitted range by up to {:.2g} times the width of that range{}",
-                       each.input, each.process, each.widths, where),
+           std::isfinite(each.widths)
+               ? fmt::format("the input `{}` of `{}` lies outside its fitted range by up to {:.2g} times the width of that range{}",
+                             each.input, each.process, each.widths, where)
+               : fmt::format("the input `{}` of `{}` differs from the one value that it had at all fitted samples{}", each.input,
+                             each.process, where),
            "do not rely on the band there: the process returns to zero, and its band follows from its prior, not from "
            "data"});
   }

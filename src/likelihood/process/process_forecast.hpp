@@ -24,7 +24,8 @@ class ProcessForecast {
   /// function, drawn at each sample by itself, noisy ones have the noise added. NaN where the vector has none.
   void run(ConstLanes fitted, ConstLanes own, int count, StreamKey key, std::uint64_t first, Trajectory::Result& result) const;
 
-  /// Per channel and input of its processes, how far places lie outside the inputs fitted, in widths of their range; 0: inside.
+  /// Per channel and input of its processes, how far places lie outside the inputs fitted, in widths of their range; 0: inside;
+  /// infinite where that was the same at all samples.
   struct Reach {
     std::string process, input;
     double widths = 0;
