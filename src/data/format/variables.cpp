@@ -136,15 +136,14 @@ class VariableRecord final : public RecordFile {
   }
 
   std::optional<std::string> unit(std::string const& column) const override {
-    auto const choice = choice_of(column);
+    auto const choice = choice_in_file(column);
     Variable const* const variable = choice ? find(choice->path) : nullptr;
     if (variable == nullptr || variable->unit.empty()) return std::nullopt;
     return variable->unit.substr(0, variable->unit.find(" since "));  // CF: seconds since 2024-05-01
   }
 
   std::vector<double> numbers(std::string const& column, std::optional<Span> mention) const override {
-    // A name with brackets in it goes before a choice of rows.
-    auto const choice = find(column) != nullptr ? std::optional(Choice{column}) : choice_of(column);
+    auto const choice = choice_in_file(column);
     Variable const* const variable = choice ? find(choice->path) : nullptr;
     if (variable == nullptr) {
       if (Variable const* const whole = refused_around(column)) throw refused(whole->path, whole->refused, mention);
@@ -179,6 +178,10 @@ class VariableRecord final : public RecordFile {
   Variable const* find(std::string const& path) const {
     auto const found = std::find_if(variables_.begin(), variables_.end(), [&](Variable const& each) { return each.path == path; });
     return found == variables_.end() ? nullptr : &*found;
+  }
+  /// A name with brackets in it goes before a choice of rows.
+  std::optional<Choice> choice_in_file(std::string const& column) const {
+    return find(column) != nullptr ? std::optional(Choice{column}) : choice_of(column);
   }
   UserError refused(std::string const& column, std::string const& reason, std::optional<Span> mention) const {
     return UserError(data_errors::no_column_of_numbers(name_, column, reason, columns_, mention));

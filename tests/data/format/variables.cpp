@@ -20,6 +20,7 @@
 #include "core/numeric/random.hpp"
 #include "core/system/files.hpp"
 #include "core/text/diagnostic.hpp"
+#include "data/format/hdf5_links.hpp"
 #include "data/format/open_record.hpp"
 #include "data/format/own_process.hpp"
 #include "data/look/record_look.hpp"
@@ -293,6 +294,34 @@ TEST_CASE("variables of NetCDF files of every kind are read by their paths, scal
   }
 }
 
+TEST_CASE("a NetCDF variable with brackets in its name is read in the unit that the file states") {
+  Scratch const scratch("brackets.nc");
+  char const* const names[] = {"u (top)", "acc[x]", "w (1, :)"};
+  double const samples[] = {1, 2, 4};
+  int file = -1, rows = -1;
+  REQUIRE(nc_create(scratch.path.c_str(), NC_CLOBBER | NC_NETCDF4, &file) == NC_NOERR);
+  nc_def_dim(file, "row", 3, &rows);
+  for (char const* const name : names) {
+    int id = -1;
+    REQUIRE(nc_def_var(file, name, NC_DOUBLE, 1, &rows, &id) == NC_NOERR);
+    nc_put_att_text(file, id, "units", 2, "mm");
+    nc_put_var_double(file, id, samples);
+  }
+  nc_close(file);
+  for (char const* const name : names) {
+    CAPTURE(name);
+    CHECK(open_record(scratch.path, {})->unit(name) == "mm");
+    RecordRequest request;
+    request.path = scratch.path;
+    request.step = 1;
+    request.measured = {ColumnRequest{name, {}, unit_atom("m"), {}}};
+    Diagnostics diagnostics;
+    auto const record = load(request, diagnostics);
+    REQUIRE(record);
+    CHECK(record->measured.at(0)[2] == doctest::Approx(4e-3));
+  }
+}
+
 TEST_CASE("a NetCDF variable is read without its sign and within its valid range, and not with a scale that is text") {
   Scratch const path("valid.nc");
   int file = -1, rows = -1, id = -1;
@@ -434,6 +463,19 @@ TEST_CASE("a link of an HDF5 file to another one is named, and a damaged file is
     FAIL("a cut file was read");
   } catch (UserError const& error) {
     CHECK(contains(error.diagnostic().message, "is damaged"));
+  }
+}
+
+TEST_CASE("no bytes behind the end are read where a link message is cut") {
+  std::string const message("\x01\x0c\x40\0\0\0\0\0\0\0\0\x05"
+                            "force\x0c\0\0gone.h5\0/f\0",
+                            31);
+  CHECK(external_link_in(message) == "gone.h5");
+  // A piece of memory of its own for each: the sanitizers hear of a byte that is read behind it.
+  for (std::size_t size = 0; size < message.size(); ++size) {
+    CAPTURE(size);
+    std::vector<char> const cut(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(size));
+    CHECK(external_link_in(std::string_view(cut.data(), cut.size())).empty());
   }
 }
 
