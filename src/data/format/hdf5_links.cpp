@@ -35,7 +35,7 @@ class LinkMessage {
 
   /// Little-endian; beyond the end no number that is looked for.
   std::uint64_t number(std::size_t size) {
-    if (size > bytes_.size() - at_) return ~std::uint64_t{0};
+    if (at_ > bytes_.size() || size > bytes_.size() - at_) return ~std::uint64_t{0};
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < size; ++i)
       value |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes_[at_ + i])) << (8 * i);

@@ -467,9 +467,10 @@ TEST_CASE("a link of an HDF5 file to another one is named, and a damaged file is
 }
 
 TEST_CASE("no bytes behind the end are read where a link message is cut") {
-  std::string const message("\x01\x0c\x40\0\0\0\0\0\0\0\0\x05"
-                            "force\x0c\0\0gone.h5\0/f\0",
-                            31);
+  std::string const message(
+      "\x01\x0c\x40\0\0\0\0\0\0\0\0\x05"
+      "force\x0c\0\0gone.h5\0/f\0",
+      31);
   CHECK(external_link_in(message) == "gone.h5");
   // A piece of memory of its own for each: the sanitizers hear of a byte that is read behind it.
   for (std::size_t size = 0; size < message.size(); ++size) {
