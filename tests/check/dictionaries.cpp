@@ -185,6 +185,20 @@ TEST_CASE("a discovery has a selector and a form of derivatives, stated or by de
   CHECK(stated.seed == 7);
 }
 
+TEST_CASE("the noise of a temperature counts degrees, whatever the zero points") {
+  for (std::string const channel : {"degC", "K"})
+    for (std::string const given : {"0.5", "0.5 [degC]", "0.5 [K]", "0.5 [delta_degC]", "0.9 [degF]"}) {
+      CAPTURE(channel);
+      CAPTURE(given);
+      auto const file = checked("dictionary terms {\ninput x [N]\nstate T [" + channel +
+                                "] = temperature\ntarget = x\nterms = T, T'\n}\n"
+                                "data d {\nfile \"d.csv\"\ntime t\ninput x = x [N] hold zero_order\nmeasure temperature = T\n}\n"
+                                "found = discover terms from d with ard, noise(temperature = " +
+                                given + ")\n");
+      CHECK(std::get<DiscoverTask>(file.tasks.at(0).what).noise.at(0).value() == near(0.5));
+    }
+}
+
 TEST_CASE("what a discovery cannot be is refused with its code") {
   auto const said = [](std::string const& line) {
     return messages("dictionary terms {\ninput x [N]\nstate y [m] = displacement\ntarget = x\nterms = y, y'\n}\n" + data +

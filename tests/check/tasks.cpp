@@ -148,6 +148,24 @@ TEST_CASE("a number in a unit of another kind is refused where one is wanted") {
     CHECK_MESSAGE(shown.find(each) != std::string::npos, shown);
 }
 
+TEST_CASE("the sd of a generated temperature counts degrees, whatever the zero points") {
+  for (char const* const input : {"degC", "K"}) {
+    CAPTURE(input);
+    std::string const room = "model room {\ninput T [" + std::string(input) +
+                             "]\nstate y [m]\ninitial y = 0\ny' = 0 [m/s]\nobserve d ~ normal(y, sd = 1)\n}\n"
+                             "made = simulate room with input T = ";
+    auto const generated = [&](std::string const& signal) {
+      return std::get<SimulateTask>(checked(room + signal + ", samples = 8, rate = 9\n").tasks.at(0).what).inputs.at(0).arguments;
+    };
+    CHECK(generated("gaussian(mean = 293 [K], sd = 5 [degC])").at("sd") == near(5));
+    CHECK(generated("gaussian(mean = 293 [K], sd = 5 [delta_degC])").at("sd") == near(5));
+    CHECK(generated("gaussian(mean = 293 [K], sd = 5)").at("sd") == near(5));
+    CHECK(generated("sine(amplitude = 9 [degF], frequency = 1)").at("amplitude") == near(5));
+    // A mean has its zero point.
+    CHECK(generated("gaussian(mean = 20 [degC], sd = 5)").at("mean") == near(std::string(input) == "K" ? 293.15 : 20));
+  }
+}
+
 TEST_CASE("a multisine has harmonics in its band, below half the rate") {
   auto const band = [](std::string const& limits) {
     return refused("simulate m with values(k = 1, s = 1), input x = multisine(sd = 1, " + limits +

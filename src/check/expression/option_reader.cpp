@@ -84,28 +84,41 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
 std::optional<double> OptionReader::number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit,
                                            double least, double most, bool whole, std::optional<OtherPlace> const& elsewhere) {
   auto const value = scope_.expression(tree);
+  return value ? number_of(*value, tree.span, name, unit, least, most, whole, elsewhere) : std::nullopt;
+}
+
+std::optional<double> OptionReader::width(ast::Expression const& tree, std::string const& name, std::optional<Unit> unit,
+                                          double least) {
+  auto value = scope_.expression(tree);
   if (!value) return std::nullopt;
-  if (unit && value->kind == Typed::Kind::known)
-    if (auto refused = refuse_number(tree.span, errors::named(name), value->unit, *unit)) {
-      if (elsewhere && !refuse_number(tree.span, errors::named(name), value->unit, elsewhere->unit))
-        refused->help = elsewhere->help;
+  value->unit.offset = 0;
+  if (unit) unit = difference(*unit);
+  return number_of(*value, tree.span, name, unit, least, 1e300, false, std::nullopt);
+}
+
+std::optional<double> OptionReader::number_of(Typed const& value, Span place, std::string const& name,
+                                              std::optional<Unit> const& unit, double least, double most, bool whole,
+                                              std::optional<OtherPlace> const& elsewhere) {
+  if (unit && value.kind == Typed::Kind::known)
+    if (auto refused = refuse_number(place, errors::named(name), value.unit, *unit)) {
+      if (elsewhere && !refuse_number(place, errors::named(name), value.unit, elsewhere->unit)) refused->help = elsewhere->help;
       diagnostics_.add(std::move(*refused));
       return std::nullopt;
     }
-  auto const constant = graph_.constant_value(adapt(graph_, *value, unit));
+  auto const constant = graph_.constant_value(adapt(graph_, value, unit));
   if (!constant) {
-    diagnostics_.add(errors::constant_needed(tree.span, errors::named(name)));
+    diagnostics_.add(errors::constant_needed(place, errors::named(name)));
     return std::nullopt;
   }
-  bool const scaled = value->kind == Typed::Kind::known && value->unit.scale != 1;  // 100 [percent] is no count
+  bool const scaled = value.kind == Typed::Kind::known && value.unit.scale != 1;  // 100 [percent] is no count
   if (whole && (scaled || *constant != std::floor(*constant))) {
-    double const nearest = std::round(scaled ? *constant / value->unit.scale : *constant);
-    diagnostics_.add(errors::option_kind(tree.span, name, {"a whole number"},
-                                         fmt::format("{} = {:.0f}", name, std::clamp(nearest, least, most))));
+    double const nearest = std::round(scaled ? *constant / value.unit.scale : *constant);
+    diagnostics_.add(
+        errors::option_kind(place, name, {"a whole number"}, fmt::format("{} = {:.0f}", name, std::clamp(nearest, least, most))));
     return std::nullopt;
   }
   if (!(*constant >= least && *constant <= most)) {
-    diagnostics_.add(errors::option_range(tree.span, name, *constant, least, most));
+    diagnostics_.add(errors::option_range(place, name, *constant, least, most));
     return std::nullopt;
   }
   return constant;

@@ -40,6 +40,8 @@ class OptionReader {
   /// A number known before the run, SI. unit: absent where nothing is declared, and anything goes.
   std::optional<double> number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit, double least,
                                double most, bool whole = false, std::optional<OtherPlace> const& elsewhere = std::nullopt);
+  /// A number >= 0 that is a difference of two, such as an sd: of temperatures it has no zero point, so that 0.5 [degC] is 0.5 K.
+  std::optional<double> width(ast::Expression const& tree, std::string const& name, std::optional<Unit> unit, double least = 0);
   void whole(ast::Option const& option, std::string const& name, double least, double most, int& place);
   /// yes or no.
   void flag(ast::Option const& option, std::string const& name, bool& place);
@@ -60,6 +62,8 @@ class OptionReader {
   void unknown(ast::Option const& option, std::vector<std::string> const& known);
 
  private:
+  std::optional<double> number_of(Typed const& value, Span place, std::string const& name, std::optional<Unit> const& unit,
+                                  double least, double most, bool whole, std::optional<OtherPlace> const& elsewhere);
   std::optional<bool> yes_or_no(ast::Expression const& tree, std::string const& name);
   void setting(ast::Argument const& argument, SettingRow const& row, Settings& place);
 

@@ -95,10 +95,12 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
       else
         diagnostics.add(errors::option_choice(argument.value.span, name, word, input_rule_names()));
     } else {
-      std::optional<Unit> unit = place->unit == "input" ? input.unit : unit_of(place->unit);
-      if (unit && (name == "sd" || name == "amplitude")) unit = difference(*unit);
+      std::optional<Unit> const unit = place->unit == "input" ? input.unit : unit_of(place->unit);
+      bool const is_width = name == "sd" || name == "amplitude";
       double const least = name == "mean" || name == "value" || name == "phase" ? -1e300 : 0;
-      if (auto const value = reader.number(argument.value, name, unit, least, 1e300)) result.arguments[name] = *value;
+      auto const value =
+          is_width ? reader.width(argument.value, name, unit) : reader.number(argument.value, name, unit, least, 1e300);
+      if (value) result.arguments[name] = *value;
     }
   }
   for (SignalArgument const& argument : row->arguments) {

@@ -62,10 +62,8 @@ void TaskChecker::noise(ast::Call const& call, CheckedDictionary const& dictiona
   task.noise.resize(known.size());
   each_named(call, errors::named("dictionary", dictionary.name), "channel", known,
              [&](ast::Argument const& argument, std::size_t index) {
-               std::optional<Unit> unit = dictionary.measured.channels[index].unit;
-               if (unit) unit->offset = 0;  // an sd is a difference
-               if (auto const value = options_.number(argument.value, argument.name->text, unit, 1e-300, 1e300))
-                 task.noise[index] = *value;
+               std::optional<Unit> const& unit = dictionary.measured.channels[index].unit;
+               if (auto const value = options_.width(argument.value, argument.name->text, unit, 1e-300)) task.noise[index] = *value;
              });
 }
 

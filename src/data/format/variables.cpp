@@ -13,6 +13,7 @@
 #include "core/system/memory.hpp"
 #include "core/text/words.hpp"
 #include "data/format/own_process.hpp"
+#include "data/format/record_libraries.hpp"
 #include "data/table/cell_errors.hpp"
 #include "data/table/file_errors.hpp"
 
