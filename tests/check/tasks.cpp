@@ -1,4 +1,5 @@
 // Tasks: what their options mean in numbers, and what is refused.
+#include "check/checked/harmonics.hpp"
 #include "checking.hpp"
 
 using namespace sysid;
@@ -178,6 +179,31 @@ TEST_CASE("a multisine has harmonics in its band, below half the rate") {
   CHECK(band("lowest = 1.01, highest = 1.09").find("error[E6101]: no harmonic of the record (a multiple of 0.1 Hz)") !=
         std::string::npos);
   CHECK(band("lowest = 0, highest = 0.05").find("error[E6101]: no harmonic") != std::string::npos);
+}
+
+TEST_CASE("a multisine has the harmonics on the limits of its band, whatever the rounding") {
+  auto const of = [](double lowest, double highest) { return harmonics_in_band(lowest, highest, 1000, 0.01); };
+  CHECK(of(0.1, 0.3).first == 1);
+  CHECK(of(0.1, 0.3).last == 3);
+  CHECK(of(0.3, 0.3).first == 3);  // 3 * 0.1 is more than 0.3
+  CHECK(of(0.3, 0.3).last == 3);
+  CHECK(of(0, 0.7).last == 7);
+  CHECK(of(0.31, 0.39).empty());
+  CHECK(of(1e300, 49).empty());
+  CHECK(harmonics_in_band(0, 4.99999, 100, 0.1).last == 49);
+  CHECK(refused("simulate m with values(k = 1, s = 1), input x = multisine(sd = 1, lowest = 0.3, highest = 0.3), samples = 1000, "
+                "rate = 100")
+            .empty());
+}
+
+TEST_CASE("a sine at or above half the rate is refused: its samples are those of another") {
+  auto const said = [](std::string const& frequency) {
+    return refused("simulate m with values(k = 1, s = 1), input x = sine(amplitude = 1, frequency = " + frequency +
+                   "), samples = 100, rate = 1000 [Hz]");
+  };
+  CHECK(said("499.9").empty());
+  CHECK(said("900 [Hz]").find("error[E6101]: this sine has 900 Hz, but half the sampling rate is 500 Hz") != std::string::npos);
+  CHECK(said("0.5 [kHz]").find("error[E6101]") != std::string::npos);
 }
 
 TEST_CASE("a misspelt name of each kind is answered with the one that is near") {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "check/checked/harmonics.hpp"
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/fourier.hpp"
 #include "core/system/interrupt.hpp"
@@ -15,27 +16,19 @@ namespace {
 constexpr int many = 1 << 16;  // samples between two looks at the signals
 
 std::vector<double> multisine(InputGenerator const& generator, int samples, double step, Stream& stream) {
-  double const resolution = 1 / (samples * step), lowest = generator.arguments.at("lowest"),
-               highest = generator.arguments.at("highest");
-  auto const refuse = [](std::string message) {
-    return UserError(
-        {Severity::error, "E6101", std::move(message), std::nullopt, {}, "change `lowest`, `highest`, `samples` or `rate`"});
-  };
-  if (highest >= 0.5 / step) throw refuse("the multisine reaches beyond half the sampling rate");
+  HarmonicRange const band = harmonics_in_band(generator.arguments.at("lowest"), generator.arguments.at("highest"), samples, step);
+  if (band.empty()) throw InternalError("a multisine without a harmonic was let through");
   auto const size = static_cast<std::size_t>(samples);
   // sin(2 pi k i/N + phase) is the imaginary part of exp(i phase) exp(2 pi i k i/N).
   std::vector<double> re(size, 0.0), values(size, 0.0);
-  int harmonics = 0;
-  for (int k = 1; k * resolution <= highest; ++k) {
-    if (k * resolution < lowest) continue;
-    if (++harmonics % many == 0) stop_if_interrupted();
+  for (int k = band.first; k <= band.last; ++k) {
+    if (k % many == 0) stop_if_interrupted();
     double const phase = 2 * std::numbers::pi * stream.uniform();
     re[static_cast<std::size_t>(k)] = elementary::cos(phase);
     values[static_cast<std::size_t>(k)] = elementary::sin(phase);
   }
-  if (harmonics == 0) throw refuse("no harmonic of the record lies in the band of the multisine");
   add_harmonics(re, values, &stop_if_interrupted);
-  double const amplitude = generator.arguments.at("sd") * std::sqrt(2.0 / harmonics);
+  double const amplitude = generator.arguments.at("sd") * std::sqrt(2.0 / (band.last - band.first + 1));
   for (double& value : values) value = generator.arguments.at("mean") + amplitude * value;
   return values;
 }

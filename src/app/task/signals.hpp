@@ -12,7 +12,7 @@ namespace sysid {
 ///   sine       mean + amplitude sin(2 pi frequency t + phase)
 ///   multisine  equal amplitudes, random phases, on the harmonics of the record inside [lowest, highest], scaled to the population
 ///   sd constant   value
-/// UserError when a multisine has no harmonic inside its band or reaches beyond half the sampling rate.
+/// The checker has refused a multisine without a harmonic in its band, and whatever reaches half the sampling rate.
 std::vector<double> generate(InputGenerator const& generator, int samples, double step, StreamKey key);
 
 }  // namespace sysid

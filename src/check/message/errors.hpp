@@ -196,6 +196,7 @@ Diagnostic average_of_two_units(ast::Name const& fit, Unit const& unit, std::str
 Diagnostic average_redrawn(Span option);
 Diagnostic fixed_parameter(ast::Name const& name, Span declaration);
 Diagnostic value_missing(Span span, Names const& parameters);
+Diagnostic sine_beyond_half_rate(Span span, double frequency, double half_rate);
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate);
 Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, double resolution);
 /// random: its states are.

@@ -265,6 +265,15 @@ Diagnostic value_missing(Span span, Names const& parameters) {
                                  fmt::format("write `values({} = ..., ...)`", parameters.front())));
 }
 
+Diagnostic sine_beyond_half_rate(Span span, double frequency, double half_rate) {
+  return error(
+      "E6101", span,
+      fmt::format("this sine has {:.6g} Hz, but half the sampling rate is {:.6g} Hz: its samples would be those of a sine of "
+                  "a lower frequency",
+                  frequency, half_rate),
+      "reduce `frequency` or raise `rate`");
+}
+
 Diagnostic multisine_beyond_half_rate(Span span, double highest, double half_rate) {
   return error("E6101", span,
                fmt::format("this multisine reaches {:.6g} Hz, but half the sampling rate is {:.6g} Hz", highest, half_rate),

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "check/checked/harmonics.hpp"
 #include "check/message/errors.hpp"
 #include "core/setting/table.hpp"
 
@@ -114,16 +115,15 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
 }
 
 void check_band(InputGenerator const& generator, SimulateTask const& task, Span place, Diagnostics& diagnostics) {
+  double const half_rate = 0.5 / task.step;
+  if (generator.kind == InputGenerator::Kind::sine && beyond_half_rate(generator.arguments.at("frequency"), task.step))
+    diagnostics.add(errors::sine_beyond_half_rate(place, generator.arguments.at("frequency"), half_rate));
   if (generator.kind != InputGenerator::Kind::multisine) return;
   double const lowest = generator.arguments.at("lowest"), highest = generator.arguments.at("highest");
-  double const resolution = 1 / (task.samples * task.step);
-  if (highest >= 0.5 / task.step) {
-    diagnostics.add(errors::multisine_beyond_half_rate(place, highest, 0.5 / task.step));
-    return;
-  }
-  double const last = std::floor(highest / resolution);
-  if (last < 1 || last * resolution < lowest)
-    diagnostics.add(errors::multisine_without_harmonic(place, lowest, highest, resolution));
+  if (beyond_half_rate(highest, task.step))
+    diagnostics.add(errors::multisine_beyond_half_rate(place, highest, half_rate));
+  else if (harmonics_in_band(lowest, highest, task.samples, task.step).empty())
+    diagnostics.add(errors::multisine_without_harmonic(place, lowest, highest, 1 / (task.samples * task.step)));
 }
 
 }  // namespace sysid

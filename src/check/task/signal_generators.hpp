@@ -20,7 +20,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
 std::vector<std::string> signal_names();
 std::vector<std::string> signal_arguments(std::string_view signal);
 
-/// A multisine has a harmonic k/(samples*step) in its band, and none at or above half the rate.
+/// A multisine has a harmonic k/(samples*step) in its band, and neither it nor a sine reaches half the rate.
 void check_band(InputGenerator const& generator, SimulateTask const& task, Span place, Diagnostics& diagnostics);
 
 }  // namespace sysid

@@ -3,9 +3,12 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <set>
+#include <vector>
 
 #include "app/running.hpp"
+#include "app/task/signals.hpp"
 
 using namespace sysid;
 
@@ -22,6 +25,19 @@ truth = simulate lag with values(tau = 1), input x = gaussian(sd = 1), samples =
   CHECK(text.find("\nt,x_input,x,x_clean\n") != std::string::npos);
   CHECK(text.find("# column x_input") != std::string::npos);
   CHECK(text.find("# column x: measured; x_clean: without noise") != std::string::npos);
+}
+
+TEST_CASE("a multisine of one harmonic on both limits of its band is that sine") {
+  InputGenerator const generator{
+      InputGenerator::Kind::multisine, {{"sd", 1.0}, {"lowest", 0.3}, {"highest", 0.3}, {"mean", 0.0}}, InputRule::band_limited};
+  std::vector<double> const values = generate(generator, 1000, 0.01, {1, Purpose::input, 0, 0});
+  REQUIRE(values.size() == 1000);
+  // Samples of cos(a), cos(a + b), cos(a + 2 b): the middle one times 2 cos b is the sum of the others.
+  double const factor = 2 * std::cos(2 * 3.14159265358979324 * 0.3 * 0.01);
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) CHECK(std::fabs(values[i - 1] + values[i + 1] - factor * values[i]) < 1e-9);
+  double squares = 0;
+  for (double const value : values) squares += value * value;
+  CHECK(squares / 1000 == doctest::Approx(1));
 }
 
 TEST_CASE("a forced simulation that finds the disk full leaves the results of before, one that is written replaces them") {

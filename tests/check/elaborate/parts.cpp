@@ -117,7 +117,7 @@ TEST_CASE("a task uses a model with arguments, and its name says which") {
       "second = fit bouc_wen(n = 2) to bench with map\nfit bouc_wen to bench with map\n"
       "made = simulate bouc_wen(n = 2) with values(A = 1, alpha = 1, beta = 1, noise = 1), input displacement = sine(amplitude = "
       "1, frequency = 1), "
-      "samples = 10, rate = 1 [Hz], seed = 1\n";
+      "samples = 10, rate = 10 [Hz], seed = 1\n";
   CheckedFile const file = checked(law + tasks);
   REQUIRE(file.models.size() == 2);
   CHECK(file.models[0].name == "bouc_wen(n = 2)");
