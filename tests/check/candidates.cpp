@@ -139,6 +139,29 @@ TEST_CASE("a distance of the user's means the same in every candidate") {
   CHECK(value(file, task, 2, 1, 400, 3) == 0);
 }
 
+TEST_CASE("a distance of absolute temperatures means the same whatever their zero points, which differences do not have") {
+  auto const text = [](std::string const& unit) {
+    return "model a { input u [delta_degC]; parameter c [degC] ~ uniform(0, 9)\nobserve d [degC] ~ normal(c + u, sd = 1) }\n"
+           "model b { input u [delta_degC]; parameter c [" +
+           unit + "] ~ uniform(273, 282)\nobserve d [" + unit +
+           "] ~ normal(c + u, sd = 1) }\ncandidates both { a; b }\n"
+           "data room { file \"d.csv\"; input u = u; measure d = T }\n"
+           "s = select both to room with abc_smc, distance = (residual(d)/measured(d))^2\n";
+  };
+  auto const file = checked(text("K"));
+  SelectTask const& task = select_task(file);
+  auto const distance = [&](std::size_t candidate, double measured, double parameter) {
+    Model const& model = file.models[static_cast<std::size_t>(task.fits[candidate].model)];
+    return model.graph.evaluate(task.distance.expressions.at(candidate).at(0), [&](NodeId id) {
+      LeafKind const kind = model.graph[id].leaf_kind;
+      return kind == LeafKind::measured ? measured : kind == LeafKind::parameter ? parameter : 0.0;
+    });
+  };
+  CHECK(distance(0, 20, 15) == near(0.0625));
+  CHECK(distance(1, 293.15, 288.15) == doctest::Approx(0.0625).epsilon(1e-9));
+  CHECK(messages(text("delta_degC")).find("error[E6508]: `d` is not the same quantity in `a` and in `b`") != std::string::npos);
+}
+
 TEST_CASE("distances of two units are shown side by side") {
   std::string const shown =
       refused("select linear to both with abc_smc, distance = (abs(residual(displacement)), residual(force)^2)");

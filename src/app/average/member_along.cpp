@@ -29,23 +29,10 @@ std::string unit_of(Quantity const& quantity) {
   return quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit->text;
 }
 
-/// value -> offset + slope value.
-struct Conversion {
-  double offset = 0, slope = 1;
-
-  Conversion(Quantity const& from, Quantity const& to) : offset(to.from_si(from.to_si(0))) {
-    slope = to.from_si(from.to_si(1)) - offset;
-  }
-  void apply(std::vector<std::vector<double>>& trajectories) const {
-    if (offset == 0 && slope == 1) return;
-    for (std::vector<double>& trajectory : trajectories)
-      for (double& value : trajectory) value = offset + slope * value;
-  }
-};
-
-/// Of one dimension; a quantity without a unit is a pure number.
+/// Of one dimension, and not a temperature beside a difference of two; a quantity without a unit is a pure number.
 bool comparable(Quantity const& one, Quantity const& other) {
-  return one.unit.value_or(Unit{}).dimension == other.unit.value_or(Unit{}).dimension;
+  Unit const of_one = one.unit.value_or(Unit{}), of_other = other.unit.value_or(Unit{});
+  return of_one.dimension == of_other.dimension && !zero_against_difference(of_one, of_other);
 }
 
 /// Trajectories below this number get several draws of the noise each, so that there are `noisy_draws` at least: the quantiles
@@ -127,7 +114,7 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
     Quantity const* to = quantity_of(units, from.name, is_channel);
     quantity.comparable = to != nullptr && comparable(*own, *to);
     if (!quantity.comparable) to = own;
-    Conversion const conversion(*own, *to);
+    BetweenQuantities const conversion(*own, *to);
     quantity.unit = unit_of(*to);
     conversion.apply(quantity.values);
     if (is_channel) {
@@ -136,10 +123,10 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
       quantity.noise_mean = std::move(result.noise_mean[c]);
       quantity.noise_variance = std::move(result.noise_variance[c]);
       quantity.log_density =
-          log_densities(pointwise, densities[c], result.solved, from.channel, out.experiment.time.size(), conversion.slope);
+          log_densities(pointwise, densities[c], result.solved, from.channel, out.experiment.time.size(), conversion.slope());
       for (auto* each : {&quantity.noisy, &quantity.noise_mean}) conversion.apply(*each);
       for (std::vector<double>& each : quantity.noise_variance)
-        for (double& variance : each) variance *= conversion.slope * conversion.slope;
+        for (double& variance : each) variance *= conversion.slope() * conversion.slope();
     }
     out.quantities.push_back(std::move(quantity));
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "app/selection/selection_trajectories.hpp"
 #include "app/session/made_from.hpp"
@@ -143,12 +144,9 @@ class PredictSelection {
         TrajectoryQuantity const& joining = other.trajectory->quantities()[o];
         if (joining.channel < 0 || joining.name != quantities[q].name) continue;
         Channel const& from = other.model().channels[static_cast<std::size_t>(joining.channel)];
-        bool const same = from.from_si(1) == to.from_si(1) && from.from_si(0) == to.from_si(0);
-        for (std::vector<double> values : other.result.drawn(o)) {
-          if (!same)
-            for (double& value : values) value = to.from_si(from.to_si(value));
-          all.drawn(q).push_back(std::move(values));
-        }
+        std::vector<std::vector<double>> values = other.result.drawn(o);
+        BetweenQuantities(from, to).apply(values);
+        std::move(values.begin(), values.end(), std::back_inserter(all.drawn(q)));
       }
     }
   }

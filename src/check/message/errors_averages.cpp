@@ -44,10 +44,12 @@ Diagnostic average_without_channel(ast::Name const& fit, std::string const& chan
 
 Diagnostic average_of_two_units(ast::Name const& fit, Unit const& unit, std::string const& channel, std::string const& other,
                                 Unit const& other_unit) {
-  return about({fit.text, channel, other}, error("E6706", fit.span,
-                                                 fmt::format("`{1}` is {2} in `{0}`, but {4} in `{3}`: it is not the same quantity",
-                                                             fit.text, channel, measure(unit), other, measure(other_unit)),
-                                                 "observe it in units of the same dimension in all models"));
+  return about({fit.text, channel, other},
+               error("E6706", fit.span,
+                     fmt::format("`{1}` is {2} in `{0}`, but {4} in `{3}`: it is not the same quantity", fit.text, channel,
+                                 measure(unit), other, measure(other_unit)),
+                     zero_against_difference(unit, other_unit) ? "observe the temperature or a difference of two in all models"
+                                                               : "observe it in units of the same dimension in all models"));
 }
 
 Diagnostic average_redrawn(Span option) {

@@ -72,10 +72,12 @@ Diagnostic candidate_without_channel(Span candidate, std::string const& model, S
 
 Diagnostic channel_of_two_units(Span one, std::string const& model, Unit const& unit, Span other, std::string const& other_model,
                                 Unit const& other_unit, std::string const& name) {
-  return about({name, other_model, model},
-               conflict("E6508", one, measure(unit), other, measure(other_unit),
-                        fmt::format("`{}` is not the same quantity in `{}` and in `{}`", name, other_model, model),
-                        "observe it in units of the same dimension in all candidates"));
+  return about(
+      {name, other_model, model},
+      conflict("E6508", one, measure(unit), other, measure(other_unit),
+               fmt::format("`{}` is not the same quantity in `{}` and in `{}`", name, other_model, model),
+               zero_against_difference(unit, other_unit) ? "observe the temperature or a difference of two in all candidates"
+                                                         : "observe it in units of the same dimension in all candidates"));
 }
 
 Diagnostic distance_choice(Span span, std::string const& given, std::string const& channel) {

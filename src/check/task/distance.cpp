@@ -241,11 +241,19 @@ class DistanceChecker {
       else if (node.operation != Operation::leaf)
         made[id] = model.graph.rebuild(node, made[node.a], made[node.b], made[node.c]);
       else if (node.leaf_kind == LeafKind::measured)
-        made[id] = model.graph.leaf(LeafKind::measured, static_cast<int>(channel - model.channels.begin()));
+        made[id] = from_zero_of_first(model, *channel,
+                                      model.graph.leaf(LeafKind::measured, static_cast<int>(channel - model.channels.begin())));
       else  // what stands for predicted(channel)
-        made[id] = channel->noise.row->centre(model.graph, channel->noise.arguments);
+        made[id] = from_zero_of_first(model, *channel, channel->noise.row->centre(model.graph, channel->noise.arguments));
     }
     return made[root];
+  }
+
+  // A temperature counts from the zero point of its model's unit, and the expression has that of the first candidate.
+  NodeId from_zero_of_first(Model& model, Channel const& own, NodeId node) const {
+    Channel const& first = channel(index_of(own.name));
+    double const shift = own.unit && first.unit ? own.unit->offset - first.unit->offset : 0;
+    return shift == 0 ? node : model.graph.add(node, model.graph.constant(shift));
   }
 
   struct Item {

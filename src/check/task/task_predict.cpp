@@ -244,7 +244,7 @@ void TaskChecker::suit_channels(std::vector<FitTask const*> const& fits, DataBlo
       if (own == nullptr)
         diagnostics_.add(errors::average_without_channel(name(k), measured.channel, name(first).text, block.name));
       else if (Unit const of_own = own->unit.value_or(Unit{}), of_other = other->unit.value_or(Unit{});
-               of_own.dimension != of_other.dimension)
+               of_own.dimension != of_other.dimension || zero_against_difference(of_own, of_other))
         diagnostics_.add(errors::average_of_two_units(name(k), of_own, measured.channel, name(first).text, of_other));
     }
   }

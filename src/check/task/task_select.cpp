@@ -54,7 +54,8 @@ std::vector<std::string> TaskChecker::common_channels(CandidateSet const& set, s
         Channel const* same = find(model_of(other), channel.name);
         if (same == nullptr)
           diagnostics_.add(errors::candidate_without_channel(other.span, other.name, channel.span, one.name, channel.name));
-        else if (same->unit && channel.unit && same->unit->dimension != channel.unit->dimension)
+        else if (same->unit && channel.unit &&
+                 (same->unit->dimension != channel.unit->dimension || zero_against_difference(*same->unit, *channel.unit)))
           diagnostics_.add(errors::channel_of_two_units(same->span, other.name, *same->unit, channel.span, one.name, *channel.unit,
                                                         channel.name));
         else

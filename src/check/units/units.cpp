@@ -124,13 +124,6 @@ Unit difference(Unit unit) {
   return unit;
 }
 
-bool zero_against_difference(Unit const& a, Unit const& b) {
-  auto const measures_differences = [](Unit const& unit) {
-    return unit.offset == 0 && (unit.text.empty() || unit.text.starts_with("delta_"));
-  };
-  return a.dimension == b.dimension && ((a.offset != 0 && measures_differences(b)) || (b.offset != 0 && measures_differences(a)));
-}
-
 std::optional<Diagnostic> refuse_number(Span span, errors::Subject const& what, Unit const& given, Unit const& wanted) {
   if (given.dimension != wanted.dimension || zero_against_difference(given, wanted))
     return errors::number_of_other_kind(span, what, given, wanted);

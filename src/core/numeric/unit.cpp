@@ -326,6 +326,13 @@ bool cycles_against_radians(Unit const& a, Unit const& b) {
   return a.dimension == b.dimension && std::fabs(ratio - elementary::log(2 * std::numbers::pi)) < 1e-9;
 }
 
+bool zero_against_difference(Unit const& a, Unit const& b) {
+  auto const measures_differences = [](Unit const& unit) {
+    return unit.offset == 0 && (unit.text.empty() || unit.text.starts_with("delta_"));
+  };
+  return a.dimension == b.dimension && ((a.offset != 0 && measures_differences(b)) || (b.offset != 0 && measures_differences(a)));
+}
+
 std::string format_dimension(Dimension const& dimension) {
   std::string above, below;
   int factors_below = 0;

@@ -58,6 +58,10 @@ double convert(double value, Unit const& from, Unit const& to);
 /// where the user means 2 pi; or [rpm] and [1/min], where it has 2 pi and the user means 1. Such a conversion must be refused.
 bool cycles_against_radians(Unit const& a, Unit const& b);
 
+/// Whether one has a zero point and the other measures differences of temperature ([delta_degC], or a product): neither converts to
+/// the other. [K] measures both.
+bool zero_against_difference(Unit const& a, Unit const& b);
+
 /// Canonical SI text, readable as a unit expression: "kg m/s^2", "kg/(m s^2)", "m^(1/2)"; "1" when dimensionless.
 std::string format_dimension(Dimension const& dimension);
 
