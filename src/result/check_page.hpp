@@ -88,7 +88,7 @@ struct PriorPage {
 struct InformationPage {
   int draws = 0;                    // that were looked at
   int rank_low = 0, rank_high = 0;  // of the slopes, over draws
-  int rows = 0;                     // only so many scored rows were looked at; 0: all
+  int rows = 0;                     // only so many rows with a scored sample were looked at; 0: all
   std::string noise;                // "beta = 3.2e10 1/m^2": at which the noise was taken
   struct Line {
     std::string name, unit;

@@ -8,6 +8,7 @@
 #include "app/preflight/check_process.hpp"
 #include "app/preflight/preflight.hpp"
 #include "core/text/words.hpp"
+#include "likelihood/first_rows.hpp"
 
 namespace sysid {
 namespace {
@@ -23,6 +24,7 @@ std::string measured_channels(Preflight const& preflight) {
 
 // Why slopes cannot be taken; empty when they can.
 std::string obstacle(Preflight const& preflight, PriorDraws const& prior, std::vector<int> const& sized) {
+  if (preflight.output().places().empty()) return "no row that was examined has a sample that can be predicted";
   auto const responds = [](AssessedParameter const& each) { return each.role == ParameterRole::response; };
   if (std::none_of(prior.coordinates.begin(), prior.coordinates.end(), responds)) return "no sampled parameter enters the response";
   if (sized.size() < 2) return "fewer than two prior draws predict a response of the measured size";
@@ -85,7 +87,7 @@ void run_preflight(Session& session, FitTask const& what, std::vector<Experiment
   page.information.emplace();
   page.information->draws = static_cast<int>(responses.size());
   page.information->noise = prior.noise;
-  if (preflight.shortened) page.information->rows = static_cast<int>(Preflight::most_scored);
+  if (preflight.shortened) page.information->rows = most_scored_rows(preflight.experiments);
   std::vector<LocalSlopes> locals;
   for (LocalResponse const& each : responses) locals.push_back(each.slopes);
   describe_information(prior.coordinates, locals, measured_channels(preflight), !preflight.model().inputs.empty(), page);

@@ -16,10 +16,18 @@ constexpr std::size_t most_steps = 1U << 20;  // of one trajectory
 constexpr int enough_candidates = 12;         // fewer than that cost more than a refinement less
 constexpr double most_work = 1.2e9;           // operations of the equations at the steps of all trajectories: about a second
 
-// The experiment up to its so many scored rows: enough to look ahead, and done in a second.
+// The experiment up to its so many scored samples: enough to look ahead, and done in a second. A sensor may be switched on late,
+// and where samples are few the rows behind the first one end it too.
 Experiment shortened_to_scored(Experiment const& experiment) {
-  std::size_t rows = 0, counted = 0;
-  while (rows < experiment.time.size() && counted < Preflight::most_scored) counted += experiment.scored[rows++] != 0;
+  constexpr std::size_t most_rows = 10 * Preflight::most_scored;
+  std::size_t rows = 0, counted = 0, since_first = 0;
+  while (rows < experiment.time.size() && counted < Preflight::most_scored && since_first < most_rows) {
+    bool any = false;
+    for (std::size_t c = 0; c < experiment.measured.size(); ++c) any = any || experiment.is_scored(c, rows);
+    counted += any ? 1 : 0;
+    since_first += counted > 0 ? 1 : 0;
+    ++rows;
+  }
   return slice(experiment, 0, static_cast<int>(rows));
 }
 

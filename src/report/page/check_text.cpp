@@ -160,7 +160,8 @@ std::string information_text(InformationPage const& page) {
   if (std::any_of(page.lines.begin(), page.lines.end(), [](InformationPage::Line const& line) { return line.relative; }))
     lines.push_back("percentages are relative to the value of the parameter; factor 5 means times or divided by 5");
   if (page.rows > 0)
-    lines.push_back(fmt::format("over the first {} scored rows only; the whole record contains more information", page.rows));
+    lines.push_back(
+        fmt::format("over the first {} rows with a sample only; the whole record contains more information", page.rows));
   for (std::string const& direction : page.null_directions) lines.push_back(direction);
   for (std::string const& ridge : page.ridges) lines.push_back(ridge);
   out += entry("", lines);

@@ -511,6 +511,30 @@ TEST_CASE("of a large model less is looked at, and what is left out is said") {
   CHECK(check_text(result.page).find("no errors or warnings in the parts that were checked") != std::string::npos);
 }
 
+TEST_CASE("a channel that is measured late is looked at where it is measured") {
+  for (int const begin : {0, 10500}) {
+    CAPTURE(begin);
+    TemporaryFolder folder;
+    std::string table = "t,x,y\n";
+    double state = 0;
+    for (int i = 0; i < 12000; ++i) {
+      double const input = i / 50 % 2 == 0 ? 1 : -1;
+      table += fmt::format("{},{},{}\n", 0.01 * i, input, i < begin ? "" : fmt::format("{:.6f}", state));
+      state += 0.01 * (input - state);
+    }
+    write_file(folder.path() / "late.csv", table);
+    CheckResult const result = checked(
+        folder.path() / "late.sysid",
+        "model lag { input x; state s; initial s = 0; parameter tau [s] ~ log_uniform(0.1, 10); tau*s' = x - s\n"
+        "observe y ~ normal(s, sd = 0.1) }\n"
+        "data late { file \"late.csv\"; time t [s]; input x = x hold linear; measure y = y }\nf = fit lag to late with map\n");
+    PreflightPage const& page = preflight(result, "f");
+    CHECK_MESSAGE(page.not_examined.empty(), page.not_examined);
+    REQUIRE(page.information);
+    CHECK(page.information->rows == (begin == 0 ? 10000 : 0));  // 0: all
+  }
+}
+
 TEST_CASE("a prior that reaches where the model diverges is said with the term that does") {
   std::string const text =
       with(with(shipped("duffing/duffing.sysid"), "log_uniform(5e8, 5e10)", "uniform(-5e12, -5e11)"), truth_task(), "");
