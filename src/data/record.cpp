@@ -48,8 +48,8 @@ bool same_unit(Unit const& a, Unit const& b) {
          (same(a.offset, b.offset) || is_interval(a) || is_interval(b));
 }
 
-/// `F [kN]` that the data block has in N. What is no unit of the kind that is wanted may be no unit at all, as in `sensor (A)` and
-/// `T (C)`; two letters in square brackets are one.
+/// `F [kN]` that the data block has in N. What is no unit of the kind that is wanted may be no unit at all, as in `sensor (A)`; two
+/// letters in square brackets are one.
 void refuse_other_unit_in_name(RecordFile const& file, std::string const& column, Unit const& stated, std::optional<Span> mention) {
   auto const split = split_name(column);
   std::optional<Unit> const unit = split ? unit_of_text(split->unit, stated) : std::nullopt;
@@ -72,6 +72,11 @@ void refuse_unit_left_out(RecordFile const& file, std::string const& column, Uni
       file.row_count().has_value(), mention));
 }
 
+/// Of another kind of quantity than the data block has. A text table need not be read with its units; other files have no way out.
+bool wrong_unit_of_file(RecordFile const& file, Unit const& in_file, Unit const& stated) {
+  return !file.row_count() && in_file.dimension != stated.dimension;
+}
+
 /// With the unit that the file states, where the data block has it read and gives none itself; the two must agree.
 template <class Request>
 Request with_unit_of_file(RecordFile const& file, Request request) {
@@ -82,7 +87,7 @@ Request with_unit_of_file(RecordFile const& file, Request request) {
   std::optional<Unit> const& wanted = request.unit ? request.unit : request.declared;
   std::optional<Unit> const unit = wanted ? unit_of_text(*text, *wanted) : unit_of_text(*text);
   if (request.unit) {
-    if (unit && !same_unit(*unit, *request.unit))
+    if (unit && !same_unit(*unit, *request.unit) && !wrong_unit_of_file(file, *unit, *request.unit))
       throw UserError(data_errors::unit_differs(file.name(), request.column, request.unit->text, unit->text, request.mention));
     return request;
   }
@@ -96,6 +101,14 @@ Request with_unit_of_file(RecordFile const& file, Request request) {
   // A file that calls differences of temperatures degC does not mean that they begin at 273.15 K.
   if (request.declared && is_interval(*request.declared)) request.unit->offset = 0;
   return request;
+}
+
+/// Where the data block has another kind of quantity than the file says, and the data block is believed.
+std::optional<UnitInName> wrong_unit_in_file(RecordFile const& file, ColumnRequest const& request) {
+  auto const text = file.unit(request.column);
+  std::optional<Unit> const unit = text && request.unit ? unit_of_text(*text, *request.unit) : std::nullopt;
+  if (!unit || !wrong_unit_of_file(file, *unit, *request.unit)) return std::nullopt;
+  return UnitInName{.column = request.column, .in_name = *text, .read_in = request.unit->text, .stated = true, .of_file = true};
 }
 
 /// Where neither the file nor its name in brackets states a unit. usual: of the time, whose name may be a unit in a word.
@@ -197,6 +210,7 @@ class Columns {
  private:
   void note_unit(ColumnRequest const& column, std::optional<Unit> const& usual = std::nullopt) {
     if (auto other = other_unit_in_name(file_, column, usual)) other_units_.push_back(std::move(*other));
+    if (auto wrong = wrong_unit_in_file(file_, column)) other_units_.push_back(std::move(*wrong));
   }
   /// Numbers that count something else than the unit they are taken for.
   void refuse_no_seconds(std::vector<double> const& written, ColumnRequest const& column) const {

@@ -47,9 +47,10 @@ struct RecordRequest {
 struct UnitInName {
   std::string column;
   std::string in_name, read_in;
-  bool stated = false;  // the data block has it so
-  bool cycles = false;  // one counts cycles and the other radians
-  bool word = false;    // `time hours`
+  bool stated = false;   // the data block has it so
+  bool cycles = false;   // one counts cycles and the other radians
+  bool word = false;     // `time hours`
+  bool of_file = false;  // the unit that the file states, of another kind of quantity
 };
 
 /// Rows without a value of an input. The input bridges them by a straight line, which no run may use.

@@ -15,6 +15,7 @@ namespace sysid {
 namespace {
 
 std::string cure_of(UnitInName const& found) {
+  if (found.of_file) return "check that this is the column of the right quantity; if it is, the unit in the file is wrong";
   std::string const named = column_text(found.column, found.in_name), read = column_text(found.column, found.read_in);
   if (found.cycles)
     return fmt::format(
@@ -52,13 +53,23 @@ std::string times_of(UnusedTime const& found) {
 
 Findings find_other_units(ExperimentData const& data) {
   Findings findings;
-  for (UnitInName const& each : data.record.other_units)
+  for (UnitInName const& each : data.record.other_units) {
+    if (each.of_file) {
+      findings.push_back({FindingCode::unit_in_file,
+                          Severity::warning,
+                          {each.column, data.use.name},
+                          fmt::format("column `{}` of {} is read in {}, but the file states its unit as {}", each.column,
+                                      data.use.name, each.read_in, each.in_name),
+                          cure_of(each)});
+      continue;
+    }
     findings.push_back({FindingCode::unit_in_name,
                         each.stated && !each.word ? Severity::note : Severity::warning,
                         {each.column, data.use.name},
                         fmt::format("column `{}` of {} is read in {}, but its name {} {}", each.column, data.use.name, each.read_in,
                                     each.word ? "is that of a unit," : "ends in", each.in_name),
                         cure_of(each)});
+  }
   return findings;
 }
 

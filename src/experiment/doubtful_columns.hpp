@@ -5,6 +5,7 @@
 
 namespace sysid {
 
+/// `unit_in_file` for each column of a file without `read` that states a unit of another kind of quantity than the data block;
 /// `unit_in_name` for each column whose name ends in another unit of the same kind than that in which it is read: a note where the
 /// data block states this unit, else a warning; always one where the name of the time is the unit in a word, `minutes`.
 Findings find_other_units(ExperimentData const& data);

@@ -42,6 +42,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::column_used_twice, "column_used_twice", warning},
     {FindingCode::samples_repeated, "samples_repeated", error},
     {FindingCode::unit_in_name, "unit_in_name", warning_or_note},
+    {FindingCode::unit_in_file, "unit_in_file", warning},
     {FindingCode::samples_far_off, "samples_far_off", warning},
     {FindingCode::explains_little, "explains_little", error_or_warning},
     {FindingCode::worse_than_the_mean, "worse_than_the_mean", error_or_warning},

@@ -41,6 +41,7 @@ enum class FindingCode {
   column_used_twice,
   samples_repeated,
   unit_in_name,
+  unit_in_file,
   samples_far_off,
   explains_little,
   worse_than_the_mean,

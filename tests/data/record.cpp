@@ -360,6 +360,7 @@ TEST_CASE("a unit in the name of a column goes against another one of the data b
   CHECK(loaded(with("F [kN]", "kN")).measured[0][1] == 2000);
   CHECK(loaded(with("sensor (A)", "V")).measured[0][1] == 3);
   CHECK(loaded(with("T (C)", "degC")).rows() == 2);
+  CHECK(errors(with("T (C)", "K")).at(0).help.find("`[degC]`") != std::string::npos);
   CHECK(loaded(with("acc (g)", "g_n")).rows() == 2);
   CHECK(loaded(request(file.path(), {}, {"F [kN]"})).measured[0][1] == 2);
 }

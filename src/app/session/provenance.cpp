@@ -130,7 +130,8 @@ std::string samples_digest(Experiment const& experiment, Model const& model) {
 bool tells_of_data(FindingCode code) {
   return code == FindingCode::looks_missing || code == FindingCode::column_constant || code == FindingCode::time_gap ||
          code == FindingCode::sensor_stuck || code == FindingCode::times_rounded || code == FindingCode::rate_contradicted ||
-         code == FindingCode::column_used_twice || code == FindingCode::samples_repeated || code == FindingCode::unit_in_name;
+         code == FindingCode::column_used_twice || code == FindingCode::samples_repeated || code == FindingCode::unit_in_name ||
+         code == FindingCode::unit_in_file;
 }
 
 void look_at_data(CheckedFile const& file, ExperimentData const& data, Model const& model, Findings& findings) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <span>
 
 #include "core/text/words.hpp"
 
@@ -28,6 +29,8 @@ constexpr Spelling of_accelerations[] = {{"g", "g_n"},        {"G", "g_n"},     
                                          {"gs", "g_n"},       {"mg", "mg_n"},     {"mG", "mg_n"},     {"mgn", "mg_n"},
                                          {"ug", "ug_n"},      {"µg", "ug_n"},     {"μg", "ug_n"},     {"milli-g", "mg_n"},
                                          {"milli g", "mg_n"}, {"millig", "mg_n"}, {"micro-g", "ug_n"}};
+/// No coulomb and no farad.
+constexpr Spelling of_temperatures[] = {{"C", "degC"}, {"F", "degF"}};
 constexpr Spelling unit_signs[] = {{"µ", "u"},   {"μ", "u"},   {"²", "^2"},    {"³", "^3"},  {"·", " "},  {"⋅", " "},
                                    {"Ω", "ohm"}, {"Ω", "ohm"}, {"°C", "degC"}, {"°", "deg"}, {"**", "^"}, {"%", "percent"}};
 
@@ -157,13 +160,18 @@ std::optional<Unit> unit_of_text(std::string_view text) {
 
 std::optional<Unit> unit_of_text(std::string_view text, Unit const& wanted) {
   auto unit = unit_of_text(text);
-  std::optional<Unit> const gravity = unit_atom("g_n");
-  if (!gravity || gravity->dimension != wanted.dimension || (unit && unit->dimension == wanted.dimension)) return unit;
+  if (unit && unit->dimension == wanted.dimension) return unit;
   std::string_view bare = trimmed(text);
   for (std::string_view const pair : {"[]", "()", "<>", "{}"})
     if (bare.size() > 2 && bare.front() == pair[0] && bare.back() == pair[1]) bare = trimmed(bare.substr(1, bare.size() - 2));
-  for (Spelling const& each : of_accelerations)
-    if (bare == each.written) unit = unit_atom(each.meant);
+  auto const take = [&](std::span<Spelling const> spellings) {
+    for (Spelling const& each : spellings) {
+      std::optional<Unit> const meant = bare == each.written ? unit_atom(each.meant) : std::nullopt;
+      if (meant && meant->dimension == wanted.dimension) unit = meant;
+    }
+  };
+  take(of_accelerations);
+  take(of_temperatures);
   return unit;
 }
 

@@ -12,7 +12,7 @@ namespace sysid {
 /// for what is no unit. A dash or a 1 is the unit of plain numbers.
 std::optional<Unit> unit_of_text(std::string_view text);
 /// The same where a quantity of the kind of `wanted` is: of an acceleration `g` is no gram but the standard gravity, `g_n` in the
-/// language.
+/// language; of a temperature `C` is no coulomb but `degC`.
 std::optional<Unit> unit_of_text(std::string_view text, Unit const& wanted);
 
 /// `2.041 N`, `0.57346 mm`: the number and what stands behind it as its unit; nothing for any other text.

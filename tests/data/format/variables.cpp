@@ -322,6 +322,43 @@ TEST_CASE("a NetCDF variable with brackets in its name is read in the unit that 
   }
 }
 
+TEST_CASE("a unit of the file that cannot be meant gives way to the one of the data block, and to a temperature") {
+  Scratch const scratch("wrong_units.nc");
+  std::pair<char const*, char const*> const variables[] = {{"T", "C"}, {"x", "1"}, {"y", "mm"}};
+  double const samples[] = {1, 2, 4};
+  int file = -1, rows = -1;
+  REQUIRE(nc_create(scratch.path.c_str(), NC_CLOBBER | NC_NETCDF4, &file) == NC_NOERR);
+  nc_def_dim(file, "row", 3, &rows);
+  for (auto const& [name, unit] : variables) {
+    int id = -1;
+    REQUIRE(nc_def_var(file, name, NC_DOUBLE, 1, &rows, &id) == NC_NOERR);
+    nc_put_att_text(file, id, "units", std::strlen(unit), unit);
+    nc_put_var_double(file, id, samples);
+  }
+  nc_close(file);
+  Diagnostics diagnostics;
+  auto const read = [&](char const* name, char const* stated, char const* declared) {
+    RecordRequest request;
+    request.path = scratch.path;
+    request.step = 1;
+    request.measured = {ColumnRequest{name, {}, unit_atom(declared), {}}};
+    if (*stated != '\0') request.measured[0]->unit = unit_atom(stated);
+    diagnostics = Diagnostics();
+    return load(request, diagnostics);
+  };
+  auto const kelvin = read("T", "", "K"), celsius = read("T", "degC", "degC"), length = read("x", "mm", "m");
+  REQUIRE((kelvin && celsius && length));
+  CHECK(kelvin->measured[0][2] == doctest::Approx(277.15));
+  CHECK(celsius->measured[0][2] == 4);
+  CHECK(celsius->other_units.empty());
+  CHECK(length->measured[0][2] == doctest::Approx(4e-3));
+  REQUIRE(length->other_units.size() == 1);
+  CHECK(length->other_units[0].of_file);
+  CHECK(length->other_units[0].in_name == "1");
+  CHECK_FALSE(read("y", "m", "m"));  // of one kind: one of the two is wrong
+  CHECK(diagnostics.all().at(0).code == "E4026");
+}
+
 TEST_CASE("a NetCDF variable is read without its sign and within its valid range, and not with a scale that is text") {
   Scratch const path("valid.nc");
   int file = -1, rows = -1, id = -1;
