@@ -158,6 +158,7 @@ class Results(Desk):
                 call(draws=-1)
         with self.assertRaisesRegex(TypeError, "draws is a whole number"):
             fit.groups(draws=2.5)
+        self.assertTrue(hasattr(forecast, "predictions"))
         forecast.to_netcdf("forecast.nc")
         again = pickle.loads(pickle.dumps(forecast))
         self.assertTrue(again.predictions.equals(forecast.predictions))
@@ -342,9 +343,36 @@ choice = select shapes to bench with reversible_jump, seed = 1
         self.assertFalse(hasattr(choice, "posterior"))
         with self.assertRaisesRegex(sysid.Error, "`choice` has no groups"):
             choice.groups()
+        pathlib.Path("line.sysid").write_text(text + "forecast = predict choice on bench with draws(20), seed = 1\n")
+        model = sysid.load("line.sysid")
+        model.select(output="results", force=True)
+        forecast = model.predict(output="results")
+        for call in (forecast.groups, lambda: forecast.to_netcdf("none.nc")):
+            with self.assertRaisesRegex(sysid.Error, "`forecast` has no groups: it is a prediction of a selection"):
+                call()
+        self.assertFalse(hasattr(forecast, "predictions"))
+        self.assertFalse(pathlib.Path("none.nc").exists())
         self.assertIn("line.sysid", repr(sysid.load("line.sysid")))
         with self.assertRaisesRegex(sysid.Error, "no fit task"):
             sysid.load("line.sysid").log_density([1.0])
+
+    def test_an_average_has_no_groups(self):
+        text = DECAY.partition("forecast ")[0] + textwrap.dedent(
+            """\
+            other = fit decay to bench.train with mh(samples = 400, burn_in = 100, thin = 1, chains = 2), seed = 2
+            both  = predict posterior, other on bench.test with draws(20), weights = equal, seed = 1
+            """
+        )
+        pathlib.Path("decay.sysid").write_text(text)
+        model = sysid.load("decay.sysid")
+        for fit in ("posterior", "other"):
+            model.fit(fit, output="results")
+        both = model.predict(output="results")
+        for call in (both.groups, lambda: both.to_netcdf("none.nc")):
+            with self.assertRaisesRegex(sysid.Error, "`both` has no groups: it averages several fits"):
+                call()
+        with self.assertRaisesRegex(AttributeError, "averages several fits"):
+            both.predictions
 
     def test_discover(self):
         text = """dictionary decaying {

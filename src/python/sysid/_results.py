@@ -70,8 +70,8 @@ class Result:
     The groups of a fit are xarray data sets with the names of ArviZ's InferenceData, made when they are first asked for:
     ``posterior``, ``sample_stats``, ``log_likelihood``, ``posterior_predictive``, ``observed_data``, ``constant_data``, ``prior``,
     ``prior_predictive``, and ``predictions`` where a prediction lies beside it; of an interrupted fit the first two. A prediction
-    has ``predictions`` and ``predictions_constant_data``. A result
-    stays what it is when tasks are run again, and can be pickled, with its files.
+    of a fit has ``predictions`` and ``predictions_constant_data``; an average of fits and a prediction of a selection have no groups,
+    but tables. A result stays what it is when tasks are run again, and can be pickled, with its files.
     """
 
     def __init__(
@@ -144,24 +144,39 @@ class Result:
     def _verb(self) -> str:
         return self.summary.get("verb", "")
 
+    def _why_no_groups(self) -> Optional[str]:
+        """Of a prediction that is not of one fit, whose draws the groups are made of."""
+        if self._verb != "predict":
+            return None
+        summary = self.summary
+        if "average" in summary:
+            return "it averages several fits, which have groups of their own"
+        source = self._run.path / summary["versions"].get("made_from", "") / "summary.json"
+        if source.is_file() and json.loads(source.read_text(encoding="utf-8")).get("verb") == "select":
+            return "it is a prediction of a selection"
+        return None
+
     def _inference_data(self, draws: int) -> tuple:
         run, task = self._run, self.task
-        if self._verb == "predict":
+        why = self._why_no_groups()
+        if self._verb == "predict" and why is None:
             # The fit's file has them; of this prediction alone where nothing else lies beside it.
             task = self.summary["versions"].get("made_from", "")
             run = Folder()
             for each in (task, self.task):
                 take_along(self._run, each, run)
-        if self._verb not in ("fit", "predict") or not (run.path / task).is_dir():
+        if why is None and (self._verb not in ("fit", "predict") or not (run.path / task).is_dir()):
+            why = "it is neither a fit nor a prediction whose fit is in the same folder of results"
+        if why is not None:
             raise Error(
-                f"sysid: error: `{self.task}` has no groups: it is neither a fit nor a prediction whose fit is in the same folder of results\n"
+                f"sysid: error: `{self.task}` has no groups: {why}\n"
                 f"help: its tables are {', '.join(name for name in self.files if name.endswith('.csv'))}"
             )
         asked = _engine.Asked(output=str(run.path))
         return _engine.inference_data(self._file, str(run.path / task), asked, 0 if self.interrupted else draws)
 
     def groups(self, draws: int = 200) -> dict[str, "xarray.Dataset"]:
-        """All groups by their names; of a prediction ``predictions`` and ``predictions_constant_data``. draws: how many of the stored
+        """All groups by their names; of a prediction of a fit ``predictions`` and ``predictions_constant_data``. draws: how many of the stored
         draws are simulated once more for likelihoods and predictive groups, all at most; 0: none, and no such groups."""
         draws = whole(draws, "draws", 10**6)
         if draws not in self._groups:
@@ -180,6 +195,8 @@ class Result:
             raise AttributeError(f"a result has no {name!r}")
         if self._verb not in ("fit", "predict"):
             raise AttributeError(f"a {self._verb} result has no group {name!r}")
+        if (why := self._why_no_groups()) is not None:
+            raise AttributeError(f"this result has no group {name!r}: {why}")
         groups = self.groups()
         if name not in groups:
             raise AttributeError(f"this result has no group {name!r}; it has {', '.join(groups)}")
