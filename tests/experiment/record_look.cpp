@@ -153,6 +153,30 @@ TEST_CASE("lines below the table are counted, and the numbers of a receiver's cl
   CHECK(record_text(without).find("left out") == std::string::npos);
 }
 
+TEST_CASE("each of several readings that are offered reads the file, with its encoding and its stamps") {
+  for (bool const latin : {true, false}) {
+    CAPTURE(latin);
+    std::string text = latin ? "t;y_\xb5m\n" : "t;y\n";
+    for (int i = 0; i < 10; ++i) text += fmt::format("{};1,{}\n", latin ? i : 1714500000 + i, 125 + 37 * i);
+    TemporaryFile const file(text);
+    RecordLook const look = look_at_record(file.path());
+    REQUIRE(look.readings.size() == 2);
+    CHECK(look.readings[0] == look.reading);
+    std::string const first = look.reading.substr(5);
+    REQUIRE(look.block.find(first) != std::string::npos);
+    for (std::string const& reading : look.readings) {
+      CAPTURE(reading);
+      CHECK(reading.find(latin ? "encoding = latin1" : "stamp = seconds") != std::string::npos);
+      std::string block = look.block, messages;
+      block.replace(block.find(first), first.size(), reading.substr(5));
+      auto const record = read_by(block, messages);
+      CAPTURE(messages);
+      REQUIRE(record);
+      CHECK(record->time.back() - record->time.front() == 9);
+    }
+  }
+}
+
 TEST_CASE("durations as MATLAB writes them are the time") {
   TemporaryFile const file("Time,y\n0 sec,1.5\n0.01 sec,2\n0.02 sec,2.5\n0.03 sec,2\n");
   RecordLook const look = look_at_record(file.path());

@@ -33,6 +33,7 @@ namespace {
 /// Rules for a text, and what was seen that the block states in other words.
 struct Chosen {
   ReadingRules rules;
+  std::vector<ReadingRules> others;          // that the question leaves open
   std::string time;                          // the column with stamps
   std::map<std::string, std::string> units;  // of a line of units, by column
 };
@@ -66,7 +67,7 @@ Chosen choose_rules(std::string const& path, std::string const& text, RecordLook
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
     for (ReadingRules& rules : proposal->rules) rules.columns = distinct_names(names);
-  Chosen chosen{proposal->rules.front(), std::move(time), {}};
+  Chosen chosen{proposal->rules.front(), {}, std::move(time), {}};
   // Units of a line stand in the block, where they are seen and can be changed.
   if (chosen.rules.units == UnitsPlace::line) {
     Table const table = Table::parse_as_told(path, text, chosen.rules);
@@ -83,8 +84,7 @@ Chosen choose_rules(std::string const& path, std::string const& text, RecordLook
   }
   look.lines_below = lines_below(text, chosen.rules.last_value);
   look.question = proposal->question;
-  for (ReadingRules const& rules : proposal->rules) look.readings.push_back(reading_statement(rules));
-  look.reading = look.readings.front();
+  chosen.others.assign(proposal->rules.begin() + 1, proposal->rules.end());
   return chosen;
 }
 
@@ -138,6 +138,9 @@ class Looking {
       made.unit = column.unit;
       column = std::move(made);
     }
+    look_.reading = reading_statement(chosen_.rules);
+    look_.readings = {look_.reading};
+    for (ReadingRules const& each : chosen_.others) look_.readings.push_back(reading_statement(each));
     look_.block = paste_block(look_);
   }
 
@@ -154,8 +157,7 @@ class Looking {
       if (text) chosen_ = choose_rules(path_, *text, look_);
       if (text && *encoding != Encoding::utf8 && !marked) {
         chosen_.rules.encoding = *encoding;
-        look_.reading = reading_statement(chosen_.rules);
-        if (!look_.readings.empty()) look_.readings.front() = look_.reading;
+        for (ReadingRules& each : chosen_.others) each.encoding = *encoding;
       }
     }
     file_ = open_record(path_, chosen_.rules);
@@ -199,8 +201,6 @@ class Looking {
         if (std::find(marks.begin(), marks.end(), mark) == marks.end()) marks.push_back(std::move(mark));
       }
     if (chosen_.rules.missing.empty()) return;
-    look_.reading = reading_statement(chosen_.rules);
-    look_.readings = {look_.reading};
     file_ = open_record(path_, chosen_.rules);
     for (std::size_t c = 0; c < look_.columns.size(); ++c)
       if (look_.columns[c].unread.empty()) look_.values[c] = file_->numbers(look_.columns[c].name);
@@ -295,29 +295,36 @@ class Looking {
   /// Numbers that are stamps, where all of them can be read so. stamps: the likeliest first; empty: they are none.
   bool read_stamps(std::string const& column, std::vector<std::string> const& stamps) {
     if (stamps.empty()) return false;
-    std::vector<std::string> readings;
-    ReadingRules rules = chosen_.rules;
-    for (std::string const& stamp : stamps) {
-      rules.stamp = stamp;
-      readings.push_back(reading_statement(rules));
+    ReadingRules const numbers = chosen_.rules;
+    if (!take_stamp(column, stamps.front(), chosen_.rules, &look_.times)) return false;
+    file_ = open_record(path_, chosen_.rules);
+    for (ReadingRules& each : chosen_.others) take_stamp(column, in_decimal(stamps.front(), numbers, each), each, nullptr);
+    if (stamps.size() > 1 && look_.question.empty()) {
+      look_.question = fmt::format("`{}` may have hours, minutes and seconds or hours and minutes", column);
+      for (std::size_t i = 1; i < stamps.size(); ++i) {
+        chosen_.others.push_back(chosen_.rules);
+        chosen_.others.back().stamp = stamps[i];
+      }
     }
-    rules.stamp = stamps.front();
-    std::unique_ptr<RecordFile> file = open_record(path_, rules);
+    look_.time.stamps = look_.time.since_first = true;
+    return true;
+  }
+  /// The stamp of the used reading, as another one that the question leaves open writes its decimals.
+  static std::string in_decimal(std::string stamp, ReadingRules const& used, ReadingRules const& other) {
+    std::replace(stamp.begin(), stamp.end(), used.decimal, other.decimal);
+    return stamp;
+  }
+  /// False, and nothing changed, where the column cannot be read so. times: where they go; may be null.
+  bool take_stamp(std::string const& column, std::string const& stamp, ReadingRules& rules, std::vector<double>* times) const {
+    ReadingRules with_stamp = rules;
+    with_stamp.stamp = stamp;
     try {
-      look_.times = file->times(column);
+      std::vector<double> read = open_record(path_, with_stamp)->times(column);
+      if (times != nullptr) *times = std::move(read);
     } catch (UserError const&) {
       return false;
     }
-    chosen_.rules = std::move(rules);
-    file_ = std::move(file);
-    look_.reading = readings.front();
-    if (stamps.size() > 1 && look_.question.empty()) {
-      look_.question = fmt::format("`{}` may have hours, minutes and seconds or hours and minutes", column);
-      look_.readings = std::move(readings);
-    } else if (!look_.readings.empty()) {
-      look_.readings.front() = look_.reading;
-    }
-    look_.time.stamps = look_.time.since_first = true;
+    rules = std::move(with_stamp);
     return true;
   }
   void look_at_numbers(std::vector<double> const& values, double scale) {
