@@ -183,6 +183,30 @@ TEST_CASE("a prediction and a track show no priors, and a track draws nothing") 
   CHECK(has(page, "class=\"part verdict doubtful\""));
 }
 
+TEST_CASE("the page of a crosscheck speaks of its two fits, and of no bands") {
+  Report report = example::duffing(20);
+  report.verb = "crosscheck";
+  report.draws = {};
+  report.summary.clear();
+  report.predictions.clear();
+  report.tables = {{"both back ends", "", {"quantity", "mh", "nuts"}, {{"k", "1.0", "1.1"}}}};
+  report.verdict = "mh and nuts agree";
+  report.findings.clear();
+  report.ledger = {};
+  report.ledger.add_solves(10);
+  report.ledger.add_failure(FailureClass::non_finite, "k*y", 0, {});
+  std::string page = report_html(report, {});
+  CHECK(has(page, "The back ends agree, as far as this comparison can show"));
+  CHECK(has(page, ">Both back ends</h2>"));
+  CHECK(has(page, "Parameters whose simulation fails are rejected"));
+  CHECK(has(page, "give the same result"));
+  CHECK(!has(page, "The bands"));
+  report.findings = {{FindingCode::backends_disagree, Severity::error, {"k"}, "the means of `k` differ", "run both longer"}};
+  page = report_html(report, {});
+  CHECK(has(page, "Until this is fixed, do not rely on the draws of either back end."));
+  CHECK(!has(page, "the bands below"));
+}
+
 TEST_CASE("rows at which a change was found are upright lines") {
   Report report = example::duffing(40);
   PredictedQuantity& state = report.predictions[0].quantities[1];

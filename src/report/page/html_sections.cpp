@@ -31,14 +31,14 @@ std::string verdict_html(Report const& report) {
     if (i == shown)
       out +=
           fmt::format("</ul>\n<details><summary>{}</summary>\n<ul>\n", escape(folded_findings(std::span(weighed).subspan(shown))));
-    out +=
-        fmt::format("<li class=\"{0}\"><b>{1}</b> {2}{3} <span class=\"code\">{4}</span></li>\n", severity_word(finding.severity),
-                    finding.severity == Severity::error     ? "Failed:"
-                    : finding.severity == Severity::warning ? "Warning:"
-                                                            : "Note:",
-                    marked(finding.message),
-                    finding.help.empty() ? "" : fmt::format("<br/><span class=\"help\">What to do: {}</span>", marked(finding.help)),
-                    code(word(finding.code)));
+    out += fmt::format(
+        "<li class=\"{0}\"><b>{1}</b> {2}{3} <span class=\"code\">{4}</span></li>\n", severity_word(finding.severity),
+        finding.severity == Severity::error     ? "Failed:"
+        : finding.severity == Severity::warning ? "Warning:"
+                                                : "Note:",
+        marked(finding.message),
+        finding.help.empty() ? "" : fmt::format("<br/><span class=\"help\">What to do: {}</span>", marked(finding.help)),
+        code(word(finding.code)));
   }
   return out + "</ul>\n" + (shown < weighed.size() ? "</details>\n" : "") +
          "<p class=\"note\"><code>sysid explain CODE</code> explains a code such as those above.</p>\n";
@@ -92,6 +92,7 @@ std::string result_title(Report const& report) {
   if (report.calibration) return "Calibration";
   if (is_average(report)) return "The average and its members";
   if (report.verb == "track") return "Changes and parameters";
+  if (report.verb == "crosscheck") return "Both back ends";
   return "Parameters: from prior to posterior";
 }
 

@@ -16,6 +16,7 @@
 #include "diagnostics/prior_checks.hpp"
 #include "diagnostics/residuals/residual_tests.hpp"
 #include "diagnostics/verdict.hpp"
+#include "report/page/verb_words.hpp"
 
 namespace sysid {
 
@@ -169,27 +170,16 @@ std::string verdict_meaning(Report const& report) {
                ? "The parameters were moved where the rows show a change. The rows do not show its cause: the structure, its "
                  "surroundings or a sensor."
                : "No change was found, but check the points below: with them the sds and alarms of the track are not as stated.";
-  bool const bands = !report.selection && !report.discovery && report.draws.total() == 0;
-  std::string_view const numbers = report.discovery ? "the equations" : bands ? "the bands" : "the numbers";
+  VerbWords const& words = verb_words(report);
   switch (grade(report)) {
     case Severity::error:
-      return fmt::format(
-          "Until this is fixed, {} below may change by more than their stated uncertainty. Each point below states what to do.",
-          numbers);
+      return fmt::format("Until this is fixed, {}. Each point below states what to do.", words.broken);
     case Severity::warning:
-      return fmt::format("Check the points below before you use {}: each of them may or may not matter for your purpose.", numbers);
+      return fmt::format("Check the points below before you use {}: each of them may or may not matter for your purpose.",
+                         words.numbers);
     default:
-      break;
+      return std::string(words.sound);
   }
-  if (report.verb == "track")
-    return "The model follows the rows, and no change was found. There may still be one: a slow change may be taken for drift, "
-           "and a change of the noise is not reported as a change.";
-  if (bands) return "No check failed. The bands are valid if the model is valid on this record: compare them with the measurement.";
-  if (report.discovery)
-    return "No check failed. The equations are the best from the terms of the dictionary; this does not prove that no other term "
-           "acts.";
-  return "No check failed. This does not prove the model: compare it with measurements, preferably on rows that were not used in "
-         "the fit.";
 }
 
 std::string score_words(Report const& report, std::vector<FitLine> const& lines, ScoreName const& score) {
@@ -298,9 +288,8 @@ std::string ledger_words(Report const& report) {
   double const share =
       100 * static_cast<double>(ledger.failed()) / static_cast<double>(std::max<std::uint64_t>(ledger.solves(), 1));
   Severity const severity = failure_severity(ledger.failed(), ledger.solves());
-  bool const fitted = report.draws.total() > 0 || report.selection;
   return fmt::format("{} simulations, {} of them failed ({} %). {}: {}", ledger.solves(), ledger.failed(), number(share, 2),
-                     fitted ? "Parameters whose simulation fails are rejected" : "Trajectories that fail are left out of the bands",
+                     verb_words(report).failures,
                      severity == Severity::note ? "so few failures do not affect the result."
                      : severity == Severity::warning
                          ? "check whether the posterior ends where simulations fail."
