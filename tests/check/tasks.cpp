@@ -111,6 +111,15 @@ TEST_CASE("a task without a name has one of its verb and subject") {
   CHECK(shown.find("error[E3013]: there are two tasks named `fit_m`") != std::string::npos);
 }
 
+TEST_CASE("an experiment is predicted once, and experiments that are predicted may overlap") {
+  std::string const fitted = "f = fit m to d.train with mh\n";
+  std::string const said = refused(fitted + "p = predict f on d.test, d.test");
+  CHECK(errors_in(said) == 1);
+  CHECK(said.find("error[E6304]: `d.test` would be predicted twice") != std::string::npos);
+  CHECK(refused(fitted + "p = predict f on d, d").find("error[E6304]") != std::string::npos);
+  CHECK(refused(fitted + "p = predict f on d, d.test").empty());
+}
+
 TEST_CASE("options are given once") {
   std::string const shown = refused("fit m to d with mh(chains = 2, chains = 3), seed = 1, seed = 2, map");
   CHECK(errors_in(shown) == 3);

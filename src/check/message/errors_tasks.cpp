@@ -295,10 +295,11 @@ Diagnostic task_too_late(ast::Name const& name) {
   return result;
 }
 
-Diagnostic experiment_twice(Span second, Span first, std::string const& experiment) {
-  return about({experiment},
-               conflict("E6304", second, "again", first, "first here",
-                        fmt::format("`{}` is used twice: its samples would count twice", experiment), "list each experiment once"));
+Diagnostic experiment_twice(Span second, Span first, std::string const& experiment, bool predicted) {
+  return about({experiment}, conflict("E6304", second, "again", first, "first here",
+                                      predicted ? fmt::format("`{}` would be predicted twice", experiment)
+                                                : fmt::format("`{}` is used twice: its samples would count twice", experiment),
+                                      "list each experiment once"));
 }
 
 Diagnostic experiments_overlap(Span second, Span first, std::string const& one, std::string const& other) {

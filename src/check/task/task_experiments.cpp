@@ -61,12 +61,14 @@ std::vector<ExperimentUse> TaskChecker::experiments(Model const* model, std::str
     auto const same = [&](ExperimentUse const& other) { return other.data == uses[i].data; };
     bool const alone = std::count_if(uses.begin(), uses.end(), same) == 1;
     uses[i].name = alone ? block.name : part_name(block, uses[i].part);
-    for (std::size_t before = 0; before < i && preposition != "on"; ++before)
-      if (same(uses[before]) && share_rows(block, uses[before].part, uses[i].part)) {
-        diagnostics_.add(uses[before].part == uses[i].part
-                             ? errors::experiment_twice(places[i], places[before], part_name(block, uses[i].part))
-                             : errors::experiments_overlap(places[i], places[before], part_name(block, uses[i].part),
-                                                           part_name(block, uses[before].part)));
+    // What is predicted may overlap; two results of one name would replace each other.
+    bool const predicted = preposition == "on";
+    for (std::size_t before = 0; before < i; ++before)
+      if (bool const equal = uses[before].part == uses[i].part;
+          same(uses[before]) && (equal || (!predicted && share_rows(block, uses[before].part, uses[i].part)))) {
+        diagnostics_.add(equal ? errors::experiment_twice(places[i], places[before], part_name(block, uses[i].part), predicted)
+                               : errors::experiments_overlap(places[i], places[before], part_name(block, uses[i].part),
+                                                             part_name(block, uses[before].part)));
         break;
       }
   }
