@@ -391,6 +391,14 @@ posterior = fit decay to bench with mh, seed = 1
         made = sysid.loads(text, data={"z": [1, 0.4, np.nan, np.nan]}).simulate([0.5], seed=1)
         self.assertEqual(len(made["time"] if isinstance(made, dict) else made.time), 4)
 
+    def test_columns_of_a_frame_that_are_numbered_are_found_by_their_numbers(self):
+        import pandas
+
+        expected = sysid.loads(LINE, data={"u": U, "d": D}).log_density(np.zeros(2))
+        text = LINE.replace("u = u [V]", 'u = "0" [V]').replace("d = d [mm]", 'd = "1" [mm]')
+        for data in (pandas.DataFrame(np.column_stack([U, D])), {0: U, 1: D}, {"0": U, "1": D}):
+            self.assertEqual(sysid.loads(text, data=data).log_density(np.zeros(2)), expected)
+
     def test_the_index_of_a_frame_is_a_column(self):
         import pandas
 

@@ -29,7 +29,10 @@ def _index_names(data: Any) -> list[str]:
 def _column(data: Any, name: str) -> Any:
     if hasattr(data, "columns") and name not in data.columns and name in _index_names(data):
         return data.index.get_level_values(name)
-    return data[name]
+    if hasattr(data, "data_vars") or name in data:
+        return data[name]
+    # Labels need be no texts: pandas numbers columns without a name.
+    return data[next(label for label in (data.keys() if hasattr(data, "keys") else data.columns) if str(label) == name)]
 
 
 def _floats(given: Any, told: str) -> np.ndarray:
