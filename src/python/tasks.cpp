@@ -155,17 +155,23 @@ py::tuple inference_data(OpenFile const& file, std::string const& folder, Asked 
 
 /// Text and JSON.
 py::tuple compare_folders(std::vector<std::string> const& folders) {
-  Source const nothing("sysid", "");
-  auto const comparison =
-      guarded(nothing, [&] { return sysid::compare(std::vector<std::filesystem::path>(folders.begin(), folders.end())); });
-  return py::make_tuple(comparison_text(comparison), comparison_json(comparison));
+  auto const [text, json] = [&] {
+    py::gil_scoped_release const released;
+    return interruptible(Source("sysid", ""), [&] {
+      auto const comparison = sysid::compare(std::vector<std::filesystem::path>(folders.begin(), folders.end()));
+      return std::pair(comparison_text(comparison), comparison_json(comparison));
+    });
+  }();
+  return py::make_tuple(text, json);
 }
 
 /// Draws the figures of a task's folder, as SVG.
 void draw_figures(std::string const& folder) {
   py::gil_scoped_release const released;
-  Source const nothing("sysid", "");
-  guarded(nothing, [&] { redraw_figures(folder, {FigureFormat::svg}); });
+  interruptible(Source("sysid", ""), [&] {
+    redraw_figures(folder, {FigureFormat::svg});
+    return true;
+  });
 }
 
 }  // namespace

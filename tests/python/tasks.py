@@ -210,6 +210,22 @@ class Results(Desk):
         with self.assertRaises(sysid.Error):
             sysid.compare("nowhere")
 
+    def test_names_beyond_ascii_are_read_as_the_engine_writes_them(self):
+        program = textwrap.dedent(
+            """
+            import json, sysid
+            text = open("decay.sysid", encoding="utf-8").read().replace("[m]", "[\\u00b5m]")
+            fits = [sysid.loads(text).fit(seed=seed) for seed in (1, 2)]
+            print(ascii(fits[0].parameters["noise"]["unit"]))
+            shown = json.dumps(sysid.compare(*fits).content, ensure_ascii=False)
+            print(any(str(fit.folder) in shown for fit in fits))
+            """
+        )
+        pathlib.Path("f\u00fcr").mkdir()
+        for settings in ({"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}, {"PYTHONUTF8": "1", "TMPDIR": "f\u00fcr"}):
+            said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env={**os.environ, **settings})
+            self.assertEqual(said.stdout, "'\\xb5m'\nFalse\n", said.stderr)
+
     def test_refusals(self):
         model = sysid.load("decay.sysid")
         with self.assertRaisesRegex(sysid.Error, "no select task"):

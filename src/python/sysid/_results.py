@@ -97,7 +97,7 @@ class Result:
     @property
     def summary(self) -> dict:
         """The content of summary.json: parameters, verdict, findings, settings, data, versions."""
-        return json.loads((self.folder / "summary.json").read_text())
+        return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
 
     @property
     def verdict(self) -> str:
@@ -339,7 +339,7 @@ def compare(*results: Union[Result, str, os.PathLike]) -> Comparison:
     for folder, name in _names_of_temporary(results).items():
         # In a table the column stays as wide as it is.
         text = re.sub(re.escape(folder) + "(?=  )", lambda found: name.ljust(len(found[0])), text).replace(folder, name)
-        content = content.replace(json.dumps(folder)[1:-1], name)
+        content = content.replace(json.dumps(folder, ensure_ascii=False)[1:-1], name)
     return Comparison(text, content)
 
 
