@@ -26,9 +26,10 @@ std::string missing_with(ReadingRules const& rules, std::vector<double> const& v
   }
   std::string list;
   for (std::string const& each : marks) list += (list.empty() ? "" : ", ") + quoted_text(each);
-  if (marks.size() > 1) list = "(" + list + ")";
-  return rules.missing.empty() ? fmt::format("write `read missing = {}`", list)
-                               : fmt::format("write `missing = {}` after `read`", list);
+  if (rules.no_other_mark) list += ", none";
+  if (marks.size() > 1 || rules.no_other_mark) list = "(" + list + ")";
+  return rules.asked_for_missing ? fmt::format("write `missing = {}` after `read`", list)
+                                 : fmt::format("write `read missing = {}`", list);
 }
 
 bool has_number(std::vector<double> const& values, double number) {

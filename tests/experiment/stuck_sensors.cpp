@@ -107,6 +107,22 @@ TEST_CASE("a sensor that is clipped at both ends is named with both, rough or sm
   }
 }
 
+TEST_CASE("marks of the help join those that the data block has, and `none`") {
+  auto const clipped = [](int row, double noise) { return std::min(noisy(row, noise), 2.15); };
+  for (std::string const stated : {"missing = none", "missing = (\"-999\", none)", "missing = \"-999\""}) {
+    CAPTURE(stated);
+    auto const reading = [&](std::string const& setting) {
+      return with(stuck_text, "time t [s]", "read " + setting + "; time t [s]");
+    };
+    std::smatch line;
+    std::string const help = stuck_help(check_level(clipped, reading(stated)));
+    REQUIRE_MESSAGE(std::regex_search(help, line, std::regex("write `(missing = [^`]*)` after `read`")), help);
+    CHECK((line[1].str().find("none") != std::string::npos) == (stated.find("none") != std::string::npos));
+    CHECK((line[1].str().find("-999") != std::string::npos) == (stated.find("-999") != std::string::npos));
+    CHECK(messages(check_level(clipped, reading(line[1].str())), "sensor_stuck").empty());
+  }
+}
+
 TEST_CASE("a smooth record that is clipped at one end is named") {
   auto const found = stuck([](int row, double) { return std::min(3 * elementary::sin(0.33 * row), 2.15); });
   REQUIRE(found.size() == 1);
