@@ -1,21 +1,46 @@
-// Rows are compared by file and number: two blocks may name one file.
+// Rows are compared by file and number: two blocks may name one file, by two paths, or a copy.
 #include "experiment/fitted_rows.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
 
+#include "core/system/digest.hpp"
+#include "core/system/files.hpp"
 #include "core/text/words.hpp"
 
 namespace sysid {
+namespace {
+
+/// By another path, or a copy.
+bool is_same_record(std::string const& fitted, std::string const& predicted, std::string const& digest) {
+  if (fitted == predicted) return true;
+  std::error_code none, other;
+  if (std::filesystem::equivalent(fitted, predicted, none)) return true;
+  auto const size = std::filesystem::file_size(fitted, none), wanted = std::filesystem::file_size(predicted, other);
+  if (none || other || size != wanted) return false;
+  try {
+    return sha256(read_file(fitted)) == digest;
+  } catch (IoError const&) {
+    return false;
+  }
+}
+
+}  // namespace
 
 Findings find_fitted_rows(CheckedFile const& file, ExperimentData const& predicted, std::vector<ExperimentUse> const& fitted,
                           std::string const& task) {
   std::string const& path = file.data[static_cast<std::size_t>(predicted.use.data)].path;
+  std::vector<ExperimentUse> of_this_record;
+  std::copy_if(fitted.begin(), fitted.end(), std::back_inserter(of_this_record), [&](ExperimentUse const& use) {
+    return is_same_record(file.data[static_cast<std::size_t>(use.data)].path, path, predicted.record.digest);
+  });
   auto const was_fitted = [&](int row) {
-    return std::any_of(fitted.begin(), fitted.end(), [&](ExperimentUse const& use) {
+    return std::any_of(of_this_record.begin(), of_this_record.end(), [&](ExperimentUse const& use) {
       DataBlock const& block = file.data[static_cast<std::size_t>(use.data)];
-      if (block.path != path) return false;
       if (use.part < 0) return true;
       DataPart const& part = block.parts[static_cast<std::size_t>(use.part)];
       return row >= part.first && (part.last == 0 || row <= part.last);

@@ -139,6 +139,14 @@ TEST_CASE("scores on rows that were fitted are called so; scores on others are n
   json const overlapping = predicted("long");
   REQUIRE_FALSE(overlapping.is_null());
   CHECK(overlapping.at("message").get<std::string>().starts_with("6 of 9 scored rows of long"));
+  // By another path, and in a copy.
+  for (std::string const path : {"./long.csv", "copy.csv"}) {
+    CAPTURE(path);
+    std::string const text = with(parts, "data cut { file \"long.csv\"", "data cut { file \"" + path + "\"");
+    CaseRun const run(text + "forecast = predict past on long with draws(20), seed = 1\n",
+                      {early, {"long.csv", rows_to(8)}, {"copy.csv", rows_to(8)}});
+    CHECK_FALSE(finding_in(run.summary("forecast"), "fitted_rows_predicted").is_null());
+  }
 }
 
 namespace {
