@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app/record/record_text.hpp"
+#include "app/session/repetition.hpp"
 #include "cli/command.hpp"
 #include "core/system/files.hpp"
 #include "core/text/words.hpp"
@@ -26,11 +27,21 @@ ExitCode model_in_place_of_record(Messages const& messages, std::string const& p
   Source source = read_source(path);
   if (auto const file = load(source, ignored))
     for (DataBlock const& block : file->data)
-      commands.push_back(fmt::format("sysid data {}", (std::filesystem::path(path).parent_path() / block.path).string()));
-  messages.complain(fmt::format("`{}` is a file of models, not a record", path),
-                    commands.empty() ? fmt::format("give a record, such as a CSV file; `sysid check {}` checks this file", path)
-                                     : fmt::format("describe the record that it reads: {}", quoted(commands, "or")));
+      commands.push_back(
+          fmt::format("sysid data {}", quoted_for_shell((std::filesystem::path(path).parent_path() / block.path).string())));
+  messages.complain(
+      fmt::format("`{}` is a file of models, not a record", path),
+      commands.empty() ? fmt::format("give a record, such as a CSV file; `sysid check {}` checks this file", quoted_for_shell(path))
+                       : fmt::format("describe the record that it reads: {}", quoted(commands, "or")));
   return ExitCode::user_error;
+}
+
+/// By its ending; SVG without one that is known.
+FigureFormat format_of_picture(std::string const& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  if (!ending.empty()) ending.erase(0, 1);
+  auto const format = find_figure_format(ending);
+  return format && *format != FigureFormat::text ? *format : FigureFormat::svg;
 }
 
 ExitCode look(Messages const& messages, DataOptions const& options) {
@@ -41,9 +52,13 @@ ExitCode look(Messages const& messages, DataOptions const& options) {
   else
     std::cout << wrapped_rows(record_text(look), terminal_columns(STDOUT_FILENO));
   if (options.plot.empty()) return ExitCode::success;
-  auto const picture = draw(record_figure(look));
+  auto const picture = draw(record_figure(look), format_of_picture(options.plot));
   if (!picture) {
-    messages.complain("the plot was not drawn: gnuplot is not installed", "apt install gnuplot-nox");
+    if (gnuplot_installed())
+      messages.complain("the plot was not drawn: gnuplot failed",
+                        "check that the folder for temporary files has room, and that `gnuplot` works");
+    else
+      messages.complain("the plot was not drawn: gnuplot is not installed", "apt install gnuplot-nox");
     return ExitCode::io;
   }
   write_file(options.plot, *picture);
@@ -56,7 +71,8 @@ Work declare_data(CLI::App& verb) {
   auto const options = std::make_shared<DataOptions>();
   verb.add_option("FILE", options->file, "a record: a table as text, a MATLAB, NetCDF or HDF5 file")->required();
   verb.add_flag("--json", options->json, "print JSON");
-  verb.add_option("--plot", options->plot, "draw the columns over time into this SVG file")->type_name("SVG");
+  verb.add_option("--plot", options->plot, "draw the columns over time into this file: as SVG, or by its ending as PNG or PDF")
+      ->type_name("PICTURE");
   return [options](Messages const& messages) { return look(messages, *options); };
 }
 

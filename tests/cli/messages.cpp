@@ -65,6 +65,10 @@ TEST_CASE("a model in place of a record, and a folder of results that is not the
   CHECK(said.text ==
         "sysid: error: `line.sysid` is a file of models, not a record\n"
         "help: describe the record that it reads: `sysid data bench.csv`\n");
+  std::string text = line_model;
+  text.replace(text.find("bench.csv"), 9, "my bench.csv");
+  desk.save("two.sysid", text);
+  CHECK(desk.ask("data two.sysid").text.ends_with("help: describe the record that it reads: `sysid data 'my bench.csv'`\n"));
   for (char const* const verb : {"report", "compare", "export"}) {
     CAPTURE(verb);
     said = desk.ask(std::string(verb) + " results");
@@ -78,6 +82,23 @@ TEST_CASE("a model in place of a record, and a folder of results that is not the
           "sysid: error: there is no folder `resuls`\nhelp: did you mean `results`?\n");
     CHECK(desk.ask(std::string(verb) + " results/posterio/").text.ends_with("help: did you mean `results/posterior`?\n"));
     CHECK(desk.ask(std::string(verb) + " line.sysid").text.starts_with("sysid: error: `line.sysid` is a file, not a folder"));
+  }
+}
+
+TEST_CASE("the picture of a record has the format of its ending, and what keeps it from being drawn is said") {
+  LineDesk const desk;
+  Said const png = desk.ask("data bench.csv --plot x.png"), svg = desk.ask("data bench.csv --plot x.svg");
+  if (svg.exit == 0) {
+    if (png.exit == 0) CHECK(read_file(desk.path("x.png")).starts_with("\x89PNG"));  // else gnuplot lacks that terminal
+    CHECK(read_file(desk.path("x.svg")).find("<svg") != std::string::npos);
+    write_file(desk.path("gnuplot"), "#!/bin/sh\n[ \"$1\" = --version ]\n");
+    std::filesystem::permissions(desk.path("gnuplot"), std::filesystem::perms::owner_all);
+    Said const failed = said_by("cd '" + desk.path(".").string() +
+                                "' && PATH=\"$PWD:$PATH\" NO_COLOR=1 '" SYSID_PROGRAM "' data bench.csv --plot y.svg");
+    CHECK(failed.exit == 74);
+    CHECK(failed.text.find("error: the plot was not drawn: gnuplot failed\n") != std::string::npos);
+  } else {
+    CHECK(png.text.find("error: the plot was not drawn: gnuplot is not installed\n") != std::string::npos);
   }
 }
 
