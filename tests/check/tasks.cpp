@@ -144,6 +144,22 @@ TEST_CASE("numbers outside their range or of the wrong kind are refused with wha
     CHECK_MESSAGE(shown.find(each) != std::string::npos, each);
 }
 
+TEST_CASE("a solver of a model without differential equations is a warning") {
+  std::string const text =
+      "model map { time discrete 1 [s]; parameter a ~ uniform(0, 1); observe z ~ normal(a*lag(measured(z), 1), sd = 1) }\n"
+      "model line { input u; parameter b ~ normal(0, sd = 1); observe z ~ normal(b*u, sd = 1) }\n"
+      "data d { file \"d.csv\"; rate 1 [Hz]; input u = u; measure z = z }\n";
+  for (std::string const model : {"map", "line"})
+    for (std::string const option : {"solver = cvode", "substeps = 4", "solver = rk4(substeps = 2)"}) {
+      CAPTURE(model);
+      CAPTURE(option);
+      std::string const said = messages(text + "fit " + model + " to d with map, " + option + "\n");
+      CHECK(errors_in(said) == 0);
+      CHECK(said.find("warning[E6019]: `" + model + "` has no differential equations to integrate") != std::string::npos);
+    }
+  CHECK(refused("fit m to d with mh, solver = cvode").empty());
+}
+
 TEST_CASE("a back end without settings says so") {
   CHECK(refused("fit m to d with map(3)").find("help: it takes none") != std::string::npos);
   CHECK(refused("fit m to d with map(samples = 3)").find("help: it has none") != std::string::npos);

@@ -266,6 +266,8 @@ Diagnostic channel_not_measured(Span data, std::string const& block, Span state,
 Diagnostic constant_of_nothing(Span span, std::string const& name, std::string const& model, Names const& known);
 Diagnostic constant_of_shared(Span span, Span declaration, std::string const& parameter);
 Diagnostic constant_missing(Span use, Span declaration, std::string const& parameter, std::string const& data);
+/// A warning. subject: a model, or candidates.
+Diagnostic solver_of_nothing(Span option, std::string const& subject);
 /// predicted: what is wrong with it is not that samples count twice, but two results of one name.
 Diagnostic experiment_twice(Span second, Span first, std::string const& experiment, bool predicted);
 Diagnostic experiments_overlap(Span second, Span first, std::string const& one, std::string const& other);

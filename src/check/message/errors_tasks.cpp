@@ -287,6 +287,14 @@ Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, 
                "widen the band from `lowest` to `highest`, or use more samples");
 }
 
+Diagnostic solver_of_nothing(Span option, std::string const& subject) {
+  Diagnostic result =
+      about({subject}, error("E6019", option, fmt::format("`{}` has no differential equations to integrate", subject),
+                             "remove the option: it has no effect"));
+  result.severity = Severity::warning;
+  return result;
+}
+
 Diagnostic task_too_late(ast::Name const& name) {
   Diagnostic result = about({name.text}, error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text),
                                                "tasks run in the order of the file: move that task before this one"));

@@ -1,5 +1,5 @@
 // One task on its way from the tree to what it runs from: what the verbs share, and one function for each verb, in a file of its
-// own (task_fit.cpp, task_predict.cpp, task_simulate.cpp).
+// own (task_fit.cpp, task_predict.cpp, task_simulate.cpp, task_discover.cpp, task_select.cpp).
 #pragma once
 #include <functional>
 #include <map>
@@ -27,6 +27,8 @@ class TaskChecker {
   std::optional<int> item(ast::Name const& name, std::map<std::string, std::optional<int>> const& items, std::string const& kind);
   // Equations that cannot be solved for their highest derivatives need a solver that does without.
   void suit(SolverSettings& solver, Model const& model);
+  // A solver that was stated, where no model of the task has differential equations.
+  void report_needless_solver();
   // An exact step needs linear equations.
   void suit_exact(SolverSettings const& solver, Model const& model);
   void suit(StartRule const& start, Model const& model, std::vector<ast::Option> const& options);
@@ -158,6 +160,7 @@ class TaskChecker {
   std::optional<Span> filter_;  // where it was stated
   std::optional<Span> particles_;
   bool filter_needed_ = false;  // by a model of the task
+  bool solver_needed_ = false;  // the same
   bool unresolved_ = false;     // the task refers to something that failed its own check
 };
 

@@ -35,6 +35,7 @@ FitTask TaskChecker::fit() {
     suit(task, *model);
     suit_processes(task, *model);
     report_needless_filter(task.filter);
+    report_needless_solver();
   }
   if (task.backend.empty() && !diagnostics_.has_errors(before_))
     diagnostics_.add(errors::backend_missing(tree_, names_of(backends_.fitting)));

@@ -116,6 +116,7 @@ SelectTask TaskChecker::select() {
   task.fits = candidate_fits(set, common);
   if (!diagnostics_.has_errors(before_)) report_needless_filter(common.filter);
   suit_distances(task);
+  if (!task.fits.empty()) report_needless_solver();
   if (task.fits.empty()) return task;
   auto channels = common_channels(set, task.fits.front().experiments);
   if (!diagnostics_.has_errors(before_))

@@ -64,6 +64,7 @@ SimulateTask TaskChecker::simulate() {
       if (channel.noise.row->discrete)
         diagnostics_.add(errors::noise_of_counts(options.noise, channel.name, std::string(channel.noise.row->name)));
   suit(task.solver, model);
+  report_needless_solver();
   if (task.file.empty()) task.file = task_name(tree_) + ".csv";
   if (!diagnostics_.has_errors(before_)) complete_simulation(options);
   return task;

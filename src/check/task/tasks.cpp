@@ -73,7 +73,13 @@ void TaskChecker::suit_exact(SolverSettings const& solver, Model const& model) {
     diagnostics_.add(errors::solver_of_few_states(option, solver.method, model.name, model.states.size(), most_exact_states));
 }
 
+void TaskChecker::report_needless_solver() {
+  if (options_.solver_span() && !solver_needed_ && !diagnostics_.has_errors(before_))
+    diagnostics_.add(errors::solver_of_nothing(*options_.solver_span(), tree_.subject.text));
+}
+
 void TaskChecker::suit(SolverSettings& solver, Model const& model) {
+  solver_needed_ = solver_needed_ || model.integrated() || model.implicit;
   if (!model.implicit) return suit_exact(solver, model);
   if (!options_.solver_span())
     solver = {.method = std::string(implicit_solver().name)};
