@@ -71,7 +71,7 @@ class Evaluator {
   Evaluator(Diagnostics& diagnostics, std::size_t most_nodes) : diagnostics_(diagnostics), algebra_(diagnostics, most_nodes) {}
 
   std::optional<Array> evaluate(ast::Expression const& expression, Frame& frame);
-  /// The value of a definition or of what is bound, in its shape; known_ once.
+  /// The value of a definition or of what is bound, in its shape; computed once, and kept in `symbol`.
   std::optional<Array> value_of(Frame& frame, std::string const& name, FrameSymbol& symbol);
   /// Its arguments, each number by number; lists stay lists.
   std::optional<ast::Call> call_arguments(ast::Call const& call, Frame& frame);

@@ -46,7 +46,6 @@ bool is_unit_conflict(Diagnostic const& diagnostic);
 /// The first of `places` conflicts that another unit of one declaration would resolve.
 Diagnostic blamed(Diagnostic conflict, ast::Name const& declared, std::string const& unit, int places);
 
-/// A mistake in the body of a function, told at the call.
 /// A letter that is a unit of temperature on paper; difference: in products, where only intervals count.
 struct LetterUnit {
   char const* letter;
@@ -59,7 +58,7 @@ inline constexpr LetterUnit letter_units[] = {{"C", "coulomb", "degC", "degrees 
                                               {"F", "farad", "degF", "degrees Fahrenheit", "delta_degF"}};
 /// written: where the letter stands first.
 Diagnostic letter_taken_for_temperature(Diagnostic conflict, Span written, LetterUnit const& letter);
-
+/// A mistake in the body of a function, told at the call.
 void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function);
 
 // What to do, for `help`. names: declared quantities that would do ("`y` or `l`"), or empty.

@@ -207,7 +207,7 @@ class Result:
 
     def to_netcdf(self, path: Union[str, os.PathLike], draws: int = 200) -> None:
         """Writes the groups as one NetCDF-4 file, byte for byte what ``sysid export`` writes; `arviz.from_netcdf` reads it. Of a
-        prediction it is the file of its fit."""
+        prediction of a fit it is the file of that fit."""
         pathlib.Path(path).write_bytes(self._inference_data(whole(draws, "draws", 10**6))[2])
 
     def to_arviz(self, draws: int = 200) -> Any:
