@@ -193,10 +193,8 @@ Diagnostic foreign_operator(Span where, std::string_view found, std::string_view
 
 Diagnostic left_arrow(Span where) { return foreign_operator(where, "<-", "an equation or a definition is written with `=`"); }
 
-Diagnostic list_in_brackets(Span where, bool prior) {
-  return error("E1118", where, "a list is not written in brackets",
-               prior ? "a range of values is written as a prior: `~ uniform(1, 2)`; a list is written in parentheses: `(1, 2)`"
-                     : "write it in parentheses: `(1, 2)`");
+Diagnostic list_in_brackets(Span where, std::string help) {
+  return error("E1118", where, "a list is not written in brackets", std::move(help));
 }
 
 Diagnostic bounds_in_brackets(Span where) {

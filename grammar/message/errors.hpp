@@ -64,7 +64,7 @@ Diagnostic left_arrow(Span where);
 /// E1118: `[` where no unit may stand.
 Diagnostic bracket_out_of_place(Span where);
 /// E1118: `[1, 2]` where a value may stand; prior: as the value of a parameter, which may mean a range.
-Diagnostic list_in_brackets(Span where, bool prior);
+Diagnostic list_in_brackets(Span where, std::string help);
 /// E1118: `normal(0, sd = 1) [0, 1]`.
 Diagnostic bounds_in_brackets(Span where);
 /// E1118: `parameter m [kg] in [0.1, 10]`.

@@ -53,6 +53,14 @@ std::string unit_without_brackets(Gap const& gap);
 /// Two values without an operator that are no product on paper: "a unit is written in brackets: `9.81 [m/s^2]`", or empty.
 std::string instead_of_product(Gap const& gap);
 
+/// The `]` behind the `[` at `opener`, before its line ends and before anything that stands in no list; else how many tokens there
+/// are.
+std::size_t closing_on_line(std::span<Token const> tokens, std::size_t opener);
+/// "`~ uniform(1, 100)`" of the numbers between two brackets.
+std::string list_as_range(std::span<Token const> tokens, std::size_t opener, std::size_t close);
+/// What is written in place of the list in brackets at `opener`; `line`: the first token of its line.
+std::string instead_of_list(std::span<Token const> tokens, std::size_t line, std::size_t opener);
+
 /// Help for the user, or empty.
 std::string hint(Gap const& gap);
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "grammar/message/errors.hpp"
+#include "grammar/message/hints.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::grammar {
@@ -160,6 +161,8 @@ class LayoutPass {
     Token const &before = tokens_[i - 1], &first = tokens_[line_];
     bool const declares =
         first.is("parameter") || first.is("state") || first.is("input") || first.is("measure") || first.is("time");
+    if (declares && before.is("="))
+      return fmt::format("a range of values is written as a prior: {}", list_as_range(tokens_, i, close));
     if (declares && !before.is("^")) return fmt::format("a unit is written in brackets: `{} [{}]`", before.text, inside);
     if (first.is("function")) return fmt::format("a function is written with `=`: `= {}`", inside);
     if (before.is("=") || before.is("initial")) return fmt::format("write it without braces: `{}`", inside);
@@ -198,11 +201,14 @@ class LayoutPass {
                tokens_[open_.back()].is("[")) {
       // None of these stands in a unit.
       std::size_t const opener = open_.back();
-      bool const list = token.is(",") && opener > 0 && (is_opener(opener - 1) || continues_after(tokens_[opener - 1], true));
+      bool const closed = closing_on_line(tokens_, opener) < tokens_.size();
+      bool const behind_word = closed && opener > 0 && tokens_[opener - 1].kind == TokenKind::word;
+      bool const list =
+          token.is(",") && opener > 0 && (is_opener(opener - 1) || continues_after(tokens_[opener - 1], true) || behind_word);
       bool const behind_prior = token.is(",") && opener > line_ + 2 && tokens_[line_].is("parameter") && !list && has_tilde(opener);
       bool const range = token.is(",") && opener > 0 && tokens_[opener - 1].is("in") && tokens_[line_].is("parameter");
       mistake(opener, range          ? errors::range_in_brackets(tokens_[opener].span)
-                      : list         ? errors::list_in_brackets(tokens_[opener].span, tokens_[line_].is("parameter"))
+                      : list         ? errors::list_in_brackets(tokens_[opener].span, instead_of_list(tokens_, line_, opener))
                       : behind_prior ? errors::bounds_in_brackets(tokens_[opener].span)
                                      : errors::unclosed(tokens_[opener], token.span));
       open_.pop_back();

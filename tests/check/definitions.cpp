@@ -91,7 +91,7 @@ TEST_CASE("what a definition depends on decides how often it is reported") {
 TEST_CASE("names near the wrong one are offered") {
   CHECK(refused_definitions("y' = -kk*y").find("help: did you mean `k`?") != std::string::npos);
   CHECK(refused_definitions("y' = -ln(y)").find("help: did you mean `log`?") != std::string::npos);
-  CHECK(refused_definitions("y' = -pow(y, 2)").find("help: powers are written with ^: `a^b`") != std::string::npos);
+  CHECK(refused_definitions("y' = -pow(y, 2)").find("help: powers are written with ^: `y^2`") != std::string::npos);
   CHECK(refused_definitions("y' = -sqr(y)").find("help: did you mean `sqrt`") != std::string::npos);
   CHECK(refused_definitions("y' = -k(y)").find("`k` is a quantity, not a function") != std::string::npos);
 }

@@ -68,10 +68,14 @@ class DictionaryChecker {
   void each_item(ast::DictionaryListKind kind, Visit const& visit) const {
     each<ast::DictionaryList>([&](ast::DictionaryList const& list) {
       if (list.kind == kind)
-        for (ast::Expression const& item : list.items) visit(item);
+        for (ast::Expression const& item : list.items)
+          if (!refuse_list(kind, item)) visit(item);
     });
   }
   static bool is_parameter(Node const& node) { return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter; }
+
+  /// `terms = (y, y')`: whether it is one.
+  bool refuse_list(ast::DictionaryListKind kind, ast::Expression const& item) const;
 
   // --- dictionary_declarations.cpp
   void declare();

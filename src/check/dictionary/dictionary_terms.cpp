@@ -12,6 +12,15 @@ constexpr std::size_t most_terms = 1000;
 
 }  // namespace
 
+bool DictionaryChecker::refuse_list(ast::DictionaryListKind kind, ast::Expression const& item) const {
+  if (!std::holds_alternative<ast::Box<ast::List>>(item.node)) return false;
+  diagnostics_.add(errors::list_of_terms(kind == ast::DictionaryListKind::target  ? "target"
+                                         : kind == ast::DictionaryListKind::terms ? "terms"
+                                                                                  : "exclude",
+                                         item));
+  return true;
+}
+
 void DictionaryChecker::targets() {
   each_item(ast::DictionaryListKind::target, [&](ast::Expression const& tree) {
     auto const value = scope_.expression(tree);
@@ -28,8 +37,8 @@ void DictionaryChecker::targets() {
 
 void DictionaryChecker::terms() {
   bool any = false;
+  each<ast::DictionaryList>([&](ast::DictionaryList const& list) { any = any || list.kind == ast::DictionaryListKind::terms; });
   each_item(ast::DictionaryListKind::terms, [&](ast::Expression const& item) {
-    any = true;
     for (WrittenTerm& written : writer_.write(item, free_)) {
       auto made = candidate(std::move(written));
       if (!made) return;  // the next of the same family has the same mistake

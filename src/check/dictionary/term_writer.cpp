@@ -66,12 +66,30 @@ std::vector<ast::Expression> TermWriter::expanded(ast::Expression const& item) {
     }
   }
   auto const* binary = std::get_if<ast::Box<ast::Binary>>(&item.node);
-  if (binary == nullptr || (*binary)->symbol != "*") return {item};
+  if (binary == nullptr || (*binary)->symbol != "*") {
+    if (ast::Call const* family = family_inside(item)) {
+      diagnostics_.add(errors::family_inside_term(family->function, item));
+      return {};
+    }
+    return {item};
+  }
   auto const left = expanded(*(*binary)->left), right = expanded(*(*binary)->right);
   std::vector<ast::Expression> products;
   for (ast::Expression const& a : left)
     for (ast::Expression const& b : right) products.push_back(tree::binary("*", a, b, item.span));
   return products;
+}
+
+ast::Call const* TermWriter::family_inside(ast::Expression const& item) const {
+  ast::Call const* found = nullptr;
+  each_expression(item, [&](ast::Expression const& each) {
+    ast::Call const* const call = as_call(each);
+    if (call == nullptr || found != nullptr) return;
+    std::string const& name = call->function.text;
+    if (find_generator(name) != nullptr && find_function(name) == nullptr && scope_.find_function_definition(name) == nullptr)
+      found = call;
+  });
+  return found;
 }
 
 bool TermWriter::is_lag(ast::Call const& call) const {

@@ -27,6 +27,8 @@ class TermWriter {
 
  private:
   std::vector<ast::Expression> expanded(ast::Expression const& item);
+  // `polynomial(y, degree = 3)` inside a term that is no product; null for none.
+  ast::Call const* family_inside(ast::Expression const& item) const;
   bool is_lag(ast::Call const& call) const;
   /// `lags(y, 1..3)`, or `lag` with a range: each sample by itself. Anything else as it is.
   std::vector<ast::Expression> past(ast::Call const& call, ast::Expression const& item);

@@ -207,10 +207,17 @@ bool OptionReader::solver(ast::Option const& option, SolverSettings& place) {
          });
 }
 
+errors::OptionOwner OptionReader::owner(std::string name, std::string_view option) const {
+  return {std::move(name), verb_, verbs_with_ == nullptr ? errors::Names() : verbs_with_(option)};
+}
+
 void OptionReader::unknown(ast::Option const& option, std::vector<std::string> const& known) {
   std::string const key = key_of(option);
-  diagnostics_.add(
-      errors::unknown_option(option.key ? option.key->span : head_span(option.value), key.empty() ? "this" : key, verb_, known));
+  if (key.empty())
+    diagnostics_.add(errors::option_without_name(option.value, verb_));
+  else
+    diagnostics_.add(
+        errors::unknown_option(option.key ? option.key->span : head_span(option.value), key, owner(verb_, key), known));
 }
 
 bool OptionReader::fresh(ast::Option const& option, std::string const& key) {
@@ -239,7 +246,7 @@ void OptionReader::settings(ast::Call const& call, std::span<SettingRow const> r
     std::string const& name = argument.name->text;
     auto const row = std::find_if(rows.begin(), rows.end(), [&](SettingRow const& each) { return each.name == name; });
     if (row == rows.end()) {
-      diagnostics_.add(errors::unknown_option(argument.name->span, name, call.function.text, known));
+      diagnostics_.add(errors::unknown_option(argument.name->span, name, owner(call.function.text, name), known));
       continue;
     }
     if (auto const [place, is_fresh] = given.emplace(name, argument.span); !is_fresh) {

@@ -9,6 +9,7 @@
 
 #include "check/checked/checked.hpp"
 #include "check/expression/scope.hpp"
+#include "check/message/subject.hpp"
 #include "core/setting/settings.hpp"
 #include "core/text/diagnostic.hpp"
 #include "syntax/ast.hpp"
@@ -29,8 +30,10 @@ Unit unit_of(std::string_view atom);
 /// Nothing is returned, or `place` left alone, when a diagnostic was added.
 class OptionReader {
  public:
-  OptionReader(std::string verb, Diagnostics& diagnostics)
-      : verb_(std::move(verb)), diagnostics_(diagnostics), scope_(graph_, diagnostics, {}) {}
+  /// verbs_with: which verbs have an option; null where no task is read.
+  using VerbsWith = std::vector<std::string> (*)(std::string_view option);
+  OptionReader(std::string verb, Diagnostics& diagnostics, VerbsWith verbs_with = nullptr)
+      : verb_(std::move(verb)), verbs_with_(verbs_with), diagnostics_(diagnostics), scope_(graph_, diagnostics, {}) {}
 
   /// What a number of another kind would be right for, and how it is written there.
   struct OtherPlace {
@@ -66,8 +69,11 @@ class OptionReader {
                                   double least, double most, bool whole, std::optional<OtherPlace> const& elsewhere);
   std::optional<bool> yes_or_no(ast::Expression const& tree, std::string const& name);
   void setting(ast::Argument const& argument, SettingRow const& row, Settings& place);
+  // owner: the verb, or what the verb's task has settings of.
+  errors::OptionOwner owner(std::string name, std::string_view option) const;
 
   std::string verb_;
+  VerbsWith verbs_with_;
   Diagnostics& diagnostics_;
   Graph graph_;
   Scope scope_;

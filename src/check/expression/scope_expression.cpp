@@ -199,15 +199,20 @@ std::optional<Typed> Scope::function_call(ast::Call const& call) {
     diagnostics_.add(std::move(*refused));
     return std::nullopt;
   }
+  FunctionRow const* row = find_function(name);
+  bool const is_quantity = row == nullptr && !functions_.contains(name) && find(name) != nullptr;
+  if (auto refused = is_quantity ? errors::quantity_at_time(call) : std::nullopt) {
+    diagnostics_.add(std::move(*refused));
+    return std::nullopt;
+  }
   CallArguments const arguments = call_arguments(call);
   if (auto const user = functions_.find(name); user != functions_.end()) return user_call(call, *user->second, arguments);
-  FunctionRow const* row = find_function(name);
   if (row == nullptr) {
     std::vector<std::string> known;
     for (FunctionRow const& each : functions()) known.emplace_back(each.name);
     for (auto const& [each, definition] : functions_) known.push_back(each);
     for (ProcessName const& each : processes_) known.push_back(each.definition->name.text);
-    diagnostics_.add(errors::unknown_function(call.function, known, find(name) != nullptr));
+    diagnostics_.add(errors::unknown_function(call, known, is_quantity));
     return std::nullopt;
   }
   std::size_t const count = arguments.count, least = static_cast<std::size_t>(row->minimum_arguments),

@@ -19,7 +19,9 @@ Diagnostic unknown_name(ast::Name const& name, Names const& known);
 /// `dy/dt` of a `y` that there is, whose derivative has this many primes.
 Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::string const& name, int primes);
 Diagnostic duplicate_name(ast::Name const& name, Span first);
-Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity);
+Diagnostic unknown_function(ast::Call const& call, Names const& known, bool is_quantity);
+/// `y(t)`, `y(t - 0.01)` of a quantity in continuous time; nothing for other calls.
+std::optional<Diagnostic> quantity_at_time(ast::Call const& call);
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most);
 Diagnostic piecewise_without_otherwise(ast::Call const& call);
 Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function);
@@ -171,7 +173,9 @@ Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names co
 Diagnostic unknown_fit(ast::Name const& name, Names const& known, bool is_data);
 /// A part of something named: "data `bench` has no range `trian`".
 Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::string const& kind, Names const& known);
-Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known);
+Diagnostic unknown_option(Span span, std::string const& option, OptionOwner const& owner, Names const& known);
+/// `with "map"`, `with map + mh`: an option that is neither a name nor a call, and has no key.
+Diagnostic option_without_name(ast::Expression const& option, std::string const& verb);
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);
 Diagnostic option_kind(Span span, std::string const& option, Subject const& wanted, std::string const& example);
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most);
@@ -238,6 +242,9 @@ Diagnostic no_target(ast::Name const& dictionary);
 Diagnostic target_twice(Span second, Span first, std::string const& text);
 Diagnostic no_terms(ast::Name const& dictionary);
 Diagnostic nothing_left_of_terms(Span target, std::string const& equation);
+/// item: the term that holds the family.
+Diagnostic family_inside_term(ast::Name const& family, ast::Expression const& item);
+Diagnostic list_of_terms(std::string const& statement, ast::Expression const& list);
 Diagnostic unknown_generator(ast::Name const& name, Names const& families);
 Diagnostic generator_arguments(ast::Name const& generator, std::string const& missing, std::string const& example);
 Diagnostic generator_number(Span span, std::string const& option, int most, std::string const& example);

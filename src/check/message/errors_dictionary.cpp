@@ -3,6 +3,7 @@
 
 #include "check/message/error_words.hpp"
 #include "function/table.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -33,6 +34,25 @@ Diagnostic no_terms(ast::Name const& dictionary) {
 Diagnostic nothing_left_of_terms(Span target, std::string const& equation) {
   return about({equation}, error("E6602", target, fmt::format("no term remains for `{}`", equation),
                                  "allow more units in `coefficients`, exclude fewer terms, or add terms"));
+}
+
+Diagnostic family_inside_term(ast::Name const& family, ast::Expression const& item) {
+  std::string terms;
+  ast::Expression const* rest = &item;
+  for (auto const* sum = std::get_if<ast::Box<ast::Binary>>(&rest->node); sum != nullptr && (*sum)->symbol == "+";
+       sum = std::get_if<ast::Box<ast::Binary>>(&rest->node)) {
+    terms = fmt::format(", {}{}", unparse(*(*sum)->right), terms);
+    rest = &*(*sum)->left;
+  }
+  return about({family.text}, error("E6603", family.span, fmt::format("`{}` is a family of terms, not a function", family.text),
+                                    terms.empty() ? "a family stands alone in the list of terms, or is a factor of a product"
+                                                  : fmt::format("separate terms by commas: `{}{}`", unparse(*rest), terms)));
+}
+
+Diagnostic list_of_terms(std::string const& statement, ast::Expression const& list) {
+  std::string const text = unparse(list);
+  return error("E2013", list.span, "a list cannot be used in an expression",
+               fmt::format("write it without parentheses: `{} = {}`", statement, text.substr(1, text.size() - 2)));
 }
 
 Diagnostic unknown_generator(ast::Name const& name, Names const& families) {

@@ -4,16 +4,10 @@
 #include <algorithm>
 
 #include "check/message/error_words.hpp"
-#include "distribution/distribution.hpp"
 #include "function/table.hpp"
 
 namespace sysid::errors {
 namespace {
-
-constexpr Synonym function_synonyms[] = {
-    {"absolute", "abs"},   {"fabs", "abs"}, {"arccos", "acos"}, {"arcsin", "asin"}, {"arctan", "atan"},
-    {"heaviside", "step"}, {"ln", "log"},   {"sgn", "sign"},    {"signum", "sign"}, {"squareroot", "sqrt"},
-};
 
 constexpr Synonym unit_synonyms[] = {{"gn", "g_n"}, {"gee", "g_n"}, {"gravity", "g_n"}, {"decc", "degC"}, {"strain", "microstrain"},
                                      {"r", "rev"},  {"rot", "rev"}, {"turn", "rev"},    {"turns", "rev"}, {"revs", "rev"}};
@@ -124,64 +118,6 @@ Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::s
 Diagnostic duplicate_name(ast::Name const& name, Span first) {
   return about({name.text}, conflict("E2002", name.span, "again here", first, "first declared here",
                                      fmt::format("`{}` is declared twice", name.text), "rename one of the two, or delete it"));
-}
-
-Diagnostic unknown_function(ast::Name const& name, Names const& known, bool is_quantity) {
-  if (is_quantity)
-    return about({name.text}, error("E2003", name.span, fmt::format("`{}` is a quantity, not a function", name.text),
-                                    fmt::format("multiplication is written with *: `{0}*(...)`; a quantity is written without its "
-                                                "time, `{0}`, and an initial value as `initial {0} = ...`",
-                                                name.text)));
-  for (std::string_view const derivative : {"der", "diff", "d", "ddt", "dt", "derivative", "D", "dot", "ddot", "Dt"})
-    if (name.text == derivative)
-      return about({name.text},
-                   error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
-                         "a derivative is written with primes: `y'`, `y''`"),
-                   "function");
-  if (find_distribution(name.text) != nullptr)
-    return about({name.text}, error("E2003", name.span, fmt::format("`{}` is a distribution, not a function", name.text),
-                                    fmt::format("a prior is written with `~`: `parameter k ~ {}(...)`", name.text)));
-  constexpr Synonym of_arrays[] = {{"diag", "diagonal"}, {"eye", "identity"}, {"trans", "transpose"}};
-  for (Synonym const& each : of_arrays)
-    if (name.text == each.foreign)
-      return about({name.text},
-                   error("E2003", name.span, fmt::format("there is no function `{}`", name.text),
-                         fmt::format("did you mean `{}`?", each.ours)),
-                   "function");
-  if (name.text == "pow" || name.text == "power")
-    return about({name.text},
-                 error("E2003", name.span, fmt::format("there is no function `{}`", name.text), "powers are written with ^: `a^b`"),
-                 "function");
-  auto const help = [&](std::string const& list) {
-    if (name.text == "pi") return std::string("write `pi`: it is a number");
-    return guess_or(function_synonyms, name.text, known, "define it: `function f(a, b) = ...`; built-in functions: " + list);
-  };
-  Diagnostic result = about(
-      {name.text}, error("E2003", name.span, fmt::format("there is no function `{}`", name.text), help("sysid list functions")),
-      "function");
-  result.prompt_help = help("`list functions`");
-  return result;
-}
-
-Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most) {
-  std::string const wanted = least == most ? fmt::format("{}", least)
-                             : most > 100  ? fmt::format("{} or more", least)
-                                           : fmt::format("{} to {}", least, most);
-  return about({function.text},
-               error("E2004", function.span,
-                     fmt::format("`{}` takes {} argument{}, not {}", function.text, wanted, wanted == "1" ? "" : "s", given),
-                     "give each argument once, separated by commas"));
-}
-
-Diagnostic piecewise_without_otherwise(ast::Call const& call) {
-  return about({call.function.text},
-               error("E2004", call.span, fmt::format("`{}` has no value where no condition holds", call.function.text),
-                     "write condition, value, condition, value, ..., and last the value for all other cases"));
-}
-
-Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function) {
-  return about({function}, error("E2005", argument.span, fmt::format("arguments of the function `{}` have no names", function),
-                                 fmt::format("remove `{} =`", argument.text)));
 }
 
 Diagnostic definition_cycle(Span span, Names const& loop) {

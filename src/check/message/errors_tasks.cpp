@@ -6,6 +6,7 @@
 #include <span>
 
 #include "check/message/error_words.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -103,7 +104,6 @@ constexpr Synonym option_places[] = {
     {"input", "an input is named: `input x = gaussian(sd = 10)`"},
 };
 constexpr std::string_view of_backends[] = {"samples", "burn_in", "thin", "chains", "proposal", "particles", "variance"};
-constexpr std::string_view of_tasks[] = {"seed", "solver", "substeps", "search", "prediction"};
 
 constexpr Synonym backend_synonyms[] = {
     {"hmc", "nuts"},
@@ -140,19 +140,32 @@ constexpr Synonym backend_synonyms[] = {
     {"horseshoe", "spike_slab"},
 };
 
-bool among(std::span<std::string_view const> words, std::string const& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+template <class Words>
+bool among(Words const& all, std::string const& word) {
+  return std::find(std::begin(all), std::end(all), word) != std::end(all);
 }
 
 /// Help about an option that is written elsewhere, or empty.
-std::string place_of_option(std::string const& option) {
-  if (among(of_tasks, option))
-    return fmt::format("`{0}` is an option of the task: write `{0} = ...` after the parentheses", option);
-  if (among(of_backends, option))
-    return fmt::format("`{0}` is a setting of the back end: write it in its parentheses, `mh({0} = ...)`", option);
+std::string place_of_option(std::string const& option, OptionOwner const& owner, Names const& known) {
+  bool const inside = owner.name != owner.verb, own = among(owner.verbs, owner.verb);
+  if (inside && own) return fmt::format("`{0}` is an option of the task: write `{0} = ...` after the parentheses", option);
+  if (known.empty()) return {};
+  auto const kind = words::task_kind(owner.verb);
+  bool const has_backend = kind == TaskKind::fit || kind == TaskKind::select;
+  if (!inside && has_backend && among(of_backends, option))
+    return fmt::format("`{0}` is a setting of the back end: write it in its parentheses, `{1}({0} = ...)`", option,
+                       kind == TaskKind::fit ? "mh" : "abc_smc");
   for (Synonym const& each : option_places)
     if (option == each.foreign) return std::string(each.ours);
-  return {};
+  if (owner.verbs.empty() || own) return {};
+  return fmt::format("remove it: `{}` is an option of {}", option, quoted(owner.verbs));
+}
+
+/// The word of a back end on one side of an operator; empty where there is none.
+std::string word_of(ast::Expression const& tree) {
+  if (auto const* call = std::get_if<ast::Box<ast::Call>>(&tree.node)) return unparse(ast::Expression{tree.span, *call});
+  auto const* reference = std::get_if<ast::Reference>(&tree.node);
+  return reference == nullptr || reference->primes > 0 ? std::string() : reference->name.text;
 }
 
 }  // namespace
@@ -180,13 +193,24 @@ Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::stri
                                        fmt::format("{} of {}", kind, fmt::join(owner.names, " "))));
 }
 
-Diagnostic unknown_option(Span span, std::string const& option, std::string const& task, Names const& known) {
-  std::string help =
-      guess_or(option_synonyms, option, known, known.empty() && !among(of_tasks, option) ? std::string() : place_of_option(option));
+Diagnostic unknown_option(Span span, std::string const& option, OptionOwner const& owner, Names const& known) {
+  std::string help = guess_or(option_synonyms, option, known, place_of_option(option, owner, known));
   if (help.empty())
     help = known.empty() ? std::string("it has none")
                          : fmt::format("{} {}", known.size() == 1 ? "its option is" : "its options are", quoted(known));
-  return about({task, option}, error("E6002", span, fmt::format("`{}` has no option `{}`", task, option), std::move(help)));
+  return about({owner.name, option},
+               error("E6002", span, fmt::format("`{}` has no option `{}`", owner.name, option), std::move(help)));
+}
+
+Diagnostic option_without_name(ast::Expression const& option, std::string const& verb) {
+  std::string help = "the back end is named first, then each option with `=`: `with mh, seed = 1`";
+  if (auto const* text = std::get_if<ast::Text>(&option.node))
+    help = fmt::format("write the name of a back end without quotes: `with {}`", text->value);
+  auto const* both = std::get_if<ast::Box<ast::Binary>>(&option.node);
+  if (both != nullptr)
+    if (std::string const left = word_of(*(*both)->left), right = word_of(*(*both)->right); !left.empty() && !right.empty())
+      help = fmt::format("a task has one back end: write `with {}` or `with {}`", left, right);
+  return about({verb}, error("E6002", option.span, fmt::format("`{}` is no option of `{}`", unparse(option), verb), help));
 }
 
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example) {

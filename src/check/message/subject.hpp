@@ -18,4 +18,10 @@ Subject named(std::string const& name);
 /// "the value of `width`"; before: "the value of".
 Subject named(std::string_view before, std::string const& name);
 
+/// Of what an option or a setting was written, in a task of which verb, and which verbs have such an option.
+struct OptionOwner {
+  std::string name, verb;
+  Names verbs;
+};
+
 }  // namespace sysid::errors

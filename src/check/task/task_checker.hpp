@@ -110,6 +110,7 @@ class TaskChecker {
   void derivatives(ast::Expression const& tree, DiscoverTask& task);
   // `noise(displacement = 0.1 [mm])`.
   void noise(ast::Call const& call, CheckedDictionary const& dictionary, DiscoverTask& task);
+  void noise_of_all(ast::Option const& option, CheckedDictionary const* dictionary);
   // Every channel of the dictionary is measured in every experiment.
   void require_channels(CheckedDictionary const& dictionary, DiscoverTask const& task);
 

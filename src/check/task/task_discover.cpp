@@ -1,4 +1,6 @@
 // `discover`: the dictionary, the selector with its settings, the form of derivatives, what is reported.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "check/message/errors.hpp"
@@ -67,6 +69,20 @@ void TaskChecker::noise(ast::Call const& call, CheckedDictionary const& dictiona
              });
 }
 
+// `noise = 1 [percent]`, as `simulate` has it.
+void TaskChecker::noise_of_all(ast::Option const& option, CheckedDictionary const* dictionary) {
+  if (dictionary != nullptr && dictionary->numbers.discrete) {
+    diagnostics_.add(errors::not_in_discrete_time(option.span, "noise", dictionary->name));
+    return;
+  }
+  bool const known = dictionary != nullptr && !dictionary->measured.channels.empty();
+  Channel const* const channel = known ? &dictionary->measured.channels.front() : nullptr;
+  std::string const unit = channel != nullptr && channel->unit ? fmt::format(" [{}]", channel->unit->text) : std::string();
+  diagnostics_.add(
+      errors::option_kind(option.span, "noise", {"the standard deviation of a channel"},
+                          fmt::format("noise({} = 0.1{})", channel == nullptr ? "displacement" : channel->name, unit)));
+}
+
 void TaskChecker::require_channels(CheckedDictionary const& dictionary, DiscoverTask const& task) {
   for (std::size_t i = 0; i < task.experiments.size(); ++i) {
     DataBlock const& block = file_.data[static_cast<std::size_t>(task.experiments[i].data)];
@@ -105,6 +121,8 @@ DiscoverTask TaskChecker::discover() {
         options_.seed(option, task.seed);
       else
         options_.flag(option, key, key == "refit" ? task.refit : task.candidates);
+    } else if (option.key && key == "noise") {
+      if (options_.fresh(option, key)) noise_of_all(option, dictionary);
     } else if (key == "noise" && as_call(option.value) != nullptr) {
       if (discrete) diagnostics_.add(errors::not_in_discrete_time(option.span, "noise", dictionary->name));
       if (options_.fresh(option, key) && dictionary != nullptr && !discrete) noise(*as_call(option.value), *dictionary, task);

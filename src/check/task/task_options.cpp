@@ -1,6 +1,7 @@
 // One row for each option; the verbs share most of them. Those of `select` alone are in select_options.cpp.
 #include "check/task/task_options.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "check/task/select_options.hpp"
@@ -72,6 +73,16 @@ std::vector<std::string> task_option_names(std::string_view verb) {
   std::vector<std::string> names;
   for (TaskOptionRow const& row : task_options(verb)) names.emplace_back(row.name);
   return names;
+}
+
+std::vector<std::string> verbs_with_option(std::string_view option) {
+  std::vector<std::string> found;
+  for (std::string_view const verb : words::verbs) {
+    std::vector<TaskOptionRow> const all = task_options(verb);
+    if (std::any_of(all.begin(), all.end(), [&](TaskOptionRow const& each) { return each.name == option; }))
+      found.emplace_back(verb);
+  }
+  return found;
 }
 
 }  // namespace sysid

@@ -16,5 +16,7 @@ struct TaskOptionRow {
 /// In the order in which messages name them; empty for what is no verb.
 std::vector<TaskOptionRow> task_options(std::string_view verb);
 std::vector<std::string> task_option_names(std::string_view verb);
+/// The verbs that have an option of this name.
+std::vector<std::string> verbs_with_option(std::string_view option);
 
 }  // namespace sysid

@@ -7,6 +7,7 @@
 #include "check/expression/leaves.hpp"
 #include "check/message/errors.hpp"
 #include "check/task/task_checker.hpp"
+#include "check/task/task_options.hpp"
 #include "core/setting/table.hpp"
 #include "solver/linear_structure.hpp"
 
@@ -21,7 +22,7 @@ TaskChecker::TaskChecker(ast::Task const& tree, TaskNames const& names, CheckedF
       all_tasks_(all_tasks),
       diagnostics_(diagnostics),
       before_(diagnostics.all().size()),
-      options_(tree.verb.text, diagnostics) {}
+      options_(tree.verb.text, diagnostics, &verbs_with_option) {}
 
 std::optional<Task> TaskChecker::run() {
   Task task;
