@@ -13,25 +13,11 @@ TEST_CASE("words that are no units are read as what they were meant for") {
     char const* written;
     char const* meant;
   };
-  for (Slip const& each : {Slip{"m3", "m^3"},
-                           {"s2", "s^2"},
-                           {"cm2", "cm^2"},
-                           {"kgm2", "kg m^2"},
-                           {"Kg2", "kg^2"},
-                           {"Kg", "kg"},
-                           {"KN", "kN"},
-                           {"kn", "kN"},
-                           {"mpa", "MPa"},
-                           {"hz", "Hz"},
-                           {"khz", "kHz"},
-                           {"mn", "mm"},
-                           {"Nm", "N m"},
-                           {"Ns", "N s"},
-                           {"Nmm", "N mm"},
-                           {"kNm", "kN m"},
-                           {"kgK", "kg K"},
-                           {"ms2", "m/s^2"},
-                           {"kmh", "km/h"}}) {
+  for (Slip const& each :
+       {Slip{"m3", "m^3"}, {"s2", "s^2"},  {"cm2", "cm^2"},  {"kgm2", "kg m^2"}, {"Kg2", "kg^2"}, {"Kg", "kg"},
+        {"KN", "kN"},      {"kn", "kN"},   {"mpa", "MPa"},   {"hz", "Hz"},       {"khz", "kHz"},  {"mn", "mm"},
+        {"Nm", "N m"},     {"Ns", "N s"},  {"Nmm", "N mm"},  {"kNm", "kN m"},    {"kgK", "kg K"}, {"ms2", "m/s^2"},
+        {"kmh", "km/h"},   {"M", "mol/l"}, {"mM", "mmol/l"}, {"uM", "umol/l"},   {"nM", "nmol/l"}}) {
     CAPTURE(each.written);
     REQUIRE_FALSE(unit_atom(each.written));
     auto const slip = unit_slip(each.written);
@@ -53,7 +39,9 @@ TEST_CASE("a unit with several slips is told once, as it should be written whole
                                     {"kg/ms2", "[kg/(m s^2)]"},
                                     {"1/Nm", "[1/(N m)]"},
                                     {"Nm/Kg", "[N m/kg]"},
-                                    {"J/kgK", "[J/(kg K)]"}}) {
+                                    {"J/kgK", "[J/(kg K)]"},
+                                    {"1/mM", "[1/(mmol/l)]"},
+                                    {"m/kmh", "[m/(km/h)]"}}) {
     CAPTURE(unit);
     std::string const said =
         test::messages("model m {\nparameter c [" + std::string(unit) + "] = 1\nobserve d ~ normal(c, sd = 1)\n}\n");

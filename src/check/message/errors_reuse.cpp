@@ -44,7 +44,9 @@ Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& lef
         "only numbers and vectors can be raised to a power, element by element, and the exponent must be a number; for a matrix "
         "write a product: `A*A`";
   } else if (symbol == "/") {
-    help = "the divisor must be a number; to divide element by element write `diagonal(a)*b^-1`";
+    help = right.rank == 2  ? "the divisor must be a number: solve for a vector by an equation, `A*v = b`"
+           : left.rank == 0 ? "the divisor must be a number; write `a*b^-1`: `b^-1` are the reciprocals of all elements"
+                            : "the divisor must be a number; to divide element by element write `diagonal(a)*b^-1`";
   } else if (symbol == "dot") {
     help = "`dot` takes two vectors of one size";
   }

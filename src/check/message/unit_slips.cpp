@@ -14,6 +14,10 @@ constexpr std::pair<std::string_view, std::string_view> quotients[] = {
     {"ms2", "m/s^2"}, {"mss", "m/s^2"}, {"kmh", "km/h"}, {"kph", "km/h"}, {"mps", "m/s"}, {"rps", "rev/s"}, {"fps", "ft/s"},
 };
 
+// In small letters they are lengths.
+constexpr std::pair<std::string_view, std::string_view> molar[] = {
+    {"M", "mol/l"}, {"mM", "mmol/l"}, {"uM", "umol/l"}, {"µM", "umol/l"}, {"μM", "umol/l"}, {"nM", "nmol/l"}, {"pM", "pmol/l"}};
+
 bool is_common(std::string_view word) {
   return std::find(common_unit_names().begin(), common_unit_names().end(), word) != common_unit_names().end();
 }
@@ -66,6 +70,8 @@ std::optional<std::string> as_product(std::string_view word) {
 std::optional<UnitSlip> unit_slip(std::string_view word) {
   for (auto const& [written, meant] : quotients)
     if (word == written) return UnitSlip{UnitSlip::Kind::quotient, std::string(meant)};
+  for (auto const& [written, meant] : molar)
+    if (word == written) return UnitSlip{UnitSlip::Kind::molar, std::string(meant)};
   std::size_t const end = word.find_last_not_of("0123456789") + 1;
   if (end > 0 && end < word.size()) {
     std::string_view const stem = word.substr(0, end);

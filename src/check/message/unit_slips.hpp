@@ -8,9 +8,9 @@ namespace sysid {
 
 /// A word that is no unit, and what its letters say that it was meant as.
 struct UnitSlip {
-  enum class Kind { power, product, capitals, key, quotient };
+  enum class Kind { power, product, capitals, key, quotient, molar };
   Kind kind;
-  std::string meant;  // "m^3", "N m", "kg", "km/h"
+  std::string meant;  // "m^3", "N m", "kg", "km/h", "mmol/l"
 };
 
 /// Nothing where the letters do not tell.

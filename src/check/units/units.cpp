@@ -49,9 +49,11 @@ void repair(ast::UnitExpression& expression, Repair& found) {
     found.slips.emplace_back(name, slip);
     found.complete = found.complete && slip;
     if (!slip) continue;
-    if (factor.reciprocal) std::replace(slip->meant.begin(), slip->meant.end(), '/', ' ');  // [kg/ms2] is no quotient of two
-    bool const several = slip->meant.find(' ') != std::string::npos;
-    name.text = several && factor.reciprocal ? "(" + slip->meant + ")" : slip->meant;
+    // [kg/ms2] is no quotient of two.
+    if (factor.reciprocal && slip->meant == "m/s^2") slip->meant = "m s^2";
+    bool const product = slip->meant.find(' ') != std::string::npos, quotient = slip->meant.find('/') != std::string::npos;
+    bool const whole = (factor.reciprocal && (product || quotient)) || (factor.exponent && quotient);  // [Nm^2] is N m^2
+    name.text = whole ? "(" + slip->meant + ")" : slip->meant;
   }
 }
 
