@@ -23,12 +23,14 @@ Diagnostic unreadable(DataBlock const& block, std::filesystem::path const& path,
   for (std::filesystem::path const file : files_beside(path))
     near.push_back((std::filesystem::path(block.path).parent_path() / file.filename()).string());
   std::string const guess = did_you_mean(block.path, near);
-  return {Severity::error,
-          "E4018",
-          std::move(message),
-          Label{block.path_span, {}},
-          {},
-          guess.empty() ? "paths are relative to the folder of the .sysid file" : guess};
+  std::string help = "paths are relative to the folder of the .sysid file";
+  if (block.path.find_first_of("*?") != std::string::npos)
+    help = "a data block reads one file: write its name, and a block for each file";
+  else if (block.path.starts_with("~"))
+    help = "`~` is not replaced by your home folder: write the path from `/`, or relative to the folder of the .sysid file";
+  else if (block.path.find("://") != std::string::npos)
+    help = "only files of this machine are read: download it, and write its path";
+  return {Severity::error, "E4018", std::move(message), Label{block.path_span, {}}, {}, guess.empty() ? help : guess};
 }
 
 // The block has no times that could be wrong in one row: it and the model contradict each other.

@@ -108,6 +108,8 @@ struct StartValue {
 Diagnostic initial_missing(Span declaration, Names const& components, std::vector<StartValue> const& values);
 Diagnostic initial_twice(Span second, Span first, std::string const& component);
 Diagnostic initial_moves(Span span);
+/// `initial y = displacement`, a channel.
+Diagnostic initial_from_channel(ast::Name const& channel, ast::Reference const& state, std::optional<Unit> const& unit);
 Diagnostic not_a_state(ast::Name const& name, Names const& states);
 Diagnostic channel_twice(ast::Name const& name, Span first);
 Diagnostic nothing_observed(ast::Name const& model);

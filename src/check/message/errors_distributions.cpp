@@ -32,6 +32,15 @@ constexpr Synonym distribution_synonyms[] = {
     {"expon", "exponential"},
     {"studentt", "student_t"},
     {"inversegamma", "inverse_gamma"},
+    {"inv_gamma", "inverse_gamma"},
+    {"igamma", "inverse_gamma"},
+    {"dnorm", "normal"},
+    {"dunif", "uniform"},
+    {"dgamma", "gamma"},
+    {"dbeta", "beta"},
+    {"dexp", "exponential"},
+    {"dlnorm", "log_normal"},
+    {"dt", "student_t"},
 };
 
 constexpr Synonym argument_synonyms[] = {

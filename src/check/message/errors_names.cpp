@@ -32,6 +32,12 @@ constexpr Synonym name_synonyms[] = {
     {"int", declared_in_stan},
     {"lower", "bounds are arguments of a prior: `parameter NAME ~ normal(0, sd = 1, lower = 0)`"},
     {"upper", "bounds are arguments of a prior: `parameter NAME ~ normal(0, sd = 1, upper = 1)`"},
+    {"True", "write `1`"},
+    {"true", "write `1`"},
+    {"False", "write `0`"},
+    {"false", "write `0`"},
+    {"randn", "noise is written in `observe d ~ normal(y, sd = sigma)`, an unknown force as a `disturbance`"},
+    {"rand", "noise is written in `observe d ~ normal(y, sd = sigma)`, an unknown force as a `disturbance`"},
     {"NA", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"NaN", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"nan", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
@@ -187,6 +193,8 @@ Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& me
       return about({name.text}, error("E2011", name.span, message, fmt::format("units are case-sensitive: write `{}`", whole)));
     case UnitSlip::Kind::key:
       return about({name.text}, error("E2011", name.span, message, fmt::format("did you mean `{}`?", whole)));
+    case UnitSlip::Kind::molar:
+      return about({name.text}, error("E2011", name.span, message, fmt::format("a molar concentration is written `{}`", whole)));
     case UnitSlip::Kind::quotient:
       break;
   }

@@ -78,6 +78,19 @@ Diagnostic initial_moves(Span span) {
   return error("E3009", span, "an initial value cannot depend on states, inputs or time", "use numbers, constants and parameters");
 }
 
+Diagnostic initial_from_channel(ast::Name const& channel, ast::Reference const& state, std::optional<Unit> const& unit) {
+  std::string const name =
+      state.name.text.substr(0, state.name.text.find('.')) + (state.primes == 0 ? "0" : fmt::format("_rate{}", state.primes));
+  std::string const declared = unit && !unit->text.empty() ? fmt::format("{} [{}]", name, unit->text) : name;
+  return about(
+      {channel.text},
+      error("E2001", channel.span,
+            fmt::format("`{}` is a measured channel: its name alone cannot be used in an expression", channel.text),
+            fmt::format("an unknown initial value is a parameter: `parameter {} ~ normal(0, sd = 1)` and `initial {} = {}`; or "
+                        "the task estimates it from the first rows: `start = estimated(rows = 50)`",
+                        declared, primed(state), name)));
+}
+
 Diagnostic not_a_state(ast::Name const& name, Names const& states) {
   for (std::string const& each : states)
     for (char const* pattern : {"d{}", "{}dot", "{}_dot", "d{}dt", "v{}", "{}p"})

@@ -159,6 +159,11 @@ void ModelChecker::initial_values() {
         state.initial_given = true;
         continue;
       }
+      auto const* word = std::get_if<ast::Reference>(&initial.value->node);
+      if (word != nullptr && scope_.find(word->name.text) == nullptr && scope_.samples().channels.contains(word->name.text)) {
+        diagnostics_.add(errors::initial_from_channel(word->name, initial.state, state.unit));
+        continue;
+      }
       auto const value = scope_.expression_in(state.unit, state.span, *initial.value, {Occasion::Kind::declared, state.name});
       if (!value) continue;
       if (!moving_part(model_.graph, value->node).empty()) {
