@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "syntax/foreign_words.hpp"
 #include "syntax/words.hpp"
 
@@ -66,6 +68,10 @@ Diagnostic unclosed(Token const& opener, Span noticed) {
   return out;
 }
 
+std::string no_block_inside(Token const& block) {
+  return fmt::format("no block stands inside another: move `{} ... {{ ... }}` behind the `}}` of the block around it", block.text);
+}
+
 Diagnostic unclosed_text(Span text) {
   Diagnostic out = error("E1103", {text.end, text.end}, "the text in quotes is not closed", "end it with `\"` on the same line");
   out.primary->text = "`\"` is missing here";
@@ -124,6 +130,26 @@ Diagnostic unknown_statement(Token const& word, std::string_view place, std::spa
 Diagnostic equation_with_keyword(Token const& word) {
   return error("E1109", word.span, fmt::format("no statement of a model begins with `{}`", word.text),
                fmt::format("an equation has no keyword: remove `{}`", word.text));
+}
+
+std::string place_of_statement(std::string_view word, bool with_tilde) {
+  constexpr std::array<std::string_view, 5> of_noise{"noise", "sd", "sigma", "std", "error"};
+  if (words::contains(of_noise, word))
+    return "the noise of a channel is written in the model, `observe CHANNEL ~ normal(y, sd = 0.1)`: remove this line";
+  bool const of_model = words::contains(words::model_statements, word) && !words::contains(words::data_statements, word);
+  bool const binds = word == "observe" || word == "parameter";  // with `=` they name a column and a value
+  return of_model && (with_tilde || !binds) ? fmt::format("`{}` belongs in a model: move this line there", word) : std::string();
+}
+
+std::string place_of_output(std::string_view word) {
+  constexpr std::array<std::string_view, 8> shows{"plot", "print", "show", "display", "disp", "save", "write", "summary"};
+  if (words::contains(shows, word))
+    return "a run writes tables, figures and a page of each task: `sysid run FILE -o DIR`; remove this line";
+  constexpr std::array<std::string_view, 5> commands{"check", "track", "report", "export", "crosscheck"};
+  if (words::contains(commands, word)) return fmt::format("it is a command: `sysid {} --help`; remove this line", word);
+  if (word == "compare")
+    return "write `select` to choose among candidate models; results are compared by the command `sysid compare`";
+  return {};
 }
 
 Diagnostic unknown_item(Token const& word) {

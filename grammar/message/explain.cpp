@@ -203,6 +203,7 @@ class Failure {
   Diagnostic unknown_model_statement(Token const& word) const {
     Diagnostic diagnostic = errors::unknown_statement(word, "a model", words::model_statements);
     bool const typed = words::translated(words::foreign_model_statements(), word.text) == "let";
+    if (words::contains(words::items, word.text)) diagnostic.help = fmt::format("`{}` stands outside of models", word.text);
     if (typed && has("~")) diagnostic.help = "did you mean `parameter`?";
     if (typed && !has("~") && !has("=")) diagnostic.help = "did you mean `state`, or `parameter` for a value to be estimated?";
     return diagnostic;
@@ -220,6 +221,7 @@ class Failure {
     Diagnostic diagnostic = errors::unknown_statement(found(), "a data block", words::data_statements);
     if (found().is("hold")) diagnostic.help = "the rule comes after the column of its input: `input x = force [N] hold linear`";
     if (has("..")) diagnostic.help = fmt::format("a range of rows is written `split {}`", gap().rest());
+    if (std::string place = errors::place_of_statement(found().text, has("~")); !place.empty()) diagnostic.help = std::move(place);
     return diagnostic;
   }
 
@@ -239,6 +241,14 @@ class Failure {
       diagnostic.help = fmt::format("the name of a task is followed by `=`: `{} = {}`", found().text, verb->text);
     if (verb != nullptr && verb->is("=") && words::contains(words::model_statements, found().text))
       diagnostic.help = fmt::format("outside a block, a task is written `NAME = fit ...`: remove `{}`", found().text);
+    bool const named = sign != nullptr && verb != nullptr && !words::contains(words::model_statements, found().text);
+    Token const* const equals =
+        found_ + 3 < tokens_.size() && tokens_[found_ + 3].statement == statement_ ? &tokens_[found_ + 3] : nullptr;
+    if (named && is_word(*sign) && verb->is("="))
+      diagnostic.help = fmt::format("a name is one word: `{}_{} = ...`", found().text, sign->text);
+    if (named && (sign->is("-") || sign->is(".")) && equals != nullptr && equals->is("="))
+      diagnostic.help = fmt::format("a name is made of letters, digits and `_`: `{}_{} = ...`", found().text, verb->text);
+    if (std::string const place = errors::place_of_output(found().text); !place.empty()) diagnostic.help = place;
     bool const module = words::translated(words::foreign_items(), found().text) == "use";
     if (module && sign != nullptr && is_word(*sign))
       diagnostic.help = fmt::format(
@@ -250,6 +260,7 @@ class Failure {
     Diagnostic diagnostic = errors::unknown_verb(found());
     bool const behind_semicolon =
         first_ > 1 && tokens_[first_ - 1].is(";") && found_ == first_ + 2 && !tokens_[first_].newline_before;
+    if (std::string const place = errors::place_of_output(found().text); !place.empty()) diagnostic.help = place;
     if (behind_semicolon) diagnostic.help = "options of a task are separated by commas: write `,` in place of `;`";
     return diagnostic;
   }

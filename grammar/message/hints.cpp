@@ -32,7 +32,7 @@ bool begins_with_verb(Gap const& gap) {
   return gap.statement.size() > verb && words::contains(words::verbs, gap.statement[verb].text);
 }
 
-constexpr std::array<Situation, 35> situations{{
+constexpr std::array<Situation, 37> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
      "a parameter has a prior or a value: `parameter m [kg] ~ log_uniform(0.1, 10)`, `parameter m [kg] = 1`"},
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
@@ -45,6 +45,8 @@ constexpr std::array<Situation, 35> situations{{
        return g.wanted == wanted::name && g.begins_with("model") && (found(g, "{") || found_kind(g, TokenKind::text));
      },
      "a model has a name: `model oscillator {`"},
+    {[](Gap const& g) { return g.wanted == wanted::name && g.begins_with("model") && found(g, ")"); },
+     "a model without arguments has no parentheses: `model oscillator {`"},
     {[](Gap const& g) { return g.begins_with("split"); }, "rows are written `split train = rows 1..500`"},
     {[](Gap const& g) { return g.wanted == "a text in quotes" || (found(g, "'") && g.begins_with("file")); },
      "a text is written in double quotes on one line: `file \"measured.csv\"`"},
@@ -71,6 +73,8 @@ constexpr std::array<Situation, 35> situations{{
      "two operators stand side by side: remove one, or write what belongs between them"},
     {[](Gap const& g) { return g.wanted == wanted::end_of_statement && (found(g, "prob") || found(g, "weight")) && g.at == 1; },
      "the prior probability of a candidate is written `NAME probability 0.5`"},
+    {[](Gap const& g) { return g.wanted == wanted::item && found_kind(g, TokenKind::number); },
+     "a name begins with a letter or `_`"},
     {[](Gap const& g) { return found(g, "=") && g.at == 0; }, "an equation has two sides: `left = right`"},
     {[](Gap const& g) { return found(g, "%") && g.before() != nullptr && g.before()->kind == TokenKind::number; },
      "a percentage is written `1 [percent]`"},
@@ -258,6 +262,10 @@ std::size_t Gap::closing(std::size_t opener) const {
 
 std::string unit_without_brackets(Gap const& gap) {
   if (!found_kind(gap, TokenKind::word) || gap.before() == nullptr || gap.before()->kind == TokenKind::symbol) return {};
+  // `t in s`: the word is no inch where a unit follows it.
+  std::size_t const behind = found(gap, "in") ? end_of_unit(gap.statement, gap.at + 1) : gap.at;
+  if (behind > gap.at + 1 && !(behind < gap.statement.size() && gap.statement[behind].is("..")))
+    return fmt::format("[{}]", gap.text(gap.at + 1, behind));
   if (found(gap, "in") && gap.begins_with("parameter")) return {};  // of a range
   std::size_t const end = end_of_unit(gap.statement, gap.at);
   if (end == gap.at) return {};

@@ -15,6 +15,12 @@ namespace {
 
 constexpr std::array<std::string_view, 4> heads{"file", "time", "rate", "step"};
 
+/// What other programs do to a column.
+constexpr std::array<std::string_view, 24> column_functions{"detrend",  "demean",  "filter",   "filtfilt", "smooth",   "diff",
+                                                            "cumsum",   "abs",     "log",      "log10",    "sqrt",     "exp",
+                                                            "sin",      "cos",     "mean",     "scale",    "zscore",   "normalize",
+                                                            "gradient", "lowpass", "highpass", "movmean",  "resample", "decimate"};
+
 bool is_word(Token const* token) { return token != nullptr && token->kind == TokenKind::word; }
 bool is_number(Token const* token) { return token != nullptr && token->kind == TokenKind::number; }
 
@@ -22,6 +28,9 @@ bool is_number(Token const* token) { return token != nullptr && token->kind == T
 std::string in_name_of_column(Gap const& gap) {
   bool const within = gap.wanted == wanted::end_of_statement && (gap.found->is(".") || gap.found->is("("));
   if (!within || !is_word(gap.before()) || gap.before()->span.end != gap.found->span.begin) return {};
+  if (gap.found->is("(") && is_word(gap.next()) && words::contains(column_functions, gap.before()->text))
+    return fmt::format("a column is used as it is: write `{} {}`, and compute what it needs in the model or before",
+                       gap.text(0, gap.at - 1), gap.next()->text);
   std::size_t end = gap.at;
   while (end < gap.statement.size() && gap.statement[end].span.begin == gap.statement[end - 1].span.end &&
          !gap.statement[end].is("[") && !gap.statement[end].is(";"))
@@ -44,6 +53,11 @@ std::string in_head(Gap const& gap) {
                          gap.text(1, close + 1));
     return fmt::format("name the column before its unit: `{} t {}`", gap.statement[0].text, gap.text(1, close + 1));
   }
+  if (gap.begins_with("file") && gap.at == 2 && (gap.found->is(",") || gap.found->kind == TokenKind::text))
+    return "a data block reads one file: write a block for each file, and fit to all of them, `to DATA, OTHER_DATA`";
+  if (gap.begins_with("time") && gap.at == 2)
+    if (std::string const unit = gap.found->is("in") ? unit_without_brackets(gap) : std::string(); !unit.empty())
+      return fmt::format("a unit is written in brackets: `time {} {}`", gap.before()->text, unit);
   constexpr std::array<std::string_view, 6> starts{"start", "from", "begin", "after", "since", "skip"};
   if (gap.wanted == wanted::end_of_statement && gap.at > 1 && words::contains(starts, gap.found->text))
     return fmt::format("remove `{}`; to use a part of the record, name its rows, `split part = rows 101..500`, and use `DATA.part`",
@@ -146,6 +160,10 @@ std::string in_column(Gap const& gap) {
   if (gap.found->is("hold")) return fmt::format("only inputs have a rule between samples: remove `{}`", gap.rest());
   if (gap.found->is("~") || (is_word(gap.found) && gap.next() != nullptr && gap.next()->is("=")))
     return fmt::format("the noise is written in the model, after `observe {} ~`: remove `{}`", name, gap.rest());
+  bool const unit = gap.found_word() && end_of_unit(gap.statement, gap.at) > gap.at;
+  if (gap.found_word() && !unit && gap.before()->is("]"))
+    return fmt::format("remove `{}`: a column is used as it is, and any factor, offset or weight is written in the model",
+                       gap.rest());
   return {};
 }
 
@@ -247,6 +265,12 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
   if ((found.is("and") || found.is("&")) && is_word(gap.next()))
     return fmt::format("separate data by commas: `{}, {}`",
                        gap.text(gap.find("to") < gap.at ? gap.find("to") + 1 : gap.at - 1, gap.at), gap.text(gap.at + 1, with));
+  constexpr std::array<std::string_view, 5> spans{"for", "over", "until", "next", "during"};
+  if (is_word(gap.found) && words::contains(spans, found.text))
+    return fmt::format(
+        "a task has the rows of its data: remove `{}`; a range of rows is named in the data block, `split part = rows "
+        "101..500`, and used as `DATA.part`",
+        gap.text(gap.at, with));
   if (is_word(gap.found) && is_number(gap.next()))
     return fmt::format("options follow `with`: `with {} = {}`", found.text, gap.next()->text);
   return {};
@@ -283,6 +307,11 @@ std::string in_options(Gap const& gap) {
                        gap.text(gap.at, last));
   }
   if (found.is("with") && is_word(gap.next())) return second_with(gap, with);
+  std::size_t const start = gap.find("start", with);
+  if (found.is("=") && start + 2 < gap.at && gap.statement[start + 1].is("=") && gap.statement[start + 2].is("(") &&
+      gap.closing(start + 2) < gap.statement.size())
+    return fmt::format("remove `{}`: a fit has no start values, its search begins at draws of the prior",
+                       gap.text(start, gap.closing(start + 2) + 1));
   if (side_by_side && is_word(gap.before()) && is_word(gap.found) && gap.before(2) != nullptr &&
       (gap.before(2)->is(",") || gap.before(2)->is("with")))
     return fmt::format("an option is written `{} = {}`", gap.before()->text, gap.rest());
@@ -302,6 +331,9 @@ std::string in_options(Gap const& gap) {
 std::string in_task(Gap const& gap) {
   std::size_t const verb = gap.statement.size() > 2 && gap.statement[1].is("=") ? 2 : 0;
   if (gap.found == nullptr || gap.statement.size() <= verb || !words::contains(words::verbs, gap.statement[verb].text)) return {};
+  if (verb == 0 && gap.wanted == wanted::name && gap.at == 1 && (gap.found->is("-") || gap.found->is(".")) &&
+      gap.next(2) != nullptr && gap.next(2)->is("="))
+    return fmt::format("a name is made of letters, digits and `_`: `{}_{} = ...`", gap.before()->text, gap.next()->text);
   std::string head = in_task_head(gap, verb);
   return head.empty() ? in_options(gap) : head;
 }

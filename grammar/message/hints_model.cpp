@@ -24,6 +24,22 @@ std::string no_start(std::string_view rest) {
   return fmt::format("remove `{}`: a parameter has no start value, the search begins at draws of the prior", rest);
 }
 
+bool is_task(Gap const& gap) {
+  return words::contains(words::verbs, gap.statement[0].text) ||
+         (gap.statement.size() > 2 && gap.statement[1].is("=") && words::contains(words::verbs, gap.statement[2].text));
+}
+
+/// `HalfNormal` as `half_normal`.
+std::string in_words(std::string_view name) {
+  std::string out;
+  for (char const c : name) {
+    bool const capital = c >= 'A' && c <= 'Z';
+    if (capital && !out.empty() && out.back() != '_') out += '_';
+    out += capital ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return out;
+}
+
 /// The words of a unit, with or without quotes around them, as it is written; empty where they are none.
 std::string bracketed_unit(Gap const& gap, std::size_t from, std::size_t end) {
   if (from >= end) return {};
@@ -79,6 +95,8 @@ std::string behind_distribution(Gap const& gap) {
 
 /// `~ pm.Normal(0, 1)`, `~ flat`: a distribution with a module before it, or without parentheses.
 std::string at_distribution(Gap const& gap) {
+  if (gap.wanted == wanted::tilde && gap.begins_with("observe") && gap.found == nullptr && gap.at >= 2)
+    return fmt::format("write the distribution of the data around the model: `{} ~ normal(y, sd = sigma)`", gap.text(0, gap.at));
   if (!gap.wanted.starts_with("a distribution") || !gap.found_word()) return {};
   if (gap.next() != nullptr && gap.next()->is(".")) return fmt::format("write the distribution without `{}.`", gap.found->text);
   return gap.next() == nullptr && gap.found->is("flat") ? "write `flat()`" : "";
@@ -188,6 +206,10 @@ std::string at_bracket(Gap const& gap) {
   if (declares && gap.before()->is("]") && gap.at >= 4)
     return fmt::format("the size of a vector is written in parentheses: `{}({})`", declared_name(gap),
                        gap.text(gap.find("[") + 1, gap.at - 1));
+  bool const other = is_task(gap) || words::contains(words::data_statements, gap.statement[0].text);
+  bool const value = gap.wanted == "')'" || (!keyword && gap.wanted == wanted::end_of_statement && equals < gap.at);
+  if (value && !other && gap.before()->kind == TokenKind::word)
+    return fmt::format("remove `{}`: `{}` has the unit that it is declared with", unit, gap.before()->text);
   return {};
 }
 
@@ -235,6 +257,31 @@ std::string in_disturbance(Gap const& gap) {
   return {};
 }
 
+/// `k = pm.Uniform("k", lower=1, upper=10)`, `vector[3] k`, a text in three quotes, `sin^2(y)`.
+std::string of_other_language(Gap const& gap) {
+  Token const *left = gap.before(), *right = gap.found;
+  if (right == nullptr || left == nullptr || gap.wanted != wanted::operator_between) return {};
+  bool const module = gap.at == 5 && right->is("(") && gap.statement[1].is("=") && gap.statement[3].is(".");
+  Token const* const comma = gap.next(2);
+  if (module && comma != nullptr && gap.next()->kind == TokenKind::text && comma->is(",") &&
+      gap.closing(gap.at) < gap.statement.size())
+    return fmt::format("a parameter has its prior in one statement: `parameter {} ~ {}({})`", gap.statement[0].text,
+                       in_words(left->text), gap.text(gap.at + 3, gap.closing(gap.at)));
+  constexpr std::array<std::string_view, 5> vectors{"vector", "array", "real", "row_vector", "int"};
+  if (left->is("]") && gap.found_word() && words::contains(vectors, gap.statement[0].text) && gap.at > 3)
+    return fmt::format("a vector is declared with its size: `parameter {0}({1}) ~ ...`, `state {0}({1})`", right->text,
+                       gap.text(2, gap.at - 1));
+  if (left->kind == TokenKind::text && left->text == "\"\"" && right->kind == TokenKind::text)
+    return "a comment begins with `#` or `//`";
+  Token const *power = gap.before(2), *function = gap.before(3);
+  bool const raised = right->is("(") && left->kind == TokenKind::number && power != nullptr && power->is("^") &&
+                      function != nullptr && function->kind == TokenKind::word && !gap.declares(function->text);
+  if (raised && gap.closing(gap.at) < gap.statement.size())
+    return fmt::format("the power of a function comes after its argument: `{}{}^{}`", function->text,
+                       gap.text(gap.at, gap.closing(gap.at) + 1), left->text);
+  return {};
+}
+
 /// Values side by side, signs and points of paper.
 std::string in_expression(Gap const& gap) {
   Token const *left = gap.before(), *right = gap.found;
@@ -272,6 +319,12 @@ std::string in_expression(Gap const& gap) {
   if (gap.begins_with("parameter") && right->is("~") && gap.find("=") < gap.at)
     return fmt::format("a parameter has a prior or a value: `{} {}`", gap.text(0, gap.find("=")), gap.rest());
   if (right->is(".") && gap.at + 1 == gap.statement.size()) return "remove the `.`";
+  std::string_view const first = gap.statement[0].text;
+  bool const keyword = words::contains(words::model_statements, first) || words::contains(words::data_statements, first) ||
+                       words::contains(words::dictionary_statements, first) || is_task(gap);
+  if (!keyword && right->is("=") && gap.wanted == wanted::end_of_statement && gap.find("=") < gap.at &&
+      left->kind != TokenKind::symbol)
+    return fmt::format("an equation has one `=`: remove `{}`, or write two equations", gap.rest());
   if (right->is("+") && gap.wanted == wanted::value && !left->is("+") && !left->is("-") && !left->is("*") && !left->is("/"))
     return "remove the `+`";
   if (right->is("*") && left->is("(") && gap.wanted == wanted::value) return "a comment begins with `#` or `//`";
@@ -283,7 +336,7 @@ std::string in_expression(Gap const& gap) {
 std::string hint_in_model(Gap const& gap) {
   if (gap.statement.empty()) return {};
   for (auto const look : {&behind_distribution, &at_distribution, &behind_declared, &in_unit, &at_bracket, &in_definition,
-                          &in_initial, &in_disturbance, &in_expression})
+                          &in_initial, &in_disturbance, &of_other_language, &in_expression})
     if (std::string help = look(gap); !help.empty()) return help;
   return {};
 }

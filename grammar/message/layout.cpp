@@ -100,9 +100,20 @@ class LayoutPass {
   }
 
   void unclosed_block(std::size_t opener, std::size_t found) {
-    mistake(opener, errors::unclosed(tokens_[opener], found_here(found)));
+    Diagnostic unclosed = errors::unclosed(tokens_[opener], found_here(found));
+    if (found < tokens_.size() && words::contains(words::blocks, tokens_[found].text) && braces_balance())
+      unclosed.help = errors::no_block_inside(tokens_[found]);
+    mistake(opener, std::move(unclosed));
     if (found < tokens_.size()) spoilt_.push_back(found);
     out_.reported_at_end = true;
+  }
+
+  /// Then a block that begins inside another stands there on purpose.
+  bool braces_balance() const {
+    auto const count = [&](std::string_view brace) {
+      return std::count_if(tokens_.begin(), tokens_.end(), [&](Token const& each) { return each.is(brace); });
+    };
+    return count("{") == count("}");
   }
 
   void leave_block(std::size_t found) {

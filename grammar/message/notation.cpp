@@ -127,6 +127,18 @@ std::string instead_of_command(std::string_view command) {
   return fmt::format("write `{}` without `\\`", command);
 }
 
+std::string instead_of_unknown(std::vector<Token> const& tokens) {
+  std::size_t first = tokens.size() - 1;
+  while (first > 0 && !tokens[first].newline_before) --first;
+  Token const& name = tokens[tokens.size() - 2];
+  if (!tokens[first].is("initial") || name.kind != TokenKind::word)
+    return "an unknown value has a prior: `parameter NAME ~ log_uniform(0.1, 10)`";
+  std::string parameter(name.text.substr(0, name.text.find('\'')));
+  parameter += name.text.ends_with('\'') ? "_rate0" : "0";
+  return fmt::format("an unknown initial value is a parameter: `parameter {0} ~ normal(0, sd = 1)` and `initial {1} = {0}`",
+                     parameter, name.text);
+}
+
 std::string instead_of_colon(std::string_view text, std::size_t begin, std::size_t end, bool first_of_line,
                              std::vector<Token> const& tokens) {
   if (end - begin == 2) return "a member of a part is written with a dot: `joint.force`";
@@ -149,6 +161,8 @@ std::string instead_of_colon(std::string_view text, std::size_t begin, std::size
                                                    "initial", "state", "input", "shared", "equation"};
   if (first + 1 == tokens.size() && words::contains(heads, before.text)) return fmt::format("remove it: `{} ...`", before.text);
   if (before.is("else") || before.is("then")) return "remove it";
+  if (first + 2 == tokens.size() && words::contains(words::blocks, tokens[first].text))
+    return fmt::format("the body of a block stands in braces: `{} {} {{`", tokens[first].text, before.text);
   std::string_view line = text.substr(tokens[first].span.begin, begin - tokens[first].span.begin);
   while (line.ends_with(' ')) line.remove_suffix(1);
   return fmt::format("write `=`: `{} = ...`", line);

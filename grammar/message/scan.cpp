@@ -227,6 +227,10 @@ class Scanner {
         return;
       }
     }
+    if (peek() == '?' && !newline_before_ && out_.tokens.size() >= 2 && out_.tokens.back().is("=")) {
+      ++at_;
+      return mistake(errors::no_meaning(from(begin), "the character `?`", notation::instead_of_unknown(out_.tokens)));
+    }
     char const symbol = text_[at_++];
     if (symbol == '.' && words::is_digit(peek())) {
       bool const after_operand = begin > 0 && (words::continues_name(text_[begin - 1]) || text_[begin - 1] == '\'');

@@ -62,6 +62,8 @@ Operator const* operator_at(std::string_view text);
 bool is_command(std::string_view name);
 /// Help about a command of LaTeX, without its `\\`.
 std::string instead_of_command(std::string_view command);
+/// Help about `initial y = ?`, by the tokens before the question mark.
+std::string instead_of_unknown(std::vector<Token> const& tokens);
 /// Help about a colon from `begin` to `end` of the text, by the tokens before it. first: nothing stands before it on its line.
 std::string instead_of_colon(std::string_view text, std::size_t begin, std::size_t end, bool first,
                              std::vector<Token> const& tokens);
