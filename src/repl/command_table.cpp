@@ -1,6 +1,8 @@
 // The commands of the prompt, one row each, and how they are distinguished from statements of the language.
 #include "repl/commands.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/text/words.hpp"
@@ -8,6 +10,43 @@
 #include "syntax/words.hpp"
 
 namespace sysid::repl {
+namespace {
+
+/// {}: what is entered behind the word. alone: what is said where nothing is.
+struct ForeignCommand {
+  std::string_view word, ours, alone;
+};
+
+constexpr std::string_view of_drop = "`drop NAME` removes one statement or task",
+                           of_folder = "paths are relative to the folder in which the session was started",
+                           of_undo = "there is no undo: `reload` goes back to the file as it was last loaded or saved",
+                           of_values = "enter the name of a quantity; `show NAME` shows a statement or the result of a task",
+                           of_plots = "write `plot(FIT)`, `plot(QUANTITY)` or `plot(residual(CHANNEL))`";
+constexpr ForeignCommand foreign_commands[] = {
+    {"clear", "drop {}", of_drop},
+    {"delete", "drop {}", of_drop},
+    {"del", "drop {}", of_drop},
+    {"remove", "drop {}", of_drop},
+    {"rm", "drop {}", of_drop},
+    {"erase", "drop {}", of_drop},
+    {"plot", "plot({})", of_plots},
+    {"print", "{}", of_values},
+    {"disp", "{}", of_values},
+    {"display", "{}", of_values},
+    {"who", "list", {}},
+    {"whos", "list", {}},
+    {"ls", "list", {}},
+    {"vars", "list", {}},
+    {"dir", "list", {}},
+    {"undo", {}, of_undo},
+    {"revert", {}, of_undo},
+    {"cd", {}, of_folder},
+    {"pwd", {}, of_folder},
+    {"bye", "quit", {}},
+    {"q", "quit", {}},
+};
+
+}  // namespace
 
 std::span<CommandRow const> commands() {
   static constexpr CommandRow rows[] = {
@@ -63,6 +102,23 @@ CommandRow const* command_of(std::string_view entry, std::string& arguments) {
   bool const operation = arguments.starts_with("and ") || arguments.starts_with("or ");
   if (!apart || !names || operation) return nullptr;
   return row(word);
+}
+
+std::string instead_of_command(std::string_view entry) {
+  std::string const text(trimmed(entry));
+  std::size_t end = 0;
+  while (end < text.size() && words::continues_name(text[end])) ++end;
+  std::string const rest(trimmed(std::string_view(text).substr(end)));
+  for (ForeignCommand const& each : foreign_commands) {
+    if (each.word != std::string_view(text).substr(0, end)) continue;
+    // What an operator follows is a name.
+    bool const behind = !rest.empty() && words::begins_name(rest.front());
+    bool const all = rest == "all" && each.alone == of_drop;
+    if (!rest.empty() && !behind && each.alone != of_folder) return {};
+    if (each.ours.empty() || ((rest.empty() || all) && !each.alone.empty())) return std::string(each.alone);
+    return fmt::format("write `{}`", fmt::format(fmt::runtime(each.ours), rest));
+  }
+  return {};
 }
 
 }  // namespace sysid::repl

@@ -16,6 +16,8 @@ struct CommandRow {
 std::span<CommandRow const> commands();
 /// The command that an entry is, and the rest of its line; null where it is none: `load = fit ...` names a task.
 CommandRow const* command_of(std::string_view entry, std::string& arguments);
+/// "write `drop k`" of `delete k`, a command of other prompts; empty where the entry does not begin with such a word.
+std::string instead_of_command(std::string_view entry);
 
 /// False where a command failed, with a message.
 namespace command {

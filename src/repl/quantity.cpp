@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "check/expression/scope.hpp"
+#include "repl/commands.hpp"
 #include "repl/statistics.hpp"
 #include "repl/workbench.hpp"
 #include "syntax/parse.hpp"
@@ -39,7 +40,15 @@ std::string in_our_words(ast::Call const& call) {
                                                                      {"correlation", "corr({})"},
                                                                      {"length", "count({})"},
                                                                      {"traceplot", "plot(trace({}))"},
-                                                                     {"prob", "probability({})"}};
+                                                                     {"prob", "probability({})"},
+                                                                     {"residuals", "residual({})"},
+                                                                     {"print", "{}"},
+                                                                     {"disp", "{}"},
+                                                                     {"display", "{}"},
+                                                                     {"help", "help"},
+                                                                     {"exit", "quit"},
+                                                                     {"quit", "quit"},
+                                                                     {"who", "list"}};
   std::string arguments;
   for (ast::Argument const& each : call.arguments) arguments += (arguments.empty() ? "" : ", ") + unparse(each.value);
   for (auto const& [foreign, ours] : words)
@@ -270,7 +279,11 @@ bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
     std::string const path = path_of(*reference);
     std::vector<std::string> names = known_names();
     for (CommandRow const& row : commands()) names.emplace_back(row.name);  // a command misspelt reads like a quantity
-    std::string const near = did_you_mean(path, names);
+    std::string near = did_you_mean(path, names);
+    if (std::string ours = instead_of_command(path); !ours.empty()) near = std::move(ours);
+    if (find(series_functions(), path) != nullptr) near = fmt::format("write `{}(CHANNEL)`", path);
+    auto const* text = reference->index.size() == 1 ? std::get_if<ast::Text>(&reference->index.front().node) : nullptr;
+    if (text != nullptr) near = fmt::format("write `{}.{}`", reference->name.text, text->value);
     if (results_.empty())
       refuse(tree.span, fmt::format("there is no `{}`: no task has been run yet", path),
              !near.empty() ? near : "expressions at the prompt use results; run a fit first");

@@ -14,6 +14,7 @@
 #include "repl/commands.hpp"
 #include "repl/tasks.hpp"
 #include "repl/words.hpp"
+#include "repl/work/assignment.hpp"
 #include "repl/work/change.hpp"
 #include "repl/work/entry.hpp"
 #include "syntax/entry.hpp"
@@ -25,6 +26,11 @@ namespace {
 
 void suggest_command(Diagnostics& diagnostics, std::string const& entry) {
   std::vector<Diagnostic> all = diagnostics.all();
+  if (std::string ours = instead_of_command(entry); !ours.empty()) {
+    all.front().help = std::move(ours);
+    all.front().prompt_help.clear();
+    return diagnostics.replace(std::move(all));
+  }
   if (all.front().code != "E1105") return;
   std::vector<std::string> names;
   for (CommandRow const& row : commands()) names.emplace_back(row.name);
@@ -106,6 +112,12 @@ bool draft(Context& context, EntryPart const& part, std::string const& entry, Wo
                      Label{part.span, {}},
                      {},
                      of_model ? "begin with `model NAME {`, or `load FILE`" : "begin with `data NAME {`, or `load FILE`"});
+    context.output.show(diagnostics, entry);
+    return false;
+  }
+  if (auto refused = of_model ? assignment(work.items[place], entry, part.span) : std::nullopt) {
+    Diagnostics diagnostics;
+    diagnostics.add(std::move(*refused));
     context.output.show(diagnostics, entry);
     return false;
   }

@@ -160,6 +160,41 @@ TEST_CASE("a mistake shows where it stands in what was typed, and leaves the wor
   CHECK(d.workbench().work().text() == before);
 }
 
+TEST_CASE("a value that is given to a name takes the place of no equation") {
+  Dialogue d;
+  d.begin();
+  std::string const before = d.workbench().work().text();
+  for (auto const& [entry, help] : {std::pair("k = 5000", "write `parameter k [N/m] = 5000`"),
+                                    {"fn = 3", "write `derive fn [Hz] = 3`"},
+                                    {"x = 5", "a column of the data block"},
+                                    {"q = 5", "`let q = 5`"}}) {
+    CAPTURE(entry);
+    CHECK_FALSE(d.enter(entry));
+    CHECK_MESSAGE(has(d.messages(), help), d.messages());
+  }
+  CHECK(d.workbench().work().text() == before);
+  CHECK_MESSAGE(d.enter("parameter k [N/m] = 5000"), d.messages());
+}
+
+TEST_CASE("commands of other prompts are answered with those of this one") {
+  Dialogue d;
+  d.begin();
+  for (auto const& [entry, help] : {std::pair("delete bench", "write `drop bench`"),
+                                    {"clear all", "`drop NAME` removes"},
+                                    {"plot oscillator", "write `plot(oscillator)`"},
+                                    {"print k", "write `k`"},
+                                    {"who", "write `list`"},
+                                    {"undo", "`reload` goes back"},
+                                    {"help()", "write `help`"},
+                                    {"exit()", "write `quit`"},
+                                    {"residual", "write `residual(CHANNEL)`"},
+                                    {"first[\"k\"]", "write `first.k`"}}) {
+    CAPTURE(entry);
+    CHECK_FALSE(d.enter(entry));
+    CHECK_MESSAGE(has(d.messages(), help), d.messages());
+  }
+}
+
 TEST_CASE("a column that is not in the file is told when it is entered, at its place") {
   Dialogue d;
   d.begin();

@@ -1,0 +1,69 @@
+// By what the name is in the model: each kind of statement has its own way to give a value.
+#include "repl/work/assignment.hpp"
+
+#include <fmt/format.h>
+
+#include "repl/work/entry.hpp"
+#include "syntax/entry.hpp"
+#include "syntax/expression_text.hpp"
+#include "syntax/unparse.hpp"
+
+namespace sysid::repl {
+namespace {
+
+enum class Role { nothing, state, valued, input };
+
+/// What a name is in a model, and how its declaration begins.
+struct Declaration {
+  Role role = Role::nothing;
+  std::string head;
+};
+
+Declaration declaration_of(ast::ModelStatement const& statement, std::string const& name) {
+  return std::visit(
+      [&](auto const& each) -> Declaration {
+        using Each = std::decay_t<decltype(each)>;
+        if constexpr (std::is_same_v<Each, ast::InputDeclaration> || std::is_same_v<Each, ast::StateDeclaration>) {
+          for (ast::Declared const& one : each.names)
+            if (one.name.text == name) return {std::is_same_v<Each, ast::InputDeclaration> ? Role::input : Role::state, ""};
+        } else if constexpr (std::is_same_v<Each, ast::ParameterDeclaration>) {
+          if (each.name.name.text == name) return {Role::valued, "parameter " + text_of(each.name)};
+        } else if constexpr (std::is_same_v<Each, ast::Definition>) {
+          char const* const word = each.kind == ast::DefinitionKind::constant ? "constant "
+                                   : each.kind == ast::DefinitionKind::local  ? "let "
+                                                                              : "derive ";
+          if (each.name.name.text == name) return {Role::valued, word + text_of(each.name)};
+        } else if constexpr (std::is_same_v<Each, ast::DisturbanceDeclaration>) {
+          if (each.name.name.text == name) return {Role::state, ""};  // the checker says what it cannot be
+        }
+        return {};
+      },
+      statement);
+}
+
+}  // namespace
+
+std::optional<Diagnostic> assignment(WorkItem const& model, std::string const& entry, Span span) {
+  ast::ModelStatement const typed = model_statement_of(entry.substr(span.begin, span.end - span.begin));
+  auto const* equation = std::get_if<ast::Equation>(&typed);
+  auto const* name = equation == nullptr ? nullptr : std::get_if<ast::Reference>(&equation->left.node);
+  if (name == nullptr || name->primes > 0 || !name->index.empty() || name->name.text.find('.') != std::string::npos)
+    return std::nullopt;
+  Declaration declaration;
+  for (ast::ModelStatement const& each : std::get<ast::Model>(item_of(model.text)).statements)
+    if (Declaration found = declaration_of(each, name->name.text); found.role != Role::nothing) declaration = std::move(found);
+  if (declaration.role == Role::state) return std::nullopt;
+  std::string const value = unparse(equation->right);
+  std::string help = fmt::format("write `{} = {}`", declaration.head, value);
+  if (declaration.role == Role::input) help = "the values of an input are a column of the data block";
+  if (declaration.role == Role::nothing)
+    help = fmt::format("declare it: `let {0} = {1}`, or `parameter {0} = {1}`", name->name.text, value);
+  return Diagnostic{Severity::error,
+                    "",
+                    fmt::format("this equation for `{}`, which is no state, would stand among those of the model", name->name.text),
+                    Label{span, {}},
+                    {},
+                    std::move(help)};
+}
+
+}  // namespace sysid::repl
