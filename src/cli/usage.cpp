@@ -52,6 +52,23 @@ std::string path_with_blanks(CLI::App const& verb, std::vector<std::string> cons
   return {};
 }
 
+/// The option behind a dash of typesetting, `–force`; empty for other words.
+std::string behind_dash(std::string const& word) {
+  for (std::string_view const dash : {"\u2013", "\u2014", "\u2212"})
+    if (word.starts_with(dash)) return word.substr(word.find_first_not_of('-', dash.size()));
+  return {};
+}
+
+/// What to do about an argument that the command does not take.
+std::string instead_of_argument(CLI::App const& verb, std::vector<std::string> const& unread, std::string const& see) {
+  if (std::string const path = path_with_blanks(verb, unread); !path.empty())
+    return fmt::format("write the name of a file with blanks in quotes: `\"{}\"`", path);
+  if (std::string const option = behind_dash(unread.front()); !option.empty())
+    return fmt::format("an option begins with two hyphens: `--{}`", option);
+  if (unread.front().find('=') != std::string::npos) return "values of parameters and options of a task are written in its file";
+  return see;
+}
+
 /// CLI11's words in our manner.
 std::string reason(CLI::ParseError const& error) {
   std::string text = error.what();
@@ -84,7 +101,8 @@ ExitCode no_verb(Messages const& messages, CLI::App const& app) {
     return no_verb_but_option(messages, app, words.front().substr(0, words.front().find('=')));
   for (std::string const& word : app.remaining()) {
     if (word.starts_with('-')) continue;
-    std::string const guess = did_you_mean(word, verb_names(app));
+    std::string guess = did_you_mean(word, verb_names(app));
+    if (word.ends_with(".sysid")) guess = fmt::format("the command comes first: `sysid run {}`", word);
     messages.complain(
         fmt::format("there is no command `{}`", word),
         guess.empty() ? fmt::format("commands (`sysid --help` describes them): {}", fmt::join(verb_names(app), ", ")) : guess);
@@ -101,20 +119,30 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
   CLI::App const& verb = *app.get_subcommands().front();
   std::string const see = fmt::format("`sysid {} --help` lists its arguments and options", verb.get_name());
   std::vector<std::string> const unread = app.remaining(true);
+  if (auto const before = app.remaining(false); !before.empty() && before.front() == "help") {
+    messages.complain("there is no command `help`", fmt::format("write `sysid {} --help`", verb.get_name()));
+    return ExitCode::usage;
+  }
   if (dynamic_cast<CLI::ExtrasError const*>(&error) == nullptr || unread.empty()) {
     messages.complain(reason(error), see);
     return ExitCode::usage;
   }
   std::string const word = unread.front().substr(0, unread.front().find('='));
   if (!word.starts_with('-')) {
-    std::string const path = path_with_blanks(verb, unread);
-    messages.complain(fmt::format("`sysid {}` takes no argument `{}`", verb.get_name(), word),
-                      path.empty() ? see : fmt::format("write the name of a file with blanks in quotes: `\"{}\"`", path));
+    messages.complain(fmt::format("`sysid {}` takes no argument `{}`", verb.get_name(), unread.front()),
+                      instead_of_argument(verb, unread, see));
     return ExitCode::usage;
   }
   if (std::vector<std::string> const others = verbs_with(app, verb, word); !others.empty() && others.size() <= most_named) {
     messages.complain(fmt::format("`sysid {}` has no option `{}`", verb.get_name(), word),
                       fmt::format("it is an option of {}", quoted(others)));
+    return ExitCode::usage;
+  }
+  constexpr std::string_view of_files[] = {"--with",    "--method", "--backend", "--sampler",
+                                           "--samples", "--chains", "--solver",  "--model"};
+  if (std::find(std::begin(of_files), std::end(of_files), word) != std::end(of_files)) {
+    messages.complain(fmt::format("`sysid {}` has no option `{}`", verb.get_name(), word),
+                      "what a task does is written in its file: `fit MODEL to DATA with mh(samples = 1000)`");
     return ExitCode::usage;
   }
   std::string const guess = did_you_mean(word, option_names(verb));

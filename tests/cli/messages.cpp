@@ -33,6 +33,16 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
   refused("--seed 1",
           "sysid: error: `--seed` stands before a command\n"
           "help: the command comes first, then its file and its options: `sysid run FILE --seed`\n");
+  refused("x.sysid", "sysid: error: there is no command `x.sysid`\nhelp: the command comes first: `sysid run x.sysid`\n");
+  refused("help run", "sysid: error: there is no command `help`\nhelp: write `sysid run --help`\n");
+  refused("run x.sysid m=2",
+          "sysid: error: `sysid run` takes no argument `m=2`\n"
+          "help: values of parameters and options of a task are written in its file\n");
+  refused("run x.sysid –force",
+          "sysid: error: `sysid run` takes no argument `–force`\nhelp: an option begins with two hyphens: `--force`\n");
+  refused("fit x.sysid --with map",
+          "sysid: error: `sysid fit` has no option `--with`\n"
+          "help: what a task does is written in its file: `fit MODEL to DATA with mh(samples = 1000)`\n");
   desk.save("my rig.sysid", "");
   refused("run my rig.sysid",
           "sysid: error: `sysid run` takes no argument `rig.sysid`\n"
@@ -76,6 +86,9 @@ TEST_CASE("a model in place of a record, and a folder of results that is not the
     CHECK(said.text.starts_with("sysid: error: there is no folder `results`\nhelp: run the tasks first, `sysid run FILE`"));
   }
   REQUIRE(desk.ask("fit line.sysid --quiet --no-figures").exit <= 1);
+  CHECK(desk.ask("track line.sysid results").text ==
+        "sysid: error: `results` holds the results of a whole run\n"
+        "help: give the folder of one of its fits: `results/posterior`\n");
   for (char const* const verb : {"report", "compare"}) {
     CAPTURE(verb);
     CHECK(desk.ask(std::string(verb) + " resuls").text ==

@@ -13,6 +13,7 @@
 #include "check/checked/task_kinds.hpp"
 #include "core/numeric/not_finite.hpp"
 #include "core/system/files.hpp"
+#include "core/text/words.hpp"
 #include "data/format/open_record.hpp"
 #include "data/table/encoding.hpp"
 #include "data/table/gzip.hpp"
@@ -255,10 +256,23 @@ class FitForTracking {
   LaneArray drawn_;
 };
 
+/// The folder of a whole run has one folder for each task.
+void refuse_folder_of_run(std::filesystem::path const& folder) {
+  if (std::filesystem::exists(folder / "summary.json")) return;
+  std::vector<std::string> tasks;
+  for (auto const& each : std::filesystem::directory_iterator(folder))
+    if (std::filesystem::exists(each.path() / "summary.json")) tasks.push_back(each.path().string());
+  std::sort(tasks.begin(), tasks.end());
+  if (!tasks.empty())
+    throw no_tracking(fmt::format("`{}` holds the results of a whole run", folder.string()),
+                      fmt::format("give the folder of one of its fits: {}", quoted(tasks)));
+}
+
 }  // namespace
 
 Task const& task_of_result(Session const& session, std::filesystem::path const& folder) {
   if (!std::filesystem::is_directory(folder)) throw no_results_folder(folder);
+  refuse_folder_of_run(folder);
   auto const summary = nlohmann::json::parse(read_summary(folder));
   std::string const name = interpreted(folder / "summary.json", [&] { return summary.at("task").get<std::string>(); });
   std::vector<std::string> fits;
