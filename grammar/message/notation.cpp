@@ -127,6 +127,13 @@ std::string instead_of_command(std::string_view command) {
   return fmt::format("write `{}` without `\\`", command);
 }
 
+bool includes_file(std::string_view comment) {
+  constexpr std::string_view word = "#include";
+  if (!comment.starts_with(word)) return false;
+  std::size_t const name = comment.find_first_not_of(' ', word.size());
+  return name != std::string_view::npos && (comment[name] == '"' || comment[name] == '<');
+}
+
 std::string instead_of_unknown(std::vector<Token> const& tokens) {
   std::size_t first = tokens.size() - 1;
   while (first > 0 && !tokens[first].newline_before) --first;

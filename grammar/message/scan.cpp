@@ -5,7 +5,9 @@
 
 #include <array>
 #include <charconv>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "core/text/utf8.hpp"
 #include "grammar/message/errors.hpp"
@@ -62,6 +64,7 @@ class Scanner {
         std::size_t const begin = at_;
         while (at_ < text_.size() && peek() != '\n') ++at_;
         out_.comments.push_back(from(begin));
+        if (notation::includes_file(text_.substr(begin, at_ - begin))) include_ = from(begin);
       }
       if (peek() == '\n')
         newline_before_ = true;
@@ -72,6 +75,9 @@ class Scanner {
 
   void token() {
     std::size_t const begin = at_;
+    if (include_)
+      mistake(errors::no_meaning(*std::exchange(include_, std::nullopt), "`#include`",
+                                 "`#` begins a comment: write `use NAME` for a module of the library or of this folder"));
     TokenKind kind = TokenKind::symbol;
     if (peek() == '"') {
       kind = TokenKind::text;
@@ -286,6 +292,7 @@ class Scanner {
   std::string_view text_;
   std::size_t at_ = 0;
   bool newline_before_ = false;
+  std::optional<Span> include_;  // a comment that is none to whoever wrote it
   Scan out_;
 };
 

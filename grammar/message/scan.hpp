@@ -62,6 +62,8 @@ Operator const* operator_at(std::string_view text);
 bool is_command(std::string_view name);
 /// Help about a command of LaTeX, without its `\\`.
 std::string instead_of_command(std::string_view command);
+/// Of a comment: whether it is `#include "FILE"` or `#include <FILE>`.
+bool includes_file(std::string_view comment);
 /// Help about `initial y = ?`, by the tokens before the question mark.
 std::string instead_of_unknown(std::vector<Token> const& tokens);
 /// Help about a colon from `begin` to `end` of the text, by the tokens before it. first: nothing stands before it on its line.

@@ -9,6 +9,7 @@
 
 #include "check/elaborate/candidates.hpp"
 #include "check/elaborate/dictionary_functions.hpp"
+#include "check/elaborate/divided_power.hpp"
 #include "check/elaborate/flatten.hpp"
 #include "check/elaborate/frame.hpp"
 #include "check/elaborate/tree.hpp"
@@ -259,6 +260,7 @@ class Elaborator {
 }  // namespace
 
 Elaborated elaborate(ast::File const& file, std::vector<Module> const& modules, Diagnostics& diagnostics) {
+  refuse_divided_powers(file, diagnostics);
   return Elaborator(file, modules, diagnostics).run();
 }
 

@@ -25,6 +25,8 @@ std::optional<Diagnostic> quantity_at_time(ast::Call const& call);
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most);
 Diagnostic piecewise_without_otherwise(ast::Call const& call);
 Diagnostic named_argument_of_function(ast::Name const& argument, std::string const& function);
+/// `y^1/3`: power, divisor.
+Diagnostic divided_power(ast::Binary const& power, ast::Expression const& divisor);
 Diagnostic definition_cycle(Span span, Names const& loop);
 Diagnostic primes_on(ast::Reference const& reference, std::string const& what);
 /// `D'` of a vector or matrix that is defined: often a transpose is meant.

@@ -223,6 +223,13 @@ Diagnostic unknown_function(ast::Call const& call, Names const& known, bool is_q
   return result;
 }
 
+Diagnostic divided_power(ast::Binary const& power, ast::Expression const& divisor) {
+  std::string const base = as_operand(*power.left), below = unparse(divisor);
+  return error(
+      "E2016", cover(power.left->span, divisor.span), fmt::format("`{0}^1/{1}` is `({0}^1)/{1}`", base, below),
+      fmt::format("an exponent that is a quotient has parentheses: `{0}^(1/{1})`; otherwise write `{0}/{1}`", base, below));
+}
+
 Diagnostic argument_count(ast::Name const& function, std::size_t given, std::size_t least, std::size_t most) {
   std::string const wanted = least == most ? fmt::format("{}", least)
                              : most > 100  ? fmt::format("{} or more", least)
