@@ -239,7 +239,12 @@ class Failure {
     }
     if (sign != nullptr && verb != nullptr && sign->is("~") && words::contains(words::verbs, verb->text))
       diagnostic.help = fmt::format("the name of a task is followed by `=`: `{} = {}`", found().text, verb->text);
-    if (verb != nullptr && verb->is("=") && words::contains(words::model_statements, found().text))
+    bool const of_model = words::contains(words::model_statements, found().text),
+               of_data = words::contains(words::data_statements, found().text);
+    if (of_model || of_data)
+      diagnostic.help = fmt::format("`{}` belongs in a {}: move this line there", found().text, of_model ? "model" : "data block");
+    bool const task_behind = found_ + 3 < tokens_.size() && words::contains(words::verbs, tokens_[found_ + 3].text);
+    if (verb != nullptr && verb->is("=") && of_model && task_behind)
       diagnostic.help = fmt::format("outside a block, a task is written `NAME = fit ...`: remove `{}`", found().text);
     bool const named = sign != nullptr && verb != nullptr && !words::contains(words::model_statements, found().text);
     Token const* const equals =

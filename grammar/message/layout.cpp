@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "grammar/message/errors.hpp"
 #include "grammar/message/hints.hpp"
@@ -109,11 +110,12 @@ class LayoutPass {
   }
 
   /// Then a block that begins inside another stands there on purpose.
-  bool braces_balance() const {
+  bool braces_balance() {
     auto const count = [&](std::string_view brace) {
       return std::count_if(tokens_.begin(), tokens_.end(), [&](Token const& each) { return each.is(brace); });
     };
-    return count("{") == count("}");
+    if (!balanced_) balanced_ = count("{") == count("}");
+    return *balanced_;
   }
 
   void leave_block(std::size_t found) {
@@ -332,7 +334,8 @@ class LayoutPass {
   std::vector<std::size_t> open_, spoilt_;
   std::set<std::size_t> inner_;  // braces inside a statement, which are refused
   std::size_t all_spoilt_from_ = std::numeric_limits<std::size_t>::max();
-  std::size_t line_ = 0;  // the first token of the line
+  std::size_t line_ = 0;          // the first token of the line
+  std::optional<bool> balanced_;  // as many braces open as close
   std::vector<int> inside_;
   Layout out_;
 };
