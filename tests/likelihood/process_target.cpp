@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/numeric/not_finite.hpp"
 #include "gaussian_process/textbook.hpp"
 #include "likelihood/process/process_target.hpp"
 #include "load/load.hpp"
@@ -204,6 +205,44 @@ model bent {{
   CHECK(std::abs(number[0]) > 1e-3);
   CHECK(pascals[0] * 1e11 == doctest::Approx(number[0]).epsilon(1e-5));
   for (std::size_t p = 1; p < 4; ++p) CHECK(pascals[p] == doctest::Approx(number[p]).epsilon(1e-6).scale(1));
+}
+
+TEST_CASE("a gradient books the solves of its neighbours, and those of them that fail") {
+  ProcessCase const c(R"(
+model edge {
+  input u
+  state x [-]
+  initial x = 1
+  parameter a [-] ~ normal(0, sd = 1)
+  parameter s [-] ~ half_normal(sd = 2)
+  parameter sigma [-] ~ log_uniform(0.05, 5)
+  function f(now) ~ gp(squared_exponential(amplitude = s, length = 1))
+  x' = -sqrt(a)*x*1 [1/s]
+  observe y [-] ~ normal(x + f(u), sd = sigma)
+}
+)",
+                      25, 1);
+  REQUIRE(c.target->dimension() == 3);
+  LaneArray theta(3, 1), gradient(3, 1);
+  theta(0, 0) = 1;
+  double value = 0;
+  Ledger inside;
+  c.target->log_likelihood_gradient(theta, {&value, 1}, gradient, inside);
+  CHECK(std::isfinite(value));
+  CHECK(inside.solves() == 7);
+  CHECK(inside.failed() == 0);
+  theta(0, 0) = 1e-7;  // nearer to the edge than a step is long
+  Ledger at_edge;
+  c.target->log_likelihood_gradient(theta, {&value, 1}, gradient, at_edge);
+  CHECK(std::isfinite(value));
+  CHECK(at_edge.solves() == 7);
+  CHECK(at_edge.failed() == 1);
+  theta(0, 0) = -1;
+  Ledger outside;
+  c.target->log_likelihood_gradient(theta, {&value, 1}, gradient, outside);
+  CHECK(value == -infinity);
+  CHECK(outside.solves() == 7);
+  CHECK(outside.failed() == 7);
 }
 
 TEST_CASE("a lane is the same bytes whatever the batch and the threads") {

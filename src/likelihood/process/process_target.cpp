@@ -135,7 +135,8 @@ Marginal ProcessTarget::marginal(Regression const& regression, int channel, bool
 
 void ProcessTarget::record(Batch const& batch, ConstLanes theta, std::span<double const> values, Ledger& ledger) const {
   LaneArray declared(theta.rows(), theta.width());
-  bool const any = std::any_of(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+  bool any = std::any_of(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+  for (int w = 0; w < theta.width(); ++w) any = any || !batch.good(w);
   if (any) constrain(theta, declared);
   auto const example = [&](int lane) {
     std::vector<double> out;
@@ -193,14 +194,19 @@ double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledg
     for (int w = 0; w < width; ++w) points(p, w) = theta(p, 0) + (w == 2 * p + 1 ? step : w == 2 * p + 2 ? -step : 0);
   }
   Batch const batch = evaluate(points);
+  // Neighbours are solves as good as any; a failure of the covariance is looked for at theta alone.
+  auto const book = [&](double at_theta) {
+    std::vector<double> values(static_cast<std::size_t>(width), 0.0);
+    values[0] = at_theta;
+    record(batch, points, values, ledger);
+  };
   double total = 0;
   for (int c = 0; c < static_cast<int>(measured_.size()); ++c) {
     auto const centre = regression(batch, c, 0, true);
     Marginal result;
     if (centre) result = marginal(*centre, c, true);
     if (!centre || result.outcome != gaussian_process::Outcome::fine || !std::isfinite(result.log_likelihood)) {
-      double const failed[] = {-infinity};
-      record(evaluate(points.view().columns(0, 1)), points.view().columns(0, 1), failed, ledger);
+      book(-infinity);
       clear();
       return -infinity;
     }
@@ -224,7 +230,7 @@ double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledg
     }
   }
   leave_if_stopped();
-  ledger.add_solves(1);
+  book(total);
   return total;
 }
 
