@@ -130,7 +130,6 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
         result.random[q].push_back(declared(std::move(values)));
       }
       ++q;
-      if (record.kind != RecordKind::centre) continue;
     }
   }
   for (int r = 0; r < rows; ++r) {

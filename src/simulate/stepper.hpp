@@ -42,7 +42,8 @@ struct StepFailure {
 class Stepper {
  public:
   virtual ~Stepper() = default;
-  /// The states are those of sample 0, the parameters in place.
+  /// The states are those of sample 0, the parameters in place; or particles were put there, at any sample, which have no
+  /// algebraic states.
   virtual void start() {}
   /// The parameters have changed; the states have not.
   virtual void parameters_changed() {}
