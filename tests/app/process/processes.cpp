@@ -261,6 +261,31 @@ again = predict best on record.train with draws(50), seed = 1
   CHECK(!says(run.summary("again"), "far_outside"));
 }
 
+TEST_CASE("an input that was the same at all fitted samples has no range, and no number of its widths is stated") {
+  std::string rows = "u,v,y\n";
+  for (int i = 0; i < 20; ++i)
+    rows += std::to_string(0.1 * (i % 10)) + (i < 10 ? ",1," : ",2,") + std::to_string(std::sin(0.3 * (i % 10))) + "\n";
+  CaseRun const run(R"(
+model curve {
+  input u, v
+  parameter l ~ log_normal(median = 0.5, sd = 0.5)
+  function f(a, b) ~ gp(squared_exponential(amplitude = 1, length = (l, 1)))
+  observe y ~ normal(f(u, v), sd = 0.1)
+}
+data record { file "rows.csv"; input u = u; input v = v; measure y = y; split train = rows 1..10, test = rows 11..20 }
+best = fit curve to record.train with map, seed = 1
+out = predict best on record.test with draws(20), seed = 1
+)",
+                    {{"rows.csv", rows}});
+  bool found = false;
+  for (json const& finding : run.summary("out").at("findings")) {
+    if (finding.at("code") != "far_outside") continue;
+    found = true;
+    CHECK(finding.at("message") == "the input `b` of `f` differs from the one value that it had at all fitted samples");
+  }
+  CHECK(found);
+}
+
 TEST_CASE("samples with the same inputs are counted") {
   CaseRun const run(R"(
 model curve {
