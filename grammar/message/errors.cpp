@@ -132,10 +132,42 @@ Diagnostic equation_with_keyword(Token const& word) {
                fmt::format("an equation has no keyword: remove `{}`", word.text));
 }
 
+namespace {
+
+/// Settings of `read`, in words of other programs.
+constexpr words::ForeignWord reading_settings[] = {
+    {"delimiter", "separator = \",\""},
+    {"delim", "separator = \",\""},
+    {"sep", "separator = \",\""},
+    {"separator", "separator = \",\""},
+    {"header", "names = 1"},
+    {"names", "names = 1"},
+    {"skip", "values = 2"},
+    {"skiprows", "values = 2"},
+    {"skip_rows", "values = 2"},
+    {"values", "values = 2"},
+    {"units", "units = 2"},
+    {"columns", "columns = (t, force, y)"},
+    {"decimal", "decimal = \",\""},
+    {"thousands", "thousands = \".\""},
+    {"encoding", "encoding = latin1"},
+    {"missing", "missing = \"NaN\""},
+    {"nan", "missing = \"NaN\""},
+    {"na_values", "missing = \"NaN\""},
+    {"comment", "comments = \"%\""},
+    {"comments", "comments = \"%\""},
+    {"stamp", "stamp = iso"},
+    {"datetime", "stamp = iso"},
+};
+
+}  // namespace
+
 std::string place_of_statement(std::string_view word, bool with_tilde) {
   constexpr std::array<std::string_view, 5> of_noise{"noise", "sd", "sigma", "std", "error"};
   if (words::contains(of_noise, word))
     return "the noise of a channel is written in the model, `observe CHANNEL ~ normal(y, sd = 0.1)`: remove this line";
+  if (std::string_view const setting = words::translated(reading_settings, word); !setting.empty())
+    return fmt::format("how the file is read is written after `read`: `read {}`", setting);
   bool const of_model = words::contains(words::model_statements, word) && !words::contains(words::data_statements, word);
   bool const binds = word == "observe" || word == "parameter";  // with `=` they name a column and a value
   return of_model && (with_tilde || !binds) ? fmt::format("`{}` belongs in a model: move this line there", word) : std::string();
@@ -272,7 +304,8 @@ Diagnostic word_too_long(Span where, std::ptrdiff_t most) {
 }
 
 Diagnostic unknown_escape(Span where, std::string_view escape) {
-  return error("E1124", where, fmt::format("`{}` is not an escape", escape), "the escapes are `\\\"`, `\\\\` and `\\n`");
+  return error("E1124", where, fmt::format("`{}` is not an escape", escape),
+               "the escapes are `\\\"`, `\\\\` and `\\n`; in a path write `/`");
 }
 
 Diagnostic statement_incomplete(Token const& last, Token const& next) {

@@ -125,6 +125,10 @@ std::string in_column(Gap const& gap) {
     if (gap.found->is("[") && close + 2 < gap.statement.size() && gap.statement[close + 1].is("="))
       return fmt::format("the unit comes after the column: `{} {} = {} {}`", word, name, gap.statement[close + 2].text,
                          gap.text(gap.at, close + 1));
+    bool const law = gap.found->is("~") && gap.next(2) != nullptr && gap.next(2)->is("(");
+    if (law && !input)
+      return fmt::format("a column is named here, `measure {0} = COLUMN`; its noise is written in the model, `observe {0} ~ ...`",
+                         name);
     if ((gap.found->is("from") || gap.found->is("~") || gap.found->is("as")) && gap.next() != nullptr)
       return fmt::format("write `=`: `{} {} = {}`", word, name, gap.text(gap.at + 1, gap.statement.size()));
     return {};
