@@ -75,9 +75,9 @@ std::string in_small_letters(std::string text) {
   return text;
 }
 
-bool is_plain_number(ast::Expression const& tree) {
+bool is_bare_number(ast::Expression const& tree) {
   if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node))
-    return (*unary)->symbol == "-" && is_plain_number(*(*unary)->operand);
+    return (*unary)->symbol == "-" && is_bare_number(*(*unary)->operand);
   auto const* number = std::get_if<ast::Number>(&tree.node);
   return number != nullptr && !number->unit;
 }
@@ -85,13 +85,13 @@ bool is_plain_number(ast::Expression const& tree) {
 /// In parentheses where an operator beside it would take it apart.
 std::string as_operand(ast::Expression const& tree) {
   bool const negative = std::holds_alternative<ast::Box<ast::Unary>>(tree.node);
-  bool const whole = (is_plain_number(tree) && !negative) || std::holds_alternative<ast::Reference>(tree.node) ||
+  bool const whole = (is_bare_number(tree) && !negative) || std::holds_alternative<ast::Reference>(tree.node) ||
                      std::holds_alternative<ast::Box<ast::Call>>(tree.node);
   return whole ? unparse(tree) : fmt::format("({})", unparse(tree));
 }
 
 /// With the arguments that it is given, or with letters for them.
-std::string with_arguments(ForeignFunction const& row, ast::Call const& call) {
+std::string in_terms_of_arguments(ForeignFunction const& row, ast::Call const& call) {
   std::array<std::string, 3> text{"a", "b", "c"}, operand = text;
   if (call.arguments.size() == row.arguments)
     for (std::size_t i = 0; i < row.arguments; ++i) {
@@ -104,14 +104,14 @@ std::string with_arguments(ForeignFunction const& row, ast::Call const& call) {
 
 /// `30 [deg]`; of a name, which may be declared in degrees, its product with a degree.
 std::string in_degrees(ast::Expression const& tree) {
-  return is_plain_number(tree) ? fmt::format("{} [deg]", unparse(tree)) : fmt::format("{}*1 [deg]", as_operand(tree));
+  return is_bare_number(tree) ? fmt::format("{} [deg]", unparse(tree)) : fmt::format("{}*1 [deg]", as_operand(tree));
 }
 
 /// Angles carry their unit; empty for other calls.
 std::string of_angle(ast::Call const& call, std::string const& name) {
   bool const given = !call.arguments.empty();
   std::string const argument = given ? unparse(call.arguments.front().value) : "x";
-  bool const number = given && is_plain_number(call.arguments.front().value);
+  bool const number = given && is_bare_number(call.arguments.front().value);
   std::string const degrees = given ? in_degrees(call.arguments.front().value) : "30 [deg]";
   if (std::find(std::begin(to_radians), std::end(to_radians), name) != std::end(to_radians))
     return number
@@ -164,7 +164,7 @@ std::string of_quantity(ast::Call const& call) {
       "multiplication is written with *: `{0}*(...)`; a quantity is written without its time, `{0}`, and an initial value as "
       "`initial {0} = ...`",
       name);
-  return call.arguments.size() != 1 || is_plain_number(call.arguments.front().value)
+  return call.arguments.size() != 1 || is_bare_number(call.arguments.front().value)
              ? general
              : fmt::format("multiplication is written with *: `{0}*({1})`; a quantity is written without its time, `{0}`", name,
                            unparse(call.arguments.front().value));
@@ -209,9 +209,10 @@ Diagnostic unknown_function(ast::Call const& call, Names const& known, bool is_q
   for (ForeignFunction const& each : foreign_functions)
     if (each.foreign == plain && (written == nullptr || each.arguments == call.arguments.size())) written = &each;
   if (written != nullptr)
-    return refused(message,
-                   fmt::format("{}{} `{}`", written->why, written->why == with_power ? ":" : "", with_arguments(*written, call)),
-                   "function");
+    return refused(
+        message,
+        fmt::format("{}{} `{}`", written->why, written->why == with_power ? ":" : "", in_terms_of_arguments(*written, call)),
+        "function");
   if (std::string const angle = of_angle(call, plain); !angle.empty()) return refused(message, angle, "function");
   if (std::string const model = of_model(call, plain); !model.empty()) return refused(message, model, "function");
   auto const help = [&](std::string const& list) {

@@ -11,30 +11,30 @@
 namespace sysid::repl {
 namespace {
 
-enum class Role { nothing, state, valued, input };
+enum class NameRole { nothing, state, valued, input };
 
 /// What a name is in a model, and how its declaration begins.
-struct Declaration {
-  Role role = Role::nothing;
+struct NameDeclaration {
+  NameRole role = NameRole::nothing;
   std::string head;
 };
 
-Declaration declaration_of(ast::ModelStatement const& statement, std::string const& name) {
+NameDeclaration declaration_of(ast::ModelStatement const& statement, std::string const& name) {
   return std::visit(
-      [&](auto const& each) -> Declaration {
+      [&](auto const& each) -> NameDeclaration {
         using Each = std::decay_t<decltype(each)>;
         if constexpr (std::is_same_v<Each, ast::InputDeclaration> || std::is_same_v<Each, ast::StateDeclaration>) {
           for (ast::Declared const& one : each.names)
-            if (one.name.text == name) return {std::is_same_v<Each, ast::InputDeclaration> ? Role::input : Role::state, ""};
+            if (one.name.text == name) return {std::is_same_v<Each, ast::InputDeclaration> ? NameRole::input : NameRole::state, ""};
         } else if constexpr (std::is_same_v<Each, ast::ParameterDeclaration>) {
-          if (each.name.name.text == name) return {Role::valued, "parameter " + text_of(each.name)};
+          if (each.name.name.text == name) return {NameRole::valued, "parameter " + text_of(each.name)};
         } else if constexpr (std::is_same_v<Each, ast::Definition>) {
           char const* const word = each.kind == ast::DefinitionKind::constant ? "constant "
                                    : each.kind == ast::DefinitionKind::local  ? "let "
                                                                               : "derive ";
-          if (each.name.name.text == name) return {Role::valued, word + text_of(each.name)};
+          if (each.name.name.text == name) return {NameRole::valued, word + text_of(each.name)};
         } else if constexpr (std::is_same_v<Each, ast::DisturbanceDeclaration>) {
-          if (each.name.name.text == name) return {Role::state, ""};  // the checker says what it cannot be
+          if (each.name.name.text == name) return {NameRole::state, ""};  // the checker says what it cannot be
         }
         return {};
       },
@@ -49,14 +49,15 @@ std::optional<Diagnostic> assignment(WorkItem const& model, std::string const& e
   auto const* name = equation == nullptr ? nullptr : std::get_if<ast::Reference>(&equation->left.node);
   if (name == nullptr || name->primes > 0 || !name->index.empty() || name->name.text.find('.') != std::string::npos)
     return std::nullopt;
-  Declaration declaration;
+  NameDeclaration declaration;
   for (ast::ModelStatement const& each : std::get<ast::Model>(item_of(model.text)).statements)
-    if (Declaration found = declaration_of(each, name->name.text); found.role != Role::nothing) declaration = std::move(found);
-  if (declaration.role == Role::state) return std::nullopt;
+    if (NameDeclaration found = declaration_of(each, name->name.text); found.role != NameRole::nothing)
+      declaration = std::move(found);
+  if (declaration.role == NameRole::state) return std::nullopt;
   std::string const value = unparse(equation->right);
   std::string help = fmt::format("write `{} = {}`", declaration.head, value);
-  if (declaration.role == Role::input) help = "the values of an input are a column of the data block";
-  if (declaration.role == Role::nothing)
+  if (declaration.role == NameRole::input) help = "the values of an input are a column of the data block";
+  if (declaration.role == NameRole::nothing)
     help = fmt::format("declare it: `let {0} = {1}`, or `parameter {0} = {1}`", name->name.text, value);
   return Diagnostic{Severity::error,
                     "",
