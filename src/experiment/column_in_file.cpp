@@ -20,9 +20,10 @@ std::optional<Unit> unit_in_file(ExperimentData const& data, ColumnUse const& co
 }  // namespace
 
 ColumnInFile::ColumnInFile(ExperimentData const& data, ColumnUse const& column, Quantity const& quantity)
-    : quantity_(quantity), unit_(quantity.unit ? unit_in_file(data, column) : std::nullopt) {}
+    : quantity_(quantity), unit_(unit_in_file(data, column)) {}
 
 double ColumnInFile::value(double si) const {
+  if (!quantity_.unit) return unit_ ? si / unit_->scale : si;  // the numbers of its column were multiplied by this
   double const declared = quantity_.from_si(si);
   return unit_ ? convert(declared, *quantity_.unit, *unit_) : declared;
 }

@@ -23,7 +23,7 @@ class ColumnInFile {
 
  private:
   Quantity const& quantity_;
-  std::optional<Unit> unit_;  // of the column, where the quantity has one too
+  std::optional<Unit> unit_;  // of the column
 };
 
 }  // namespace sysid

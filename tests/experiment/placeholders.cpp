@@ -55,16 +55,30 @@ TEST_CASE("a 9999 in an input and in a channel is named as it stands in the file
     if (row == 150) force = 9999;
   });
   REQUIRE(input.size() == 1);
-  CHECK(input[0] == "column `force` of record is 9999 mN in row 150, far from all its other numbers: this may mark a missing value");
+  CHECK(input[0] ==
+        "column `force` of record is 9999 mN in row 150, far from all its other numbers: this may mark a missing value");
   auto const channel = told([](int row, double&, double& level) {
     if (row > 180) level = -999;
   });
   REQUIRE(channel.size() == 1);
   CHECK(channel[0] ==
-        "column `level` of record is -999 mm in rows 181, 182, 183, 184, 185 and 5 more, far from all its other numbers: this may mark a missing value");
+        "column `level` of record is -999 mm in rows 181, 182, 183, 184, 185 and 5 more, far from all its other numbers: this may "
+        "mark a missing value");
   CHECK(told([](int row, double& force, double& level) {
           if (row == 120) force = -32768, level = 65535;
         }).size() == 2);
+}
+
+TEST_CASE("a mark in a column with a unit is named as it stands in the file where the channel has no unit") {
+  std::string bare = replaced(replaced(replaced(text, "u [N]", "u"), "y [m]", "y"), "b [m/(N s)]", "b [1/s]");
+  bare = replaced(replaced(bare, "z [m]", "z"), "sd = 0.001 [m]", "sd = 0.001");
+  auto const found = told(
+      [](int row, double&, double& level) {
+        if (row > 180) level = -999;
+      },
+      bare);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].starts_with("column `level` of record is -999 mm in rows 181, "));
 }
 
 TEST_CASE("`missing = none`, alone or behind words, says that no number is a mark") {
