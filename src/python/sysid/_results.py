@@ -70,8 +70,8 @@ class Result:
     The groups of a fit are xarray data sets with the names of ArviZ's InferenceData, made when they are first asked for:
     ``posterior``, ``sample_stats``, ``log_likelihood``, ``posterior_predictive``, ``observed_data``, ``constant_data``, ``prior``,
     ``prior_predictive``, and ``predictions`` where a prediction lies beside it; of an interrupted fit the first two. A prediction
-    of a fit has ``predictions`` and ``predictions_constant_data``; an average of fits and a prediction of a selection have no groups,
-    but tables. A result stays what it is when tasks are run again, and can be pickled, with its files.
+    of a fit has ``predictions`` and ``predictions_constant_data``; an average of fits and a prediction of a selection have no
+    groups, but tables. A result stays what it is when tasks are run again, and can be pickled, with its files.
     """
 
     def __init__(
@@ -176,8 +176,8 @@ class Result:
         return _engine.inference_data(self._file, str(run.path / task), asked, 0 if self.interrupted else draws)
 
     def groups(self, draws: int = 200) -> dict[str, "xarray.Dataset"]:
-        """All groups by their names; of a prediction of a fit ``predictions`` and ``predictions_constant_data``. draws: how many of the stored
-        draws are simulated once more for likelihoods and predictive groups, all at most; 0: none, and no such groups."""
+        """All groups by their names; of a prediction of a fit ``predictions`` and ``predictions_constant_data``. draws: how
+        many of the stored draws are simulated once more for likelihoods and predictive groups, all at most; 0: none, and no such groups."""
         draws = whole(draws, "draws", 10**6)
         if draws not in self._groups:
             found, attributes, _ = self._inference_data(draws)
