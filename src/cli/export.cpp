@@ -89,9 +89,14 @@ ExitCode stan_of(Messages const& messages, Session& session, ResultsFolder const
 
 /// Of the fits in results, with their draws, or of those in a .sysid file.
 ExitCode stan(Messages const& messages, ExportOptions const& options) {
-  if (!std::filesystem::is_directory(options.what))
-    return with_session(messages, options, options.what, options.output.value_or(options.run.output),
-                        [&](Session& session) { return stan_of(messages, session, nullptr, options.run.force); });
+  if (!std::filesystem::is_directory(options.what)) {
+    if (options.model.empty())
+      return with_session(messages, options, options.what, options.output.value_or(options.run.output),
+                          [&](Session& session) { return stan_of(messages, session, nullptr, options.run.force); });
+    messages.complain("--model names the .sysid file of a folder of results",
+                      "remove --model: the file to export is named already");
+    return ExitCode::usage;
+  }
   if (options.output) return refuse_output(messages);
   ResultsFolder const found = find_results(options.what);
   return with_model_of(messages, options, found,
@@ -104,13 +109,14 @@ struct ExporterRow {
   char const* help;
   bool simulates;      // likelihoods and predictions at `--draws` draws
   bool into_a_folder;  // of the user's choice, `-o`
+  bool writes_files;   // of a model that may be another one, `--model`, in the place of others, `--force`
   ExitCode (*work)(Messages const&, ExportOptions const&);
 };
 
 constexpr ExporterRow exporters[] = {
-    {nullptr, "", true, false, &netcdf},
-    {"--stan", "write fits as Stan programs with their data", false, true, &stan},
-    {"--latex", "print the models of a .sysid file as LaTeX for amsmath", false, false, &latex},
+    {nullptr, "", true, false, true, &netcdf},
+    {"--stan", "write fits as Stan programs with their data", false, true, true, &stan},
+    {"--latex", "print the models of a .sysid file as LaTeX for amsmath", false, false, false, &latex},
 };
 
 }  // namespace
@@ -137,19 +143,21 @@ Work declare_export(CLI::App& verb) {
           ->type_name("FOLDER")
           ->check(refuse_no_path)
           ->default_str(options->run.output.string());
-  verb.add_option("--model", options->model, "the .sysid file of the results (default: the file that they were made from)")
-      ->type_name("FILE");
+  CLI::Option* const model =
+      verb.add_option("--model", options->model, "the .sysid file of the results (default: the file that they were made from)")
+          ->type_name("FILE");
   CLI::Option* const draws =
       verb.add_option("--draws", options->draws,
                       "number of draws for which likelihoods and predictions are simulated; 0: export only stored results")
           ->type_name("N")
           ->check(CLI::Range(0, 1000000))
           ->capture_default_str();
+  CLI::Option* const force = verb.add_flag("--force", options->run.force, "replace existing files");
   for (auto const& [flag, row] : flags) {
     if (!row->simulates) draws->excludes(flag);
+    if (!row->writes_files) model->excludes(flag), force->excludes(flag);
     if (row->into_a_folder) output->needs(flag);
   }
-  verb.add_flag("--force", options->run.force, "replace existing files");
   return [options](Messages const& messages) { return options->exporter->work(messages, *options); };
 }
 

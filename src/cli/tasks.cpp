@@ -112,7 +112,8 @@ Work declare_tasks(CLI::App& verb) {
   add_run_options(verb, *options);
   if (verb.get_name() == "fit")
     verb.add_flag("--with-disturbance", options->with_disturbance,
-                  "also fit each model with a disturbance that was not measured, and compare both by their evidence");
+                  "also fit each model with a disturbance that was not measured, and compare both by their evidence")
+        ->excludes(verb.get_option("--dump"));
   std::vector<std::string> kinds;  // none: all
   if (verb.get_name() != "run") kinds.push_back(verb.get_name());
   return [options, kinds](Messages const& messages) {

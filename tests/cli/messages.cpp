@@ -52,6 +52,19 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
   CHECK(desk.ask("--error-format json fit").text.starts_with("{\"file\":\"sysid\",\"severity\":\"error\",\"code\":\"\""));
 }
 
+TEST_CASE("options that would have no effect are refused") {
+  LineDesk const desk;
+  for (char const* const arguments :
+       {"export --latex line.sysid --force", "export --latex line.sysid --model line.sysid", "export --latex line.sysid --draws 3",
+        "export --stan line.sysid --model line.sysid", "fit line.sysid --dump model --with-disturbance"}) {
+    CAPTURE(arguments);
+    Said const said = desk.ask(arguments);
+    CHECK(said.exit == 2);
+    CHECK(said.text.starts_with("sysid: error: --"));
+  }
+  CHECK(desk.ask("export --latex line.sysid").exit == 0);
+}
+
 TEST_CASE("a file to write says that its folder is not there, and not that the disk is full") {
   LineDesk const desk;
   REQUIRE(desk.ask("fit line.sysid --quiet --no-figures").exit <= 1);
