@@ -13,6 +13,19 @@ namespace {
 constexpr std::array<std::string_view, 4> lists_of_names{"state", "input", "time", "shared"};
 constexpr std::array<std::string_view, 3> lists_of_terms{"target", "terms", "exclude"};
 
+/// `((1, 0), (-1, 1))` of `[1, 0; -1, 1]`; empty where there is one row.
+std::string matrix_by_rows(std::span<Token const> tokens, std::size_t opener, std::size_t close) {
+  std::string rows;
+  std::size_t first = opener + 1;
+  int count = 0;
+  for (std::size_t i = first; i <= close; ++i) {
+    if (!tokens[i].is(";") && i < close) continue;
+    if (i > first) rows += fmt::format("{}({})", ++count > 1 ? ", " : "", written(tokens[first], tokens[i - 1]));
+    first = i + 1;
+  }
+  return count > 1 ? fmt::format("({})", rows) : std::string();
+}
+
 }  // namespace
 
 std::size_t closing_on_line(std::span<Token const> tokens, std::size_t opener) {
@@ -37,6 +50,8 @@ std::string instead_of_list(std::span<Token const> tokens, std::size_t line, std
                           list_as_range(tokens, opener, close))
             : "write it in parentheses: `(1, 2)`";
   if (close == tokens.size() || close == opener + 1) return general;
+  if (std::string const rows = matrix_by_rows(tokens, opener, close); !rows.empty())
+    return fmt::format("a matrix is a list of its rows: `{}`", rows);
   std::string_view const inside = written(tokens[opener + 1], tokens[close - 1]);
   bool const behind_keyword = opener == line + 1;
   if (behind_keyword && words::contains(lists_of_names, tokens[line].text))
