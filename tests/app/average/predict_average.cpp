@@ -197,9 +197,9 @@ both = predict one, other on table.test with draws(300), weights = equal, seed =
 TEST_CASE("temperatures with different zero points are averaged as one quantity") {
   CaseRun const run(R"(
 model celsius { input x; parameter a [degC] ~ normal(0, sd = 3); observe y [degC] ~ normal(a + x*1 [delta_degC], sd = 0.3 [K])
-  derive a_here [degC] = a }
+  derive shown [degC] = a + x*1 [delta_degC] }
 model kelvin { input x; parameter a [K] ~ normal(273.15, sd = 3); observe y [K] ~ normal(a + x*1 [K], sd = 0.3 [K])
-  derive a_here [K] = a }
+  derive shown [K] = a + x*1 [K] }
 data table { file "table.csv"; input x = x; measure y = y [degC]; split train = rows 1..24, test = rows 25..84 }
 one = fit celsius to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 1
 other = fit kelvin to table.train with mh(samples = 3000, burn_in = 500, thin = 5, chains = 4), seed = 2
@@ -211,7 +211,7 @@ both = predict one, other on table.test with draws(300), weights = equal, seed =
   CHECK(scores.at("members").at("other").at("rmse").get<double>() == doctest::Approx(rmse).epsilon(0.02));
   CHECK(scores.at("average").at("rmse").get<double>() == doctest::Approx(rmse).epsilon(0.02));
   std::string const csv = run.file("both/predict.csv");
-  for (char const* const name : {"y_mean", "y_noisy_q97.5", "a_here_q97.5"})
+  for (char const* const name : {"y_mean", "y_noisy_q97.5", "shown_q97.5"})
     for (double const value : column(csv, name)) CHECK(std::fabs(value) < 10);  // [degC]
   CHECK(refusal(R"(
 model celsius { input x; parameter a [degC] ~ normal(0, sd = 3); observe y [degC] ~ normal(a + x*1 [delta_degC], sd = 0.3 [K]) }
