@@ -50,7 +50,8 @@ std::optional<Diagnostic> assignment(WorkItem const& model, std::string const& e
   if (name == nullptr || name->primes > 0 || !name->index.empty() || name->name.text.find('.') != std::string::npos)
     return std::nullopt;
   NameDeclaration declaration;
-  for (ast::ModelStatement const& each : std::get<ast::Model>(item_of(model.text)).statements)
+  ast::Item const item = item_of(model.text);
+  for (ast::ModelStatement const& each : std::get<ast::Model>(item).statements)
     if (NameDeclaration found = declaration_of(each, name->name.text); found.role != NameRole::nothing)
       declaration = std::move(found);
   if (declaration.role == NameRole::state) return std::nullopt;
