@@ -181,10 +181,13 @@ TEST_CASE("a free run of a Gaussian process says what its matrix takes, also whe
             "data record { file \"rows.csv\"; step 1 [s]; measure y = y; split few = rows 1..20 }\n"
             "best = fit echo to record with map, seed = 1\n"
             "free = predict best on record.few with draws(1), prediction = free_run, seed = 1\n");
-  std::string const limited = "cd '" + desk.path(".").string() + "' && ulimit -v 2000000 && '" SYSID_PROGRAM "' ";
-  Said const fitted = said_by(limited + "fit echo.sysid --quiet --no-figures --threads 1");
+  auto const limited = [&](char const* kilobytes, char const* verb) {
+    return said_by("cd '" + desk.path(".").string() + "' && ulimit -v " + kilobytes + " && '" SYSID_PROGRAM "' " + verb +
+                   " echo.sysid --quiet --no-figures --threads 1");
+  };
+  Said const fitted = limited("2000000", "fit");
   CHECK_MESSAGE(fitted.exit <= 1, fitted.text);
-  Said const predicted = said_by(limited + "predict echo.sysid --quiet --no-figures --threads 1");
+  Said const predicted = limited("1500000", "predict");
   CHECK(predicted.exit == 65);
   // The first row has none before it.
   CHECK_MESSAGE(has(predicted, "error[E5003]: a free run of a Gaussian process that is fitted to 14999 rows needs about 1.8 GB"),
