@@ -102,8 +102,8 @@ class LayoutPass {
 
   void unclosed_block(std::size_t opener, std::size_t found) {
     Diagnostic unclosed = errors::unclosed(tokens_[opener], found_here(found));
-    if (found < tokens_.size() && words::contains(words::blocks, tokens_[found].text) && braces_balance())
-      unclosed.help = errors::no_block_inside(tokens_[found]);
+    bool const block = found < tokens_.size() && words::contains(words::blocks, tokens_[found].text);
+    if (block && braces_balance()) unclosed.help = errors::no_block_inside(tokens_[found]);
     mistake(opener, std::move(unclosed));
     if (found < tokens_.size()) spoilt_.push_back(found);
     out_.reported_at_end = true;
