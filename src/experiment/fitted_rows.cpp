@@ -16,7 +16,7 @@ namespace sysid {
 namespace {
 
 /// By another path, or a copy.
-bool is_same_record(std::string const& fitted, std::string const& predicted, std::string const& digest) {
+bool is_same_record(std::filesystem::path const& fitted, std::filesystem::path const& predicted, std::string const& digest) {
   if (fitted == predicted) return true;
   std::error_code none, other;
   if (std::filesystem::equivalent(fitted, predicted, none)) return true;
@@ -31,12 +31,12 @@ bool is_same_record(std::string const& fitted, std::string const& predicted, std
 
 }  // namespace
 
-Findings find_fitted_rows(CheckedFile const& file, ExperimentData const& predicted, std::vector<ExperimentUse> const& fitted,
-                          std::string const& task) {
-  std::string const& path = file.data[static_cast<std::size_t>(predicted.use.data)].path;
+Findings find_fitted_rows(CheckedFile const& file, std::filesystem::path const& folder, ExperimentData const& predicted,
+                          std::vector<ExperimentUse> const& fitted, std::string const& task) {
+  auto const path_of = [&](ExperimentUse const& use) { return folder / file.data[static_cast<std::size_t>(use.data)].path; };
   std::vector<ExperimentUse> of_this_record;
   std::copy_if(fitted.begin(), fitted.end(), std::back_inserter(of_this_record), [&](ExperimentUse const& use) {
-    return is_same_record(file.data[static_cast<std::size_t>(use.data)].path, path, predicted.record.digest);
+    return is_same_record(path_of(use), path_of(predicted.use), predicted.record.digest);
   });
   auto const was_fitted = [&](int row) {
     return std::any_of(of_this_record.begin(), of_this_record.end(), [&](ExperimentUse const& use) {

@@ -270,7 +270,7 @@ class PredictAverage {
            fmt::format("{} of {} trajectories{} do not stay finite and are left out of the bands", failed, members_[k]->wanted(),
                        several() ? " on " + data.experiment.name : ""),
            "the model diverges on this input at some draws: narrow the priors, or check the equation"});
-    for (Finding& finding : find_fitted_rows(session_.file, data, fit(k).experiments, name(k)))
+    for (Finding& finding : find_fitted_rows(session_.file, session_.folder(), data, fit(k).experiments, name(k)))
       report.findings.push_back(std::move(finding));
   }
 

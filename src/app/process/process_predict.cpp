@@ -63,7 +63,8 @@ class ProcessPredict {
     ExperimentData const& data = trajectories_.data()[static_cast<std::size_t>(e)];
     bool const several = trajectories_.data().size() > 1;
     add_data(session_.file, data, trajectories_.model(), report);
-    for (Finding& finding : find_fitted_rows(session_.file, data, std::get<FitTask>(fit_task_.what).experiments, fit_task_.name))
+    for (Finding& finding :
+         find_fitted_rows(session_.file, session_.folder(), data, std::get<FitTask>(fit_task_.what).experiments, fit_task_.name))
       report.findings.push_back(std::move(finding));
     ProcessForecast const forecast = trajectories_.forecast(e);
     LaneArray const own = trajectories_.parameters(e);

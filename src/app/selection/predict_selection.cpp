@@ -70,7 +70,8 @@ class PredictSelection {
                          leading.data->experiment, report.forces);
     add_predicted_rule(leading.model(), what_.prediction, report);
     add_data(session_.file, *leading.data, leading.model(), report);
-    for (Finding& finding : find_fitted_rows(session_.file, *leading.data, select_.fits[lead].experiments, select_task_.name))
+    for (Finding& finding :
+         find_fitted_rows(session_.file, session_.folder(), *leading.data, select_.fits[lead].experiments, select_task_.name))
       report.findings.push_back(std::move(finding));
     add_ranges(leading, report);
     int const leading_failed = leading.result.failed();

@@ -59,7 +59,8 @@ class Predict {
     for (int e = 0; e < static_cast<int>(data_.size()); ++e) {
       add_data(session_.file, data_[static_cast<std::size_t>(e)], model_, report);
       predict(e, report);
-      for (Finding& finding : find_fitted_rows(session_.file, data_[static_cast<std::size_t>(e)], fit_.experiments, fit_task_.name))
+      for (Finding& finding :
+           find_fitted_rows(session_.file, session_.folder(), data_[static_cast<std::size_t>(e)], fit_.experiments, fit_task_.name))
         report.findings.push_back(std::move(finding));
     }
     add_source(session_.result_folder(fit_task_), report);

@@ -79,10 +79,11 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
   std::vector<Mode> modes;
   Breadth const& breadth = breadth_of(target);
   std::uint64_t const round = simulations_per_round(target), of_draws = static_cast<std::uint64_t>(breadth.draws),
-                      early = (breadth.likeliest + breadth.others) * early_rounds * round,
-                      last_part = breadth.finalists * usual_rounds * round;
+                      early = (breadth.likeliest + breadth.others) * early_rounds * round;
+  std::size_t finalists = breadth.finalists;
+  auto const last_part = [&] { return finalists * usual_rounds * round; };
   int const passes = has_coefficients(target) ? 1 : most_passes;
-  WorkLeft work(context, "searching the prior", of_draws + early + last_part);
+  WorkLeft work(context, "searching the prior", of_draws + early + last_part());
   auto const stop = work.stop();
   StreamKey const key{context.seed, Purpose::start, 0, search_step};
   std::optional<Objective> objective;
@@ -95,9 +96,9 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
     std::vector<Climber> starts =
         choose_starts(*objective, draws.view().columns(0, breadth.draws), breadth, context.ledger, stop, context.journal);
     begun = begun || !starts.empty();
-    work.part(starts.size() * early_rounds * round, last_part);
+    work.part(starts.size() * early_rounds * round, last_part());
     climb(*objective, starts, early_rounds, context.ledger, stop, context.journal);
-    std::vector<Climber> last = choose_finalists(*objective, std::move(starts), breadth.finalists);
+    std::vector<Climber> last = choose_finalists(*objective, std::move(starts), finalists);
     // A density that vanishes at bounds has its optima inside: what was found there before is found to the last digit.
     int const rounds = objective_kind == ObjectiveKind::posterior ? most_rounds_inside : breadth.rounds;
     work.part(last.size() * usual_rounds * round, 0);
@@ -107,8 +108,10 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
     if (!ended.empty()) modes = modes_of(*objective, ended, context.ledger, stop, context.journal);
     // One end is of one start, the only draw of the pass that could be solved: more passes would hardly have others.
     if (!modes.empty() && (ended.size() == 1 || !may_be_missed(modes, ended.size()))) break;
+    // As many as were followed to their ends: those a little lower have not been.
+    if (modes.size() >= finalists) finalists *= 2;
     if (pass + 1 < passes)
-      work.next(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), of_draws, early + last_part);
+      work.next(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), of_draws, early + last_part());
   }
   context.progress.end(!stop());
   return conclude(target, objective_kind, std::move(modes), begun, of_draws * static_cast<std::uint64_t>(passes), context);
