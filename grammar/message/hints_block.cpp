@@ -53,7 +53,8 @@ std::string in_head(Gap const& gap) {
                          gap.text(1, close + 1));
     return fmt::format("name the column before its unit: `{} t {}`", gap.statement[0].text, gap.text(1, close + 1));
   }
-  if (gap.begins_with("file") && gap.at == 2 && (gap.found->is(",") || gap.found->kind == TokenKind::text))
+  bool const another = gap.found->is(",") && gap.next() != nullptr && gap.next()->kind == TokenKind::text;
+  if (gap.begins_with("file") && gap.at == 2 && (another || gap.found->kind == TokenKind::text))
     return "a data block reads one file: write a block for each file, and fit to all of them, `to DATA, OTHER_DATA`";
   if (gap.begins_with("time") && gap.at == 2)
     if (std::string const unit = gap.found->is("in") ? unit_without_brackets(gap) : std::string(); !unit.empty())
