@@ -278,7 +278,8 @@ out = predict best on record.test with draws(20), seed = 1
 )",
                     {{"rows.csv", rows}});
   bool found = false;
-  for (json const& finding : run.summary("out").at("findings")) {
+  json const out = run.summary("out");
+  for (json const& finding : out.at("findings")) {
     if (finding.at("code") != "far_outside") continue;
     found = true;
     CHECK(finding.at("message") == "the input `b` of `f` differs from the one value that it had at all fitted samples");
