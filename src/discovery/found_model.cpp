@@ -25,7 +25,7 @@ constexpr double least_width = 0.1;
 constexpr double widest_average = 0.1;
 /// Either way from the noise that the regression took; upwards as many times what the equation leaves at least, where that is more.
 constexpr double noise_factor = 10, residual_factor = 3;
-constexpr double exact = 1e-13;  // of the signal: what a record without noise, written with all digits, is off by
+constexpr double exact = 1e-13;  // of the signal: what a difference equation without noise is off by, with all digits
 
 // "4.979e9".
 std::string plain(std::string text) {
@@ -338,8 +338,8 @@ class ModelText {
       if (source_.noise_sd.size() > c && source_.noise_sd[c] > 0) sd = source_.noise_sd[c];
       double const size = motion_of(source_.data, c, 0).size[0];
       double low = sd / noise_factor, high = sd * std::max(noise_factor, residual_factor * residual_over_noise());
-      // The regression and the simulation take no less for noise than they are accurate to: the samples may have more digits.
-      if (!(sd > 1e-8 * size)) low = exact * size, high = sd > exact * size ? high : size;
+      // Not down to `exact`: steps that follow a motion to its last digit take minutes.
+      if (!(sd > 1e-9 * size)) low = 1e-9 * size, high = size;
       std::string const state = primed_name(dictionary().states[s].name, measured.order);
       if (double const growth = source_.growth.empty() ? 0 : source_.growth[c]; growth > 0) {
         double const mean_square = mean_square_of(c) + growth * growth;
