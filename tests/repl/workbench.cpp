@@ -174,6 +174,8 @@ TEST_CASE("a value that is given to a name takes the place of no equation") {
   }
   CHECK(d.workbench().work().text() == before);
   CHECK_MESSAGE(d.enter("parameter k [N/m] = 5000"), d.messages());
+  // Terms of an equation may stand on either side.
+  CHECK_MESSAGE(d.enter("x = 1 [kg]*y'' + k*y"), d.messages());
 }
 
 TEST_CASE("commands of other prompts are answered with those of this one") {

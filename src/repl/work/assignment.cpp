@@ -7,6 +7,7 @@
 #include "syntax/entry.hpp"
 #include "syntax/expression_text.hpp"
 #include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid::repl {
 namespace {
@@ -49,12 +50,20 @@ std::optional<Diagnostic> assignment(WorkItem const& model, std::string const& e
   auto const* name = equation == nullptr ? nullptr : std::get_if<ast::Reference>(&equation->left.node);
   if (name == nullptr || name->primes > 0 || !name->index.empty() || name->name.text.find('.') != std::string::npos)
     return std::nullopt;
-  NameDeclaration declaration;
   ast::Item const item = item_of(model.text);
-  for (ast::ModelStatement const& each : std::get<ast::Model>(item).statements)
-    if (NameDeclaration found = declaration_of(each, name->name.text); found.role != NameRole::nothing)
-      declaration = std::move(found);
-  if (declaration.role == NameRole::state) return std::nullopt;
+  auto const declared = [&](std::string const& wanted) {
+    NameDeclaration last;
+    for (ast::ModelStatement const& each : std::get<ast::Model>(item).statements)
+      if (NameDeclaration found = declaration_of(each, wanted); found.role != NameRole::nothing) last = std::move(found);
+    return last;
+  };
+  NameDeclaration const declaration = declared(name->name.text);
+  // Terms may stand on either side: what moves on the right makes it an equation of motion.
+  bool motion = declaration.role == NameRole::state;
+  each_reference(equation->right, [&](ast::Reference const& each) {
+    motion = motion || each.primes > 0 || declared(each.name.text).role == NameRole::state;
+  });
+  if (motion) return std::nullopt;
   std::string const value = unparse(equation->right);
   std::string help = fmt::format("write `{} = {}`", declaration.head, value);
   if (declaration.role == NameRole::input) help = "the values of an input are a column of the data block";

@@ -25,7 +25,8 @@ constexpr std::string_view figures_begin = "figures/";
 
 /// What is renamed has one of these names, so that a list that someone else has written moves nothing else.
 bool may_be_staged(std::string const& name) {
-  if (!name.starts_with(figures_begin)) return result_file_row(name) != nullptr || name == tracked_rows;
+  if (!name.starts_with(figures_begin))
+    return name.find('/') == name.npos && (result_file_row(name) != nullptr || name == tracked_rows);
   std::string const figure = name.substr(figures_begin.size());
   return is_figure_file(figure) && figure.find('/') == figure.npos;
 }

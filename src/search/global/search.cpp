@@ -109,7 +109,10 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
     // One end is of one start, the only draw of the pass that could be solved: more passes would hardly have others.
     if (!modes.empty() && (ended.size() == 1 || !may_be_missed(modes, ended.size()))) break;
     // As many as were followed to their ends: those a little lower have not been.
-    if (modes.size() >= finalists) finalists *= 2;
+    auto const high =
+        std::ranges::count_if(modes, [&](Mode const& each) { return each.log_density > modes.front().log_density - 5; });
+    if (static_cast<std::size_t>(high) >= finalists)
+      finalists = std::min<std::size_t>(2 * finalists, breadth.likeliest + breadth.others);
     if (pass + 1 < passes)
       work.next(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), of_draws, early + last_part());
   }
