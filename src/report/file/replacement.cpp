@@ -44,11 +44,11 @@ std::optional<std::set<std::string>> staged_names(fs::path const& folder) {
 
 void put_in_place(fs::path const& folder, std::set<std::string> const& names) {
   remove_file(folder / summary_name);
-  for (std::string const& name : files_of_result(folder))
-    if (!names.contains(name)) remove_file(folder / name);
+  std::error_code ignored;
+  for (std::string const& name : files_of_result(folder))  // a folder of such a name is the user's
+    if (!names.contains(name) && !fs::is_directory(fs::symlink_status(folder / name, ignored))) remove_file(folder / name);
   for (std::string const& name : names)
     if (name != summary_name) rename_staged(folder / name);
-  std::error_code ignored;
   if (fs::is_directory(folder / "figures", ignored)) flush_folder(folder / "figures");
   flush_folder(folder);
   rename_staged(folder / summary_name);
