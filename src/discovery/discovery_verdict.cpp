@@ -62,11 +62,12 @@ std::string form_clause(ValidationReport const& validation) {
   if (probability >= probable && validation.outside && is_rival(*validation.outside))
     return fmt::format("the form is decided among the terms of the dictionary (probability {}), but not against other terms",
                        probability_text(probability));
-  return fmt::format("the form is {} (probability {})",
+  return fmt::format("the form is {}{} (probability {})",
                      probability >= decided_probability ? "decided"
                      : probability >= probable          ? "more probable than all others"
                      : probability >= majority          ? "not decided, but more probable than all others"
                                                         : "not decided",
+                     probability >= probable && !validation.outside ? " among the terms of the dictionary" : "",
                      probability_text(probability));
 }
 

@@ -52,6 +52,15 @@ RoundedInputs rounded_inputs(std::vector<Experiment> records, std::size_t inputs
   return out;
 }
 
+bool every_sample_measured(std::vector<Experiment> const& records) {
+  return std::all_of(records.begin(), records.end(), [](Experiment const& each) {
+    for (std::size_t c = 0; c < each.measured.size(); ++c)
+      for (std::size_t row = 0; row < each.time.size(); ++row)
+        if (!each.is_scored(c, row)) return false;
+    return true;
+  });
+}
+
 /// Residuals of a channel, segment by segment; with others, what they differ by.
 std::vector<Eigen::VectorXd> residuals_of(SegmentSimulation const& simulation, int channel, std::vector<SegmentSlopes> const& runs,
                                           std::vector<SegmentSlopes> const* others = nullptr) {
@@ -189,16 +198,15 @@ bool RecordLimits::settle_carried(FittedTerms const& lead, FitConditions& condit
   if (rounded_.otherwise.empty() || conditions.noise.carried) return false;
   for (std::size_t c = 0; c < learnt_.shape.size(); ++c)
     if (!(lead.fit.noise_sd[c] < told_noise * conditions.noise.floor[c])) return false;
+  auto const state_of_channel = dictionary_.states_of_channels();
+  if (!state_of_channel || !every_sample_measured(dictionary_.records())) return false;
   auto steps = sample_steps(dictionary_, lead, conditions, true);
   if (!steps) return false;
   auto carried = std::make_shared<std::vector<CarriedErrors>>();
-  std::vector<int> state_of_channel(learnt_.shape.size(), -1);
-  auto const channels = channels_of_states(dictionary_);
-  for (std::size_t x = 0; x < channels->size(); ++x) state_of_channel[(*channels)[x]] = static_cast<int>(x);
   std::vector<double> squares(learnt_.shape.size(), 0), counts(learnt_.shape.size(), 0);
   for (std::size_t e = 0; e < steps->size(); ++e) {
     SampleSteps& of = (*steps)[e];
-    CarriedErrors each{std::move(of.ahead), std::move(of.here), std::move(of.next), rounded_.sds[e], state_of_channel, {}};
+    CarriedErrors each{std::move(of.ahead), std::move(of.here), std::move(of.next), rounded_.sds[e], *state_of_channel, {}};
     for (std::size_t c = 0; c < learnt_.shape.size(); ++c) {
       each.own_sd.push_back(rounding_of_samples_[e][c]);
       for (double& sd : each.own_sd.back()) sd = hypotenuse(sd, learnt_.own_errors[c]);

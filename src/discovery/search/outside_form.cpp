@@ -86,10 +86,11 @@ class Drive {
         noise_sd_(noise_sd),
         parts_(dictionary.segments(conditions.halved)),
         simulation_(dictionary.simulation(Terms{}, conditions)),
-        channels_(*channels_of_states(dictionary)) {}
+        states_(*dictionary.states_of_channels()) {}
 
   std::vector<Eigen::MatrixXd> columns(std::vector<OutsideFunction> const& functions, int driven) const {
-    auto const count = static_cast<Eigen::Index>(functions.size()), d = static_cast<Eigen::Index>(channels_.size());
+    auto const count = static_cast<Eigen::Index>(functions.size());
+    auto const d = static_cast<Eigen::Index>(dictionary_.model().states.size());
     std::vector<Eigen::Index> first = {0};
     for (SampleSteps const& each : steps_) first.push_back(first.back() + static_cast<Eigen::Index>(each.states.size()));
     std::vector<Eigen::MatrixXd> out;
@@ -100,8 +101,8 @@ class Drive {
       Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(rows * simulation_.channels(), count);
       Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(d, count);
       for (Eigen::Index i = 0; i < rows; ++i) {
-        for (Eigen::Index x = 0; x < d; ++x)
-          columns.row(static_cast<Eigen::Index>(channels_[static_cast<std::size_t>(x)]) * rows + i) = moved.row(x);
+        for (Eigen::Index c = 0; c < simulation_.channels(); ++c)
+          columns.row(c * rows + i) = moved.row(states_[static_cast<std::size_t>(c)]);
         if (i + 1 == rows) break;
         auto const n = static_cast<std::size_t>(parts_[s].first + i);
         double const half = (time[n + 1] - time[n]) / 2;
@@ -123,7 +124,7 @@ class Drive {
   std::vector<double> const& noise_sd_;
   std::vector<Segment> parts_;
   SegmentSimulation simulation_;
-  std::vector<std::size_t> channels_;
+  std::vector<int> states_;  // per channel
 };
 
 LinearisedMotion extended(LinearisedParts const& parts, std::vector<Eigen::MatrixXd> const& columns,
@@ -143,7 +144,7 @@ LinearisedMotion extended(LinearisedParts const& parts, std::vector<Eigen::Matri
 }
 
 /// Of all columns: those of the equation share its expected number of terms with the functions.
-std::vector<double> shared_odds(WholeDictionary const& dictionary, std::size_t equation,
+std::vector<double> shared_odds(WholeDictionary const& dictionary, std::size_t equation, std::size_t inner,
                                 std::vector<OutsideFunction> const& functions) {
   std::vector<double> weights, odds;
   for (WholeDictionary::Column const& each : dictionary.columns()) {
@@ -151,6 +152,7 @@ std::vector<double> shared_odds(WholeDictionary const& dictionary, std::size_t e
     bool const shares = each.equation == equation && !each.always;
     weights.push_back(shares ? simplicity(dictionary.source().dictionary.equations[equation].terms[each.term].tree) : 0.0);
   }
+  for (std::size_t k = 0; k < inner; ++k) weights.push_back(0), odds.push_back(0);
   for (OutsideFunction const& each : functions) weights.push_back(each.simplicity), odds.push_back(0);
   std::vector<double> const shared = log_odds_of(weights);
   for (std::size_t j = 0; j < odds.size(); ++j)
@@ -164,33 +166,40 @@ std::optional<OutsideEquation> outside_form(WholeDictionary const& dictionary, F
                                             FitConditions const& conditions, LinearisedParts const& parts,
                                             std::vector<double> const& noise_sd, std::vector<Terms> const& near,
                                             std::function<bool()> const& interrupted) {
+  if (!dictionary.states_of_channels()) return std::nullopt;
   auto const steps = sample_steps(dictionary, lead, conditions, false);
   if (!steps) return std::nullopt;
   StateValues const states = values_of(dictionary, *steps);
   Drive const drive(dictionary, conditions, *steps, noise_sd);
   std::vector<DictionaryEquation> const& equations = dictionary.source().dictionary.equations;
   std::vector<WholeDictionary::Column> const& own = dictionary.columns();
+  std::size_t const known = static_cast<std::size_t>(parts.at.size()), inner = known - own.size();
   std::optional<OutsideEquation> best;
   for (std::size_t e = 0; e < equations.size() && !interrupted(); ++e) {
     int const driven = driven_state(dictionary, e);
     if (driven < 0) continue;
     std::vector<OutsideFunction> const functions = outside_functions(states, terms_of_states(dictionary, e, states));
-    if (functions.empty() || own.size() + functions.size() > most_columns) continue;
-    LinearisedMotion const motion = extended(parts, drive.columns(functions, driven), shared_odds(dictionary, e, functions));
+    if (functions.empty() || known + functions.size() > most_columns) continue;
+    LinearisedMotion const motion = extended(parts, drive.columns(functions, driven), shared_odds(dictionary, e, inner, functions));
+    auto const with_inner = [&](Terms terms) {  // those that the leading structure reads
+      for (std::size_t j = own.size(); j < known; ++j)
+        if (motion.usable(static_cast<int>(j))) terms.push_back(static_cast<int>(j));
+      return terms;
+    };
     Terms others;
     for (int const j : lead.terms)
       if (own[static_cast<std::size_t>(j)].equation != e || own[static_cast<std::size_t>(j)].always) others.push_back(j);
     std::size_t const most = std::max<std::size_t>(lead.terms.size() - others.size(), 2);
-    std::vector<Terms> from = built_up(motion, others, most);
-    from.insert(from.end(), near.begin(), near.end());
-    from.push_back(lead.terms);
+    std::vector<Terms> from = built_up(motion, with_inner(others), most);
+    for (Terms const& each : near) from.push_back(with_inner(each));
+    from.push_back(with_inner(lead.terms));
     std::erase_if(from, [&](Terms const& terms) {
       return std::any_of(terms.begin(), terms.end(), [&](int j) { return !motion.usable(j); });
     });
     WeighedTerms const* outside = nullptr;
     WeighedTerms const* inside = nullptr;
     std::vector<WeighedTerms> const weighed = best_terms(motion, from);
-    auto const is_outside = [&](int j) { return j >= static_cast<int>(own.size()); };
+    auto const is_outside = [&](int j) { return j >= static_cast<int>(known); };
     for (WeighedTerms const& each : weighed) {
       WeighedTerms const*& place = std::any_of(each.terms.begin(), each.terms.end(), is_outside) ? outside : inside;
       if (place == nullptr) place = &each;
@@ -205,9 +214,9 @@ std::optional<OutsideEquation> outside_form(WholeDictionary const& dictionary, F
                          .samples = parts.settings.samples};
     for (int const j : outside->terms) {
       auto const column = static_cast<std::size_t>(j);
-      if (!is_outside(j) && own[column].equation != e) continue;
+      if (!is_outside(j) && (column >= own.size() || own[column].equation != e)) continue;
       form.text += (form.text.empty() ? equations[e].text + ": " : ", ") +
-                   (is_outside(j) ? functions[column - own.size()].text : equations[e].terms[own[column].term].text);
+                   (is_outside(j) ? functions[column - known].text : equations[e].terms[own[column].term].text);
     }
     best = std::move(form);
   }

@@ -28,6 +28,7 @@ constexpr OfOne powers[] = {
     {"{0}^4", factor* factor* factor, [](double a) { return a * a * a * a; }},
     {"{0}^5", factor* factor* factor* factor, [](double a) { return a * a * a * a * a; }},
     {"abs({0})*{0}", factor* factor, [](double a) { return std::abs(a) * a; }},
+    {"sign({0})", factor, [](double a) { return static_cast<double>((a > 0) - (a < 0)); }},
     {"sqrt({0})", function, [](double a) { return std::sqrt(a); }},
     {"1/{0}", function, [](double a) { return 1 / a; }},
 };
@@ -57,6 +58,7 @@ constexpr OfOne times_another[] = {
 constexpr OfOne products[] = {
     {"{0}^2*{1}", factor* factor, [](double a) { return a * a; }},
     {"{0}^3*{1}", factor* factor* factor, [](double a) { return a * a * a; }},
+    {"{0}^4*{1}", factor* factor* factor* factor, [](double a) { return a * a * a * a; }},
     {"abs({0})*{1}", factor* factor, [](double a) { return std::abs(a); }},
 };
 

@@ -19,8 +19,8 @@ struct OutsideFunction {
   Eigen::VectorXd values;  // [rows]
 };
 
-/// The constant, powers up to the fifth, products, and of plain states sin, cos, exp, logarithms, roots, saturations, and these
-/// times another state; those that are finite in all rows, and no multiple of one of `known` [rows x terms].
+/// The constant, powers up to the fifth, signs, products, and of plain states sin, cos, exp, logarithms, roots, saturations, and
+/// these times another state; those that are finite in all rows, and no multiple of one of `known` [rows x terms].
 std::vector<OutsideFunction> outside_functions(StateValues const& states, Eigen::MatrixXd const& known);
 
 }  // namespace sysid

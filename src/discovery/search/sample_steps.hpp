@@ -18,10 +18,7 @@ struct SampleSteps {
   std::vector<Eigen::MatrixXd> here, next;  // [N - 1], [d x u]; empty where inputs were not asked for
 };
 
-/// Per state of the model the channel that measures it; nothing where a state has none.
-std::optional<std::vector<std::size_t>> channels_of_states(WholeDictionary const& dictionary);
-
-/// Of each record along a fit. Nothing where a state or a sample is not measured, or the simulation is not finite.
+/// Of each record along a fit, whether or not its states are measured. Nothing where the simulation is not finite.
 std::optional<std::vector<SampleSteps>> sample_steps(WholeDictionary const& dictionary, FittedTerms const& fitted,
                                                      FitConditions const& conditions, bool inputs);
 

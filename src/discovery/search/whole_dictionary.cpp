@@ -85,6 +85,14 @@ std::optional<std::size_t> WholeDictionary::channel_of(std::pair<int, int> const
   return static_cast<std::size_t>(found - model_.channels.begin());
 }
 
+std::optional<std::vector<int>> WholeDictionary::states_of_channels() const {
+  std::vector<int> out(model_.channels.size(), -1);
+  for (std::size_t x = 0; x < model_.states.size(); ++x)
+    if (auto const channel = channel_of(model_.states[x])) out[*channel] = static_cast<int>(x);
+  if (std::find(out.begin(), out.end(), -1) != out.end()) return std::nullopt;
+  return out;
+}
+
 Terms WholeDictionary::terms_of(FoundStructure const& structure) const {
   Terms terms;
   for (std::size_t j = 0; j < columns_.size(); ++j) {
@@ -123,15 +131,34 @@ SegmentSimulation WholeDictionary::simulation(Terms const& terms, FitConditions 
   return simulation(terms, {}, {}, conditions, records_, segments(conditions.halved));
 }
 
+SegmentSimulation WholeDictionary::simulation_with_inner(Terms const& terms, FitConditions const& conditions) const {
+  SegmentSimulation::Settings with_inner = settings(terms, {}, {}, conditions);
+  for (ValidatedModel::Inner const& each : model_.inner) with_inner.fitted.push_back(each.parameter);
+  return SegmentSimulation(model_.compiled, records_, segments(conditions.halved), std::move(with_inner));
+}
+
 SegmentSimulation WholeDictionary::simulation(FittedTerms const& fitted, std::vector<Segment> const& parts,
                                               FitConditions const& conditions, std::vector<Experiment> const& records) const {
   return simulation({}, fitted.terms, fitted.fit.point.coefficients, conditions, records, parts);
+}
+
+SegmentSimulation WholeDictionary::states(FittedTerms const& fitted, std::vector<Segment> const& parts,
+                                          FitConditions const& conditions, std::vector<Experiment> const& records) const {
+  SegmentSimulation::Settings of_states = settings({}, fitted.terms, fitted.fit.point.coefficients, conditions);
+  of_states.centres = compile_states(*model_.compiled);
+  of_states.noise = {};
+  return SegmentSimulation(model_.compiled, records, parts, std::move(of_states));
 }
 
 // held: terms at these values. All that is neither is out.
 SegmentSimulation WholeDictionary::simulation(Terms const& terms, Terms const& held, Eigen::VectorXd const& values,
                                               FitConditions const& conditions, std::vector<Experiment> const& records,
                                               std::vector<Segment> const& parts) const {
+  return SegmentSimulation(model_.compiled, records, parts, settings(terms, held, values, conditions));
+}
+
+SegmentSimulation::Settings WholeDictionary::settings(Terms const& terms, Terms const& held, Eigen::VectorXd const& values,
+                                                      FitConditions const& conditions) const {
   SegmentSimulation::Settings settings{
       {}, model_.others, 0, model_.solver, source_.execution, pool_, model_.centres, conditions.noise};
   settings.solver.substeps = conditions.substeps;
@@ -140,7 +167,7 @@ SegmentSimulation WholeDictionary::simulation(Terms const& terms, Terms const& h
     settings.others[static_cast<std::size_t>(columns_[static_cast<std::size_t>(held[i])].parameter)] =
         values(static_cast<Eigen::Index>(i));
   for (int const j : terms) settings.fitted.push_back(columns_[static_cast<std::size_t>(j)].parameter);
-  return SegmentSimulation(model_.compiled, records, parts, std::move(settings));
+  return settings;
 }
 
 std::vector<SegmentSlopes> WholeDictionary::residuals(FittedTerms const& fitted, FitConditions const& conditions) const {

@@ -63,9 +63,14 @@ class WholeDictionary {
 
   /// Of the terms that are fitted; all others are out.
   SegmentSimulation simulation(Terms const& terms, FitConditions const& conditions) const;
+  /// Of these and of the parameters inside terms, which follow.
+  SegmentSimulation simulation_with_inner(Terms const& terms, FitConditions const& conditions) const;
   /// Of starts alone, over other segments: coefficients are held at those of a fit.
   SegmentSimulation simulation(FittedTerms const& fitted, std::vector<Segment> const& parts, FitConditions const& conditions,
                                std::vector<Experiment> const& records) const;
+  /// The same, of states in the place of channels: records have a column for each.
+  SegmentSimulation states(FittedTerms const& fitted, std::vector<Segment> const& parts, FitConditions const& conditions,
+                           std::vector<Experiment> const& records) const;
   /// What a fit leaves, with its coefficients held; of other records of the same rows.
   std::vector<SegmentSlopes> residuals(FittedTerms const& fitted, FitConditions const& conditions) const;
   std::vector<SegmentSlopes> residuals(FittedTerms const& fitted, FitConditions const& conditions,
@@ -77,6 +82,8 @@ class WholeDictionary {
   FittedTerms fitted(FoundStructure const& structure, FitConditions const& conditions);
   /// The channel of the model that measures a state; nothing where none does. state: the dictionary's, with its order.
   std::optional<std::size_t> channel_of(std::pair<int, int> const& state) const;
+  /// Per channel of the model the state of the model that it measures; nothing where one measures anything else.
+  std::optional<std::vector<int>> states_of_channels() const;
   FoundSource const& source() const { return source_; }
   /// Of what is part of the targets alone.
   FittedTerms fitted_without_terms(FitConditions const& conditions);
@@ -88,6 +95,8 @@ class WholeDictionary {
   SegmentSimulation simulation(Terms const& terms, Terms const& held, Eigen::VectorXd const& values,
                                FitConditions const& conditions, std::vector<Experiment> const& records,
                                std::vector<Segment> const& parts) const;
+  SegmentSimulation::Settings settings(Terms const& terms, Terms const& held, Eigen::VectorXd const& values,
+                                       FitConditions const& conditions) const;
 
   FoundSource const& source_;
   std::function<bool()> const& interrupted_;

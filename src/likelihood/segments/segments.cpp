@@ -27,15 +27,23 @@ double size_of(std::span<Experiment const> experiments, std::size_t channel) {
   return squares > 0 ? std::sqrt(squares / count) : 1;
 }
 
+std::shared_ptr<SimulationProgram const> compile_records_of(CompiledModel const& compiled, CompiledModel::Record::Kind kind) {
+  SimulationSource source = compiled.trajectory->source;
+  std::vector<NodeId> records;
+  for (std::size_t r = 0; r < compiled.records.size(); ++r)
+    if (compiled.records[r].kind == kind) records.push_back(source.records[r]);
+  source.records = std::move(records);
+  return std::make_shared<SimulationProgram const>(compile(std::move(source)));
+}
+
 }  // namespace
 
 std::shared_ptr<SimulationProgram const> compile_centres(CompiledModel const& compiled) {
-  SimulationSource source = compiled.trajectory->source;
-  std::vector<NodeId> centres;
-  for (std::size_t r = 0; r < compiled.records.size(); ++r)
-    if (compiled.records[r].kind == CompiledModel::Record::Kind::centre) centres.push_back(source.records[r]);
-  source.records = std::move(centres);
-  return std::make_shared<SimulationProgram const>(compile(std::move(source)));
+  return compile_records_of(compiled, CompiledModel::Record::Kind::centre);
+}
+
+std::shared_ptr<SimulationProgram const> compile_states(CompiledModel const& compiled) {
+  return compile_records_of(compiled, CompiledModel::Record::Kind::state);
 }
 
 int halvings(int rows, int least) {

@@ -34,6 +34,8 @@ struct ShootingPoint {
 
 /// The simulations of a model that record the centre of each channel and nothing else.
 std::shared_ptr<SimulationProgram const> compile_centres(CompiledModel const& compiled);
+/// The same of each state, as if a channel measured it.
+std::shared_ptr<SimulationProgram const> compile_states(CompiledModel const& compiled);
 
 /// A segment at a point. Rows are channel by channel, in each sample by sample; 0 where nothing is measured. All are made
 /// independent of each other where inputs carry errors, and divided by the relative noise of their sample.
@@ -64,9 +66,10 @@ class SegmentSimulation {
     SolverSettings solver;
     ExecutionOptions execution;
     std::shared_ptr<ThreadPool> pool;
-    std::shared_ptr<SimulationProgram const> centres;  // of `compile_centres`; null: compiled here
-    NoiseShape noise = {};                             // with the channels of the model
-    int inner = 0;                                     // the last so many of `fitted` are parameters inside terms
+    /// Of `compile_centres`, or of `compile_states` with experiments that have a column for each state; null: the first.
+    std::shared_ptr<SimulationProgram const> centres;
+    NoiseShape noise = {};  // with the channels of the model
+    int inner = 0;          // the last so many of `fitted` are parameters inside terms
   };
   /// compiled: with a free start. Segments have two rows or more.
   SegmentSimulation(std::shared_ptr<CompiledModel const> compiled, std::span<Experiment const> experiments,
@@ -77,7 +80,7 @@ class SegmentSimulation {
   /// Of these the last ones that stand inside terms.
   int others() const { return settings_.inner; }
   int states() const { return static_cast<int>(compiled_->model.states.size()); }
-  int channels() const { return static_cast<int>(compiled_->model.channels.size()); }
+  int channels() const { return settings_.centres->registers.records; }
   /// Measured samples that count: of a channel; of a segment.
   int samples_of_channel(int channel) const { return per_channel_[static_cast<std::size_t>(channel)]; }
   int samples_of_segment(int segment) const { return per_segment_[static_cast<std::size_t>(segment)]; }
