@@ -62,12 +62,14 @@ Severity tempered(ValidationReport const& validation, Finding each) {
 
 TEST_CASE("the verdict has a clause each for the form, the coefficients and other rows") {
   CHECK(verdict_clauses(report(0.98)) ==
-        "the form is decided (probability 0.980), the coefficients have sds of 0.50 to 2.0 %, the equation holds on the last fifth "
+        "the form is decided among the terms of the dictionary (probability 0.980), the coefficients have sds of 0.50 to 2.0 %, "
+        "the equation holds on the last fifth "
         "of record "
         "(rms error of a free run: 2.5 times the noise)");
   CHECK(verdict_clauses(report(0.98, 0.3))
             .ends_with("the equation holds on the last fifth of record (rms error of a free run: 30 % of the sd)"));
-  CHECK(verdict_clauses(report(0.85)).starts_with("the form is more probable than all others (probability 0.850), "));
+  CHECK(verdict_clauses(report(0.85))
+            .starts_with("the form is more probable than all others among the terms of the dictionary (probability 0.850), "));
   CHECK(
       verdict_clauses(report(0.6)).starts_with("the form is not decided, but more probable than all others (probability 0.600), "));
   CHECK(verdict_clauses(report(0.4)).starts_with("the form is not decided (probability 0.400), "));

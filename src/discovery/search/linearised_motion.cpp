@@ -135,7 +135,7 @@ Eigen::MatrixXd LinearisedMotion::start_moves(WeighedTerms const& terms) const {
 }
 
 WeighedTerms LinearisedMotion::weigh(Terms terms) const {
-  WeighedTerms out{std::move(terms), never, never, {}};
+  WeighedTerms out{std::move(terms), never, never, 0, {}};
   auto const p = static_cast<Eigen::Index>(out.terms.size());
   Eigen::MatrixXd chosen(columns_.rows(), p + 1);
   if (chosen.rows() <= p) return out;
@@ -144,7 +144,7 @@ WeighedTerms LinearisedMotion::weigh(Terms terms) const {
   Eigen::MatrixXd const triangle = OrthogonalTriangular(chosen).triangle();
   for (Eigen::Index i = 0; i < p; ++i)
     if (!(triangle(i, i) * triangle(i, i) > independent)) return out;
-  double const squares = triangle(p, p) * triangle(p, p), n = settings_.samples;
+  double const squares = out.squares = triangle(p, p) * triangle(p, p), n = settings_.samples;
   double const variance = std::max(squares / n, settings_.floor);
   Eigen::VectorXd const scaled = solve_upper(triangle.topLeftCorner(p, p), triangle.topRightCorner(p, 1));
   out.coefficients.resize(p);

@@ -16,6 +16,7 @@ struct WeighedTerms {
   Terms terms;
   double score = 0;              // log evidence and prior, up to a constant of the linearisation
   double log_likelihood = 0;     // up to the same constant for all sets of terms
+  double squares = 0;            // S
   Eigen::VectorXd coefficients;  // of the terms
 };
 

@@ -14,6 +14,8 @@ namespace sysid {
 namespace {
 
 constexpr std::size_t most_columns = 400;
+/// Residuals far below the bound of what simulations and files are trusted to: what another term takes from them is no motion.
+constexpr double within_bounds = 0.5;
 
 /// The state of the model whose rate an equation sets: the only derivative in it that is one order above a state. -1: none, or
 /// several.
@@ -205,6 +207,7 @@ std::optional<OutsideEquation> outside_form(WholeDictionary const& dictionary, F
       if (place == nullptr) place = &each;
     }
     if (outside == nullptr || inside == nullptr) continue;
+    if (inside->squares < within_bounds * parts.settings.samples * parts.settings.floor) continue;
     double const log_odds = outside->score - inside->score;
     if (best && best->log_odds >= log_odds) continue;
     OutsideEquation form{.text = "",

@@ -19,7 +19,7 @@ namespace {
 using Pair = std::array<double, 2>;
 using Rates = std::function<Pair(Pair const&)>;
 
-/// 150 samples of two states, Runge and Kutta's steps of a hundredth of a sample; noise in proportion to each value, or of this
+/// Samples of two states, Runge and Kutta's steps of a hundredth of a sample; noise in proportion to each value, or of this
 /// part of a channel's sd; written with so many digits.
 struct Trial {
   Rates rates;
@@ -28,14 +28,15 @@ struct Trial {
   double proportional = 0, constant = 0;
   int digits = 15;
   std::uint64_t seed = 1;
+  int rows = 150;
 
   std::string csv() const {
-    constexpr int rows = 150, steps = 100;
+    constexpr int steps = 100;
     double const h = length / (rows - 1) / steps;
     std::vector<Pair> motion = {start};
     Pair at = start;
     auto const plus = [](Pair const& a, double by, Pair const& b) { return Pair{a[0] + by * b[0], a[1] + by * b[1]}; };
-    while (motion.size() < rows) {
+    while (std::ssize(motion) < rows) {
       for (int i = 0; i < steps; ++i) {
         Pair const k1 = rates(at), k2 = rates(plus(at, h / 2, k1)), k3 = rates(plus(at, h / 2, k2)), k4 = rates(plus(at, h, k3));
         for (std::size_t s = 0; s < 2; ++s) at[s] += h / 6 * (k1[s] + 2 * k2[s] + 2 * k3[s] + k4[s]);
@@ -64,16 +65,25 @@ struct Trial {
   json found(std::string const& terms) const { return answer(terms).at("discovery").at("judged").at("structures").at(0); }
 
   /// Whether a discovery has a finding.
-  bool finds(std::string const& terms, std::string const& code) const {
-    json const summary = answer(terms);
+  bool finds(std::string const& terms, std::string const& code) const { return has(answer(terms), code); }
+
+  /// The same of x'' where x alone is measured.
+  bool finds_by_displacement(std::string const& terms, std::string const& code) const {
+    return has(run("state x = x\ntarget = x''\nterms = " + terms, "measure x = x"), code);
+  }
+
+  static bool has(json const& summary, std::string const& code) {
     return std::any_of(summary.at("findings").begin(), summary.at("findings").end(),
                        [&](json const& each) { return each.at("code") == code; });
   }
 
   json answer(std::string const& terms) const {
-    std::string const text = "dictionary d {\nstate x = x, y = y\ntarget = x', y'\nterms = " + terms +
-                             "\n}\ndata record { file \"record.csv\"; time t; measure x = x; measure y = y }\n"
-                             "found = discover d from record with seed = 1\n";
+    return run("state x = x, y = y\ntarget = x', y'\nterms = " + terms, "measure x = x; measure y = y");
+  }
+
+  json run(std::string const& dictionary, std::string const& measured) const {
+    std::string const text = "dictionary d {\n" + dictionary + "\n}\ndata record { file \"record.csv\"; time t; " + measured +
+                             " }\nfound = discover d from record with seed = 1\n";
     DiscoveryAnswer const answer = run_with(text, {{"record.csv", csv()}});
     REQUIRE_MESSAGE(answer.summary.contains("discovery"), answer.said);
     return answer.summary;
@@ -135,6 +145,21 @@ TEST_CASE("an equation that terms of the dictionary only imitate is warned of, a
     CHECK_FALSE(record.finds(narrow + ", exp(-x), exp(-2*x)", "other_terms_fit"));
     Trial const prey{.rates = hunting, .start = {4, 1.5}, .length = 12, .proportional = 0.01, .seed = seed};
     CHECK_FALSE(prey.finds(narrow, "other_terms_fit"));
+  }
+}
+
+TEST_CASE("an equation that is only imitated is warned of where a displacement alone is measured") {
+  // A self-excited oscillator whose damping changes sign as the fourth power, under a dictionary to the third.
+  Rates const excited = [](Pair const& s) { return Pair{s[1], 0.5 * s[1] * (1 - std::pow(s[0], 4)) - s[0]}; };
+  Rates const van_der_pol = [](Pair const& s) { return Pair{s[1], 0.5 * s[1] * (1 - s[0] * s[0]) - s[0]}; };
+  std::string const cubic = "1, polynomial(x, x', degree = 3)";
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    Trial record{.rates = excited, .start = {0.3, 0}, .length = 40, .constant = 0.04, .seed = seed, .rows = 400};
+    CHECK(record.finds_by_displacement(cubic, "other_terms_fit"));
+    CHECK_FALSE(record.finds_by_displacement(cubic + ", x^4*x'", "other_terms_fit"));
+    record.rates = van_der_pol;
+    CHECK_FALSE(record.finds_by_displacement(cubic, "other_terms_fit"));
   }
 }
 
