@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "core/numeric/elementary.hpp"
@@ -17,13 +18,19 @@ constexpr std::size_t most_columns = 400;
 /// Residuals far below the bound of what simulations and files are trusted to: what another term takes from them is no motion.
 constexpr double within_bounds = 0.5;
 
-/// The state of the model whose rate an equation sets: the only derivative in it that is one order above a state. -1: none, or
-/// several.
-int driven_state(WholeDictionary const& dictionary, std::size_t equation) {
+/// The state of the model whose rate an equation sets: the only derivative in it, with these terms, that is one order above a
+/// state. -1: none, or several, or one inside a term, where what a function does to the rate depends on the states.
+int driven_state(WholeDictionary const& dictionary, Terms const& terms, std::size_t equation) {
   regression::Dictionary const& numbers = dictionary.source().dictionary.numbers;
-  std::vector<NodeId> roots = {numbers.equations[equation].known};
-  for (regression::Term const& term : numbers.equations[equation].terms)
+  std::vector<regression::Term> const& own = numbers.equations[equation].terms;
+  std::vector<NodeId> roots = {numbers.equations[equation].known}, chosen;
+  for (regression::Term const& term : own)
     if (term.always) roots.push_back(term.expression);
+  for (int const j : terms) {
+    WholeDictionary::Column const& column = dictionary.columns()[static_cast<std::size_t>(j)];
+    if (column.equation == equation && !column.always) chosen.push_back(own[column.term].expression);
+  }
+  roots.insert(roots.end(), chosen.begin(), chosen.end());
   std::vector<NodeId> const reached = numbers.graph.reachable(roots);
   std::vector<std::pair<int, int>> const& states = dictionary.model().states;
   int found = -1;
@@ -33,6 +40,10 @@ int driven_state(WholeDictionary const& dictionary, std::size_t equation) {
     if (std::find(states.begin(), states.end(), std::pair(symbol.index, symbol.order)) != states.end()) continue;
     auto const state = std::find(states.begin(), states.end(), std::pair(symbol.index, symbol.order - 1));
     if (state == states.end() || found >= 0) return -1;
+    for (NodeId const term : chosen) {
+      std::vector<NodeId> const inside = numbers.graph.reachable(std::span(&term, 1));
+      if (term != symbol.leaf && std::find(inside.begin(), inside.end(), symbol.leaf) != inside.end()) return -1;
+    }
     found = static_cast<int>(state - states.begin());
   }
   return found;
@@ -178,7 +189,7 @@ std::optional<OutsideEquation> outside_form(WholeDictionary const& dictionary, F
   std::size_t const known = static_cast<std::size_t>(parts.at.size()), inner = known - own.size();
   std::optional<OutsideEquation> best;
   for (std::size_t e = 0; e < equations.size() && !interrupted(); ++e) {
-    int const driven = driven_state(dictionary, e);
+    int const driven = driven_state(dictionary, lead.terms, e);
     if (driven < 0) continue;
     std::vector<OutsideFunction> const functions = outside_functions(states, terms_of_states(dictionary, e, states));
     if (functions.empty() || known + functions.size() > most_columns) continue;
