@@ -130,7 +130,8 @@ class Validator {
     });
     double sum = searched_.others;
     for (std::size_t const m : order_)
-      if (is_validated(m)) sum += scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()));
+      sum += is_validated(m) ? scored_[m].probability = elementary::exp(weight(m) - weight(order_.front()))
+                             : elementary::exp(fits_->log_posterior_reached(m) - weight(order_.front()));
     for (std::size_t const m : order_) scored_[m].probability /= sum > 0 ? sum : 1;
   }
 

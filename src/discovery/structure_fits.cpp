@@ -18,6 +18,9 @@ constexpr double tolerable_growth = 1.5;
 /// Segments on the way up need not be fitted closer than this, in log likelihood.
 constexpr double enough_on_the_way = 1e-2;
 constexpr int most_refinements = 4;
+/// How often segments are halved again, and by how much less probable than the best a structure counts there, in log.
+constexpr int most_returns = 3;
+constexpr double within_reach = 7;
 /// What solvers that take one simulation after the other may simulate, all structures together: 15 to 60 µs a row.
 constexpr double most_rows_one_by_one = 400'000;
 /// Steps of such a solver between two samples: a trial that needs more is lost, near values that do not solve the equation.
@@ -35,7 +38,7 @@ bool follows(ShootingFit const& before, ShootingFit const& after) {
 }  // namespace
 
 StructureFits::StructureFits(std::vector<ValidatedModel> const& models, StartGuess& guess, StructureFitSettings settings)
-    : models_(models), guess_(guess), settings_(std::move(settings)), fits_(models.size()) {
+    : models_(models), guess_(guess), settings_(std::move(settings)), fits_(models.size()), shorter_(models.size()) {
   for (Experiment const& each : settings_.records)
     most_halvings_ = std::max(most_halvings_, halvings(static_cast<int>(each.time.size()), settings_.least));
   halved_ = most_halvings_;
@@ -57,9 +60,19 @@ std::string const& StructureFits::failure(std::size_t m) const {
   return models_[m].failure.empty() ? fits_[m].failure : models_[m].failure;
 }
 
-double StructureFits::log_posterior(std::size_t m) const {
-  if (!validated(m)) return -std::numeric_limits<double>::infinity();
+double StructureFits::reached(std::size_t m) const {
   return fits_[m].fit.log_evidence + settings_.log_prior[m] + log_prior_of_inner(m);
+}
+
+double StructureFits::log_posterior(std::size_t m) const {
+  return validated(m) ? reached(m) : -std::numeric_limits<double>::infinity();
+}
+
+double StructureFits::log_posterior_reached(std::size_t m) const {
+  ShootingFit const& fit = fits_[m].fit;
+  bool const on_its_way = models_[m].failure.empty() && !given_up(m) && fit.finite && fit.determined && !fit.converged &&
+                          !fits_[m].failure.empty() && fits_[m].halved == halved_;
+  return on_its_way ? reached(m) : -std::numeric_limits<double>::infinity();
 }
 
 double StructureFits::log_prior_of_inner(std::size_t m) const {
@@ -197,7 +210,7 @@ void StructureFits::climb_alone(std::size_t m) {
   while (fits_[m].halved > 0 && !settings_.interrupted()) {
     Fitted next = at(m, fits_[m], fits_[m].halved - 1, false);
     if (!follows(fits_[m].fit, next.fit)) return;
-    fits_[m] = std::move(next);
+    shorter_[m].push_back(std::exchange(fits_[m], std::move(next)));
   }
 }
 
@@ -208,7 +221,7 @@ void StructureFits::climb_to(std::size_t m, int halved) {
     if (!next.fit.finite)
       fits_[m].failure = "does not stay finite over segments of this length";
     else
-      fits_[m] = std::move(next);
+      shorter_[m].push_back(std::exchange(fits_[m], std::move(next)));
   }
 }
 
@@ -237,10 +250,17 @@ std::optional<std::size_t> StructureFits::best() const {
   return best;
 }
 
-/// To the last digits, with a solver that no longer shapes the best one's coefficients.
 void StructureFits::refine() {
+  for (int returns = 0; !settle() && returns < most_returns && go_back(); ++returns) {
+  }
+  name_failures();
+}
+
+/// To the last digits, with a solver that no longer shapes the best one's coefficients. Whether the best one converges, and those
+/// with fewer coefficients that are nearly as probable.
+bool StructureFits::settle() {
   std::optional<std::size_t> const first = best();
-  if (!first) return;
+  if (!first) return true;
   fits_[*first] = at(*first, fits_[*first], halved_, true);
   for (int round = 0; round < most_refinements && solver(*first).fixed_step() && !settings_.interrupted(); ++round) {
     int const before = substeps_;
@@ -259,6 +279,32 @@ void StructureFits::refine() {
   }
   for (std::size_t m = 0; m < models_.size(); ++m)
     if (validated(m) && m != *first && !settings_.interrupted()) fits_[m] = at(m, fits_[m], halved_, true);
+  std::optional<std::size_t> const leading = best();
+  bool all = true;
+  for (std::size_t m = 0; m < models_.size(); ++m) {
+    if (!validated(m) || !fits_[m].fit.finite || !fits_[m].fit.determined || fits_[m].fit.converged) continue;
+    bool const shorter = models_[m].coefficients.size() < models_[*leading].coefficients.size();
+    if (m == *leading || (shorter && log_posterior(m) > log_posterior(*leading) - within_reach)) all = false;
+  }
+  return all || settings_.interrupted();
+}
+
+/// To segments of half the length, as they were fitted on the way; false: there are none.
+bool StructureFits::go_back() {
+  if (halved_ == most_halvings_) return false;
+  ++halved_;
+  for (std::size_t m = 0; m < models_.size(); ++m) {
+    if (!models_[m].failure.empty()) continue;
+    while (fits_[m].halved < halved_ && !shorter_[m].empty()) {
+      fits_[m] = std::move(shorter_[m].back());
+      shorter_[m].pop_back();
+    }
+    if (fits_[m].fit.finite) fits_[m].failure.clear();
+  }
+  return true;
+}
+
+void StructureFits::name_failures() {
   for (std::size_t m = 0; m < models_.size(); ++m) {
     if (!validated(m)) continue;
     if (!fits_[m].fit.finite)

@@ -26,8 +26,9 @@ struct StructureFitSettings {
 
 /// From the regression's coefficients over the shortest segments; then neighbours are joined as long as the structure that leads
 /// follows: its fit converges and no channel's residual sd grows by more than half. The first one leads, then the best by log
-/// posterior; the others are taken along. At the end each is fitted to the last digits. Structures whose solver takes one
-/// simulation after the other share an allowance of simulated rows, so that the same are given up on any machine.
+/// posterior; the others are taken along. At the end each is fitted to the last digits; where the leading one, or a shorter one
+/// near it, does not converge then, as in chaotic motion, all go back to segments of half the length. Structures whose solver takes
+/// one simulation after the other share an allowance of simulated rows, so that the same are given up on any machine.
 class StructureFits {
  public:
   /// models: those with a failure are left alone; must outlive this.
@@ -40,6 +41,8 @@ class StructureFits {
   ShootingFit const& fit(std::size_t m) const { return fits_[m].fit; }
   /// Log evidence and prior; -infinity where it is not validated.
   double log_posterior(std::size_t m) const;
+  /// What a fit that did not converge had reached of it: no less is its own. -infinity for all others.
+  double log_posterior_reached(std::size_t m) const;
   /// At its fit; -infinity where one leaves the support of its prior.
   double log_prior_of_inner(std::size_t m) const;
   std::vector<Segment> segments() const { return segments(halved_); }
@@ -74,13 +77,18 @@ class StructureFits {
   void climb_alone(std::size_t m);
   void climb_to(std::size_t m, int halved);
   void climb();
+  double reached(std::size_t m) const;
   std::optional<std::size_t> best() const;
   void refine();
+  bool settle();
+  bool go_back();
+  void name_failures();
 
   std::vector<ValidatedModel> const& models_;
   StartGuess& guess_;
   StructureFitSettings settings_;
   std::vector<Fitted> fits_;
+  std::vector<std::vector<Fitted>> shorter_;  // per structure what it was fitted to on the way, shortest segments first
   int most_halvings_ = 0, halved_ = 0;
   int substeps_ = 1;           // at least
   double allowance_ = 0;       // rows that each of those that are taken one by one may simulate
