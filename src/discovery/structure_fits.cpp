@@ -7,6 +7,7 @@
 #include <map>
 
 #include "diagnostics/tolerance/tolerance.hpp"
+#include "likelihood/segments/segment_differences.hpp"
 #include "likelihood/segments/segment_starts.hpp"
 #include "simulate/thread_pool.hpp"
 
@@ -18,6 +19,9 @@ constexpr double tolerable_growth = 1.5;
 /// Segments on the way up need not be fitted closer than this, in log likelihood.
 constexpr double enough_on_the_way = 1e-2;
 constexpr int most_refinements = 4;
+/// Where a start moves the last quarter of a segment by so many times what it moves the first, relative to the channel's sd in
+/// units of the noise, optima beside the right one are as high as it, and sds at one of them mean nothing.
+constexpr double parted = 1000;
 /// How often segments are halved again, and by how much less probable than the best a structure counts there, in log.
 constexpr int most_returns = 3;
 constexpr double within_reach = 7;
@@ -205,11 +209,34 @@ StructureFits::Fitted StructureFits::at(std::size_t m, Fitted const& from, int h
   return out;
 }
 
+/// As in chaotic motion.
+bool StructureFits::neighbours_part(std::size_t m, Fitted const& fitted) const {
+  if (one_by_one(m)) return false;
+  SegmentSimulation const simulated = simulation(m, segments(fitted.halved));
+  std::vector<SegmentSlopes> const slopes = SegmentDifferences(simulated, fitted.fit.point).at(fitted.fit.point, most_probes);
+  double signal = std::numeric_limits<double>::infinity();
+  for (int c = 0; c < simulated.channels(); ++c)
+    signal = std::min(signal, simulated.size(c) / fitted.fit.noise_sd[static_cast<std::size_t>(c)]);
+  for (std::size_t s = 0; s < slopes.size(); ++s) {
+    Eigen::Index const rows = simulated.rows_of_channel(static_cast<int>(s)), part = std::max<Eigen::Index>(rows / 4, 1);
+    for (Eigen::Index x = 0; x < slopes[s].by_start.cols(); ++x) {
+      double begin = 0, end = 0;
+      for (int c = 0; c < simulated.channels(); ++c) {
+        double const weight = 1 / std::pow(simulated.size(c), 2);
+        begin += weight * slopes[s].by_start.col(x).segment(c * rows, part).squaredNorm();
+        end += weight * slopes[s].by_start.col(x).segment((c + 1) * rows - part, part).squaredNorm();
+      }
+      if (end > std::pow(parted * signal, 2) * begin) return true;
+    }
+  }
+  return false;
+}
+
 /// As far as it follows the record.
 void StructureFits::climb_alone(std::size_t m) {
   while (fits_[m].halved > 0 && !settings_.interrupted()) {
     Fitted next = at(m, fits_[m], fits_[m].halved - 1, false);
-    if (!follows(fits_[m].fit, next.fit)) return;
+    if (!follows(fits_[m].fit, next.fit) || neighbours_part(m, next)) return;
     shorter_[m].push_back(std::exchange(fits_[m], std::move(next)));
   }
 }

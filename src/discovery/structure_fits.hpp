@@ -25,10 +25,11 @@ struct StructureFitSettings {
 };
 
 /// From the regression's coefficients over the shortest segments; then neighbours are joined as long as the structure that leads
-/// follows: its fit converges and no channel's residual sd grows by more than half. The first one leads, then the best by log
-/// posterior; the others are taken along. At the end each is fitted to the last digits; where the leading one, or a shorter one
-/// near it, does not converge then, as in chaotic motion, all go back to segments of half the length. Structures whose solver takes
-/// one simulation after the other share an allowance of simulated rows, so that the same are given up on any machine.
+/// follows: its fit converges, no channel's residual sd grows by more than half, and neighbouring motions do not part too far. The
+/// first one leads, then the best by log posterior; the others are taken along. At the end each is fitted to the last digits; where
+/// the leading one, or a shorter one near it, does not converge then, as in chaotic motion, all go back to segments of half the
+/// length. Structures whose solver takes one simulation after the other share an allowance of simulated rows, so that the same are
+/// given up on any machine.
 class StructureFits {
  public:
   /// models: those with a failure are left alone; must outlive this.
@@ -74,6 +75,7 @@ class StructureFits {
   void begin(std::size_t m);
   ShootingPoint longer(Fitted const& from, std::vector<Segment> const& parts) const;
   Fitted at(std::size_t m, Fitted const& from, int halved, bool last);
+  bool neighbours_part(std::size_t m, Fitted const& fitted) const;
   void climb_alone(std::size_t m);
   void climb_to(std::size_t m, int halved);
   void climb();
