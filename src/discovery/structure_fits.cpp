@@ -218,16 +218,17 @@ bool StructureFits::neighbours_part(std::size_t m, Fitted const& fitted) const {
   for (int c = 0; c < simulated.channels(); ++c)
     signal = std::min(signal, simulated.size(c) / fitted.fit.noise_sd[static_cast<std::size_t>(c)]);
   for (std::size_t s = 0; s < slopes.size(); ++s) {
-    Eigen::Index const rows = simulated.rows_of_channel(static_cast<int>(s)), part = std::max<Eigen::Index>(rows / 4, 1);
-    for (Eigen::Index x = 0; x < slopes[s].by_start.cols(); ++x) {
-      double begin = 0, end = 0;
-      for (int c = 0; c < simulated.channels(); ++c) {
-        double const weight = 1 / std::pow(simulated.size(c), 2);
-        begin += weight * slopes[s].by_start.col(x).segment(c * rows, part).squaredNorm();
-        end += weight * slopes[s].by_start.col(x).segment((c + 1) * rows - part, part).squaredNorm();
-      }
-      if (end > std::pow(parted * signal, 2) * begin) return true;
-    }
+    int const rows = simulated.rows_of_channel(static_cast<int>(s)), part = std::max(rows / 4, 1);
+    auto const mean_square = [&](Eigen::Index x, int first) {  // of measured rows
+      double sum = 0, count = 0;
+      for (int c = 0; c < simulated.channels(); ++c)
+        for (int row = c * rows + first; row < c * rows + first + part; ++row)
+          if (simulated.measured(static_cast<int>(s), row))
+            sum += std::pow(slopes[s].by_start(row, x) / simulated.size(c), 2), ++count;
+      return sum / count;
+    };
+    for (Eigen::Index x = 0; x < slopes[s].by_start.cols(); ++x)
+      if (mean_square(x, rows - part) > std::pow(parted * signal, 2) * mean_square(x, 0)) return true;
   }
   return false;
 }
