@@ -87,6 +87,7 @@ struct DiscoveryReport {
   struct Inner {
     std::string name, unit, prior;  // "log_uniform(0.05, 20)"
     double value = 0;               // of the regression, in `unit`
+    std::optional<double> sd = {};  // the same; that of the coefficients contains it then
   };
   std::vector<Inner> inner;  // parameters inside terms
   std::vector<DiscoveredEquation> equations;

@@ -28,7 +28,8 @@ class InWords {
     }
     for (std::size_t k = 0; k < of_.inner.size(); ++k) {
       Quantity const& each = of_.dictionary.inner[k].quantity;
-      out.inner.push_back({each.name, each.unit_text(), prior_text(each.name), each.from_si(of_.inner[k])});
+      out.inner.push_back({each.name, each.unit_text(), prior_text(each.name), each.from_si(of_.inner[k]), {}});
+      if (!of_.inner_sd.empty()) out.inner.back().sd = of_.inner_sd[k] / (each.unit ? each.unit->scale : 1);
     }
     for (ExcludedText& each : excluded_texts(of_.dictionary))
       out.excluded.push_back({std::move(each.term), std::move(each.reason)});

@@ -11,7 +11,8 @@ namespace sysid {
 struct DiscoveryInWords {
   DiscoverTask const& what;
   CheckedDictionary const& dictionary;
-  std::vector<double> const& inner;  // values of the parameters inside terms, SI
+  std::vector<double> const& inner;     // values of the parameters inside terms, SI
+  std::vector<double> const& inner_sd;  // empty: not known
 };
 
 /// Numbers in declared units; without what simulation and held-out rows say.

@@ -26,6 +26,7 @@
 #include "discovery/preparation/equal_steps.hpp"
 #include "discovery/preparation/held_out_rows.hpp"
 #include "discovery/preparation/inner_search.hpp"
+#include "discovery/preparation/inner_spread.hpp"
 #include "discovery/search/structure_search.hpp"
 #include "discovery/simulation_validation.hpp"
 #include "discovery/validation_findings.hpp"
@@ -72,6 +73,7 @@ class Discover {
     Attempt const& best = validation ? attempts.back() : attempts.front();
     dictionary_.numbers = best.dictionary.numbers;
     inner_ = best.inner;
+    if (!validation) inner_sd_ = best.inner_sd;
     return finish(best.found, *method.selector, source_of(best), structures, validation);
   }
 
@@ -81,6 +83,7 @@ class Discover {
     CheckedDictionary dictionary;
     std::vector<double> inner;
     regression::Discovery found;
+    std::vector<double> inner_sd = {};              // where nothing refines the values; else empty, and where it is not known
     StructureSearch search = {};                    // holds supports of structures
     std::deque<regression::Support> supports = {};  // of others
   };
@@ -106,6 +109,10 @@ class Discover {
     InnerSearch const search = search_inner(noisy, records_, method, most_inner_modes, final_values);
     if (search.interrupted) throw Interrupted();
     for (InnerSearch::Mode const& mode : search.modes) attempts.push_back(attempt(mode.values, method));
+    if (final_values) {
+      Attempt& first = attempts.front();
+      first.inner_sd = add_inner_spread(noisy, records_, method, first.inner, first.found);
+    }
     return attempts;
   }
 
@@ -224,7 +231,7 @@ class Discover {
                        {"model_sha256", task_digest(session_, task_)},
                        {"statement_sha256", statement_digest(session_, task_)}};
     add_fitted_data(session_.file, data_, dictionary_.measured, report);
-    DiscoveryReport discovery = described_discovery({what_, dictionary_, inner_}, found, selector);
+    DiscoveryReport discovery = described_discovery({what_, dictionary_, inner_, inner_sd_}, found, selector);
     add_findings(found, discovery.equations, validation ? &validation->report : nullptr, report.findings);
     say_once(report.findings);
     for (Finding& each : interpolation_findings(validation)) report.findings.push_back(std::move(each));
@@ -414,7 +421,7 @@ class Discover {
   DiscoverTask const& what_;
   std::vector<Experiment> records_;        // as the regression reads them
   std::vector<std::string> interpolated_;  // names of those that were
-  std::vector<double> inner_;              // values of the parameters inside terms, SI
+  std::vector<double> inner_, inner_sd_;   // values of the parameters inside terms, SI
   CheckedDictionary dictionary_;           // with the values that were found for parameters inside terms
   std::uint64_t seed_;
   std::chrono::steady_clock::time_point began_;

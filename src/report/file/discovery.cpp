@@ -91,12 +91,23 @@ std::vector<ReportTable> discovery_tables(DiscoveryReport const& discovery) {
         discovery.validation
             ? "The values with which the regression explains the record best; its coefficients and sds are conditional on them. "
               "In the fit by simulation all parameters are free."
+        : discovery.inner.front().sd
+            ? "The values with which the regression explains the record best, with sds by Laplace's method. They count in the sds "
+              "of the coefficients."
             : "The values with which the regression explains the record best. The coefficients and their sds are conditional "
               "on them.",
         {"parameter", "value", "unit", "prior"},
         {}};
-    for (DiscoveryReport::Inner const& each : discovery.inner)
-      inner.rows.push_back({each.name, significant(each.value, 4), each.unit, each.prior});
+    bool const with_sds = discovery.inner.front().sd.has_value();
+    if (with_sds) inner.header.insert(inner.header.begin() + 2, "sd");
+    for (DiscoveryReport::Inner const& each : discovery.inner) {
+      if (!with_sds) {
+        inner.rows.push_back({each.name, significant(each.value, 4), each.unit, each.prior});
+        continue;
+      }
+      auto const [value, sd] = coefficient_text(each.value, *each.sd);
+      inner.rows.push_back({each.name, value, sd, each.unit, each.prior});
+    }
     tables.push_back(std::move(inner));
   }
   for (DiscoveredEquation const& equation : discovery.equations) {
@@ -137,7 +148,11 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
   for (DiscoveryReport::Noise const& noise : discovery.noise)
     out["noise"][noise.channel] = {{"unit", noise.unit}, {"sd", noise.sd}, {"given", noise.given}};
   for (DiscoveryReport::Inner const& each : discovery.inner)
-    out["inside_terms"].push_back({{"name", each.name}, {"unit", each.unit}, {"prior", each.prior}, {"regression", each.value}});
+    out["inside_terms"].push_back({{"name", each.name},
+                                   {"unit", each.unit},
+                                   {"prior", each.prior},
+                                   {"regression", each.value},
+                                   {"regression_sd", each.sd ? Json(*each.sd) : Json(nullptr)}});
   for (DiscoveryReport::Excluded const& each : discovery.excluded)
     out["left_out"].push_back({{"term", each.term}, {"reason", each.reason}});
   for (DiscoveredEquation const& equation : discovery.equations) {
