@@ -9,8 +9,9 @@ namespace sysid {
 namespace {
 
 constexpr int prior_draws = 1023;
-constexpr double finest = 1.0 / 512;  // of a prior's probability: a fit by simulation goes on from there
-constexpr double final_step = 1.0 / (1 << 20);
+constexpr double finest = 1.0 / 512;                         // of a prior's probability: a fit by simulation goes on from there
+constexpr double fine_step = 0x1p-20, final_step = 0x1p-44;  // of the best few, of the best
+constexpr double flat = 1e-4;                                // log evidence: smaller steps gain less
 constexpr std::size_t most_refined = 3;
 constexpr double far_behind = 20;
 constexpr std::size_t most_climbs = 16;
@@ -38,7 +39,9 @@ class InnerSearcher {
     std::ranges::stable_sort(climbed_, [](Climb const& a, Climb const& b) { return a.log_evidence > b.log_evidence; });
     for (std::size_t k = 0; final_values && k < std::min(climbed_.size(), most_refined); ++k)
       if (climbed_[k].log_evidence > climbed_.front().log_evidence - far_behind)
-        climbed_[k] = climb(climbed_[k], finest / 2, final_step);
+        climbed_[k] = climb(climbed_[k], finest / 2, fine_step);
+    auto const best = std::ranges::max_element(climbed_, {}, &Climb::log_evidence);
+    if (final_values && best != climbed_.end()) *best = climb(*best, fine_step / 2, final_step);
     for (Climb const& each : climbed_) add_mode(each);
     if (out_.modes.empty()) out_.modes.push_back({values(Place(size(), 0.5)), -std::numeric_limits<double>::infinity()});
     std::stable_sort(out_.modes.begin(), out_.modes.end(),
@@ -87,7 +90,9 @@ class InnerSearcher {
     auto& [at, best] = from;
     while (step >= last && !out_.interrupted) {
       Place const before = at;
-      if (!explore(at, best, step)) {
+      double least = best;
+      if (!explore(at, best, step, &least)) {
+        if (best - least < flat) break;
         step /= 2;
         continue;
       }
@@ -110,8 +115,8 @@ class InnerSearcher {
       out_.modes.push_back({at, found.log_evidence});
   }
 
-  /// A step along each parameter to where it is better. Whether there was one.
-  bool explore(Place& at, double& best, double step) {
+  /// A step along each parameter to where it is better. Whether there was one. least: the lowest evidence that was met.
+  bool explore(Place& at, double& best, double step, double* least = nullptr) {
     bool any = false;
     for (std::size_t p = 0; p < size(); ++p)
       for (double const side : {-step, step}) {
@@ -119,6 +124,7 @@ class InnerSearcher {
         next[p] = std::clamp(at[p] + side, 0.0, 1.0);
         if (next[p] == at[p] || out_.interrupted) continue;
         double const found = evidence(next);
+        if (least != nullptr) *least = std::min(*least, found);
         if (!(found > best)) continue;
         at = next;
         best = found;

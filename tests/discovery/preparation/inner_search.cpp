@@ -2,9 +2,12 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <vector>
 
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
@@ -101,10 +104,13 @@ TEST_CASE("without noise it is known to nine digits, and no term is there that t
 TEST_CASE("by the regression alone, of a difference equation, where the record is explained best") {
   Stream input({3, Purpose::input, 0, 0}), noise({3, Purpose::noise, 0, 0});
   std::string csv = "u,y\n";
+  std::vector<double> us, ys;
   double y = 0;
   for (int i = 0; i < 600; ++i) {
     double const u = std::abs(input.normal());
     csv += fmt::format("{:.15g},{:.15g}\n", u, y);
+    us.push_back(u);
+    ys.push_back(y);
     y = 0.7 * y + 2 * u / (0.5 + u) + 0.02 * noise.normal();
   }
   Found const found(csv,
@@ -119,6 +125,29 @@ TEST_CASE("by the regression alone, of a difference equation, where the record i
   CHECK(found.summary.at("discovery").at("inside_terms").at(0).at("regression").get<double>() ==
         doctest::Approx(0.5).epsilon(0.03).scale(0));
   CHECK(found.out.find("parameters inside terms") != std::string::npos);
+
+  // sds of coefficients and K together, from the slopes of all three.
+  double const K = found.summary.at("discovery").at("inside_terms").at(0).at("regression");
+  auto const kept_term = [&](std::size_t index) -> json const& {
+    std::size_t count = 0;
+    for (json const& term : equation.at("terms"))
+      if (term.at("kept").get<bool>() && count++ == index) return term;
+    throw std::out_of_range("term");
+  };
+  double const a = kept_term(0).at("coefficient"), b = kept_term(1).at("coefficient");
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  double squares = 0;
+  for (std::size_t i = 1; i < ys.size(); ++i) {
+    double const u = us[i - 1], share = u / (K + u);
+    Eigen::Vector3d const slopes(ys[i - 1], share, -b * share / (K + u));
+    products += slopes * slopes.transpose();
+    squares += std::pow(ys[i] - a * ys[i - 1] - b * share, 2);
+  }
+  Eigen::Matrix3d const covariance = products.inverse() * squares / static_cast<double>(ys.size() - 4);
+  CHECK(kept_term(0).at("sd").get<double>() == doctest::Approx(std::sqrt(covariance(0, 0))).epsilon(0.03).scale(0));
+  CHECK(kept_term(1).at("sd").get<double>() == doctest::Approx(std::sqrt(covariance(1, 1))).epsilon(0.03).scale(0));
+  CHECK(found.summary.at("discovery").at("inside_terms").at(0).at("regression_sd").get<double>() ==
+        doctest::Approx(std::sqrt(covariance(2, 2))).epsilon(0.03).scale(0));
 }
 
 TEST_CASE("a record that no value explains ends with the findings of any other") {
