@@ -23,7 +23,6 @@ Row const* find(std::span<Row const> rows, std::string_view name) {
   return place == rows.end() ? nullptr : &*place;
 }
 
-/// `min(a)` is a statistic, `min(a, b)` the language's.
 /// What prompts of other languages call a statistic or a plot, as it is written here; empty for all else.
 std::string in_our_words(ast::Call const& call) {
   constexpr std::pair<std::string_view, std::string_view> words[] = {{"hist", "plot(histogram({}))"},
@@ -56,6 +55,7 @@ std::string in_our_words(ast::Call const& call) {
   return {};
 }
 
+/// `min(a)` is a statistic, `min(a, b)` the language's.
 bool is_statistic(ast::Call const& call) {
   if (find(statistics(), call.function.text) == nullptr) return false;
   return (call.function.text != "min" && call.function.text != "max") || call.arguments.size() == 1;

@@ -30,7 +30,8 @@
 namespace sysid {
 namespace {
 
-// Made data carry the error of the integrator: said when it is more than a tenth of the noise (or a thousandth of the response).
+// Made data carry the error of the integrator: said when it is more than a tenth of noise in percent of the response, or else, with
+// the model's own noise or none, than a thousandth of the response.
 void check_step(Session& session, Task const& task, SimulateTask const& what, std::shared_ptr<CompiledModel const> const& compiled,
                 Experiment const& experiment, LaneArray const& parameters, Trajectory::Result const& result) {
   Trajectory const finer(compiled, experiment, what.solver.finer(), 0, session.abandonable());

@@ -16,8 +16,8 @@ struct BridgeEstimate {
 ///   Z = mean over q of p / (s p + t q Z)  /  mean over the posterior of q / (s p + t q Z)           Meng and Wong 1996, eq. 4.1
 ///
 /// with the optimal s and t = 1 - s, the shares of both kinds of draws in their effective number. The draws of the posterior
-/// must not be those that q was fitted to. The error counts autocorrelation
-/// and chains that disagree (Fruehwirth-Schnatter 2004, sec. 3.4). log_evidence is not finite where there is nothing to bridge.
+/// must not be those that q was fitted to. The error counts autocorrelation and chains that disagree (Fruehwirth-Schnatter 2004,
+/// sec. 3.4). log_evidence is not finite where there is nothing to bridge.
 BridgeEstimate bridge(MixtureSample const& sample, PosteriorSample const& posterior);
 
 }  // namespace sysid::marginal

@@ -15,7 +15,8 @@ constexpr SettingRow rows[] = {
      "smallest error reduction ratio of a term that is taken; 0: as many terms as maximise the evidence"},
 };
 
-/// Supports offered as candidates beside the chosen one.
+/// Candidates beside the chosen one: supports of the way forward, up to so many terms before and behind where it ended. Terms that
+/// are dropped after it are still in them.
 constexpr int neighbours = 2;
 /// Part of a column that must be left when those taken are removed from it: less is rounding.
 constexpr double dependent_below = 1e-16;  // of its square
