@@ -64,8 +64,7 @@ std::optional<std::string> found_unit(Reading const& reading, Symbol const& symb
     auto const checked = check_model(derived, functions, unsaid);
     if (!checked) return std::nullopt;
     for (Derived const& each : checked->derived)
-      if (without_index(each.name) == symbol.name && each.unit)
-        return each.unit && each.unit->text.empty() ? format_dimension(each.unit->dimension) : each.unit_text();
+      if (without_index(each.name) == symbol.name && each.unit) return each.unit_of_numbers();
     return std::nullopt;
   }
   return std::nullopt;
@@ -84,7 +83,7 @@ std::string unit_line(Reading const& reading, Symbol const& symbol, int primes) 
   if (!unit) return {};
   if (primes > 0) {
     auto const rate = rate_unit(unit, primes);
-    std::string const text = rate->text.empty() ? format_dimension(rate->dimension) : rate->text;
+    std::string const text = rate->text_or_dimension();
     return fmt::format("`{}`: `[{}]`\n", primed_name(symbol.name, primes), text.empty() ? "-" : text);
   }
   std::string const si = format_dimension(unit->dimension);

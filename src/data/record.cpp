@@ -66,10 +66,9 @@ void refuse_unit_left_out(RecordFile const& file, std::string const& column, Uni
   auto const split = split_name(column);
   std::optional<Unit> const unit = split ? unit_of_text(split->unit, read_in) : std::nullopt;
   if (!unit || unit->dimension != read_in.dimension || same_unit(*unit, read_in)) return;
-  throw UserError(data_errors::unit_differs_from_name(
-      file.name(), {column, split->name},
-      {read_in.text.empty() ? format_dimension(read_in.dimension) : read_in.text, split->unit, unit->text},
-      file.row_count().has_value(), mention));
+  throw UserError(data_errors::unit_differs_from_name(file.name(), {column, split->name},
+                                                      {read_in.text_or_dimension(), split->unit, unit->text},
+                                                      file.row_count().has_value(), mention));
 }
 
 /// Of another kind of quantity than the data block has. A text table need not be read with its units; other files have no way out.
@@ -94,9 +93,8 @@ Request with_unit_of_file(RecordFile const& file, Request request) {
   if (!unit && !text->empty()) throw UserError(data_errors::unit_unknown(file.name(), request.column, {}, request.mention));
   if (!unit) return request;
   if (request.declared && unit->dimension != request.declared->dimension)
-    throw UserError(data_errors::unit_of_another_kind(
-        file.name(), request.column, unit->text,
-        request.declared->text.empty() ? format_dimension(request.declared->dimension) : request.declared->text, request.mention));
+    throw UserError(data_errors::unit_of_another_kind(file.name(), request.column, unit->text,
+                                                      request.declared->text_or_dimension(), request.mention));
   request.unit = unit;
   // A file that calls differences of temperatures degC does not mean that they begin at 273.15 K.
   if (request.declared && is_interval(*request.declared)) request.unit->offset = 0;

@@ -60,10 +60,7 @@ Trajectory::Trajectory(std::shared_ptr<CompiledModel const> compiled, Experiment
   for (auto const& record : compiled_->records) {
     if (!is_shown(record)) continue;
     Quantity const& quantity = quantity_of(compiled_->model, record);
-    std::string const unit = !quantity.unit                ? std::string()
-                             : quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension)
-                                                           : quantity.unit->text;
-    quantities_.push_back({quantity.name, unit, record.kind == RecordKind::centre ? record.index : -1});
+    quantities_.push_back({quantity.name, quantity.unit_of_numbers(), record.kind == RecordKind::centre ? record.index : -1});
   }
 }
 

@@ -54,11 +54,6 @@ std::size_t examined(Experiment const& experiment) {
   return rows;
 }
 
-std::string unit_of(Quantity const& quantity) {
-  if (!quantity.unit) return "";
-  return quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit->text;
-}
-
 /// "m/s^2" of a displacement in m.
 std::string acceleration_unit(std::string const& displacement) {
   if (displacement.empty() || displacement == "-") return displacement.empty() ? "" : "1/s^2";
@@ -118,10 +113,10 @@ RestoringForce named_force(Model const& model, std::vector<Mass> const& masses, 
     force.displacement += " − " + other.name;
     force.velocity += " − " + other_speed.name;
   }
-  force.displacement_unit = unit_of(place);
-  force.velocity_unit = unit_of(speed);
+  force.displacement_unit = place.unit_of_numbers();
+  force.velocity_unit = speed.unit_of_numbers();
   force.per_mass = !link.input;
-  force.force_unit = link.input ? unit_of(model.inputs[*link.input]) : acceleration_unit(force.displacement_unit);
+  force.force_unit = link.input ? model.inputs[*link.input].unit_of_numbers() : acceleration_unit(force.displacement_unit);
   return force;
 }
 

@@ -7,9 +7,7 @@ namespace sysid {
 namespace {
 
 std::string declared(Quantity const& quantity) {
-  return quantity.unit ? fmt::format("{} [{}]", quantity.name,
-                                     quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit->text)
-                       : quantity.name;
+  return quantity.unit ? fmt::format("{} [{}]", quantity.name, quantity.unit_of_numbers()) : quantity.name;
 }
 
 std::string present_name(Model const& model, Node const& leaf) {

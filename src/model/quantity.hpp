@@ -18,7 +18,10 @@ struct Quantity {
   /// Declared number -> SI and back; offsets never enter equations.
   double to_si(double declared) const { return unit ? declared * unit->scale : declared; }
   double from_si(double si) const { return unit ? si / unit->scale : si; }
+  /// As the user wrote it: empty for a derived unit, too.
   std::string unit_text() const { return unit ? unit->text : std::string(); }
+  /// Of its numbers; empty without a unit.
+  std::string unit_of_numbers() const { return unit ? unit->text_or_dimension() : std::string(); }
 };
 
 /// From declared numbers of one quantity to those of another of the same dimension, zero points applied: 20 [degC] are 293.15 [K].

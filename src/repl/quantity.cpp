@@ -103,7 +103,7 @@ std::vector<double> Quantity::all_shown() const {
 
 std::string Quantity::unit_text() const {
   if (!unit || (unit->dimensionless() && unit->scale == 1)) return "";
-  return unit->text.empty() ? format_dimension(unit->dimension) : unit->text;
+  return unit->text_or_dimension();
 }
 
 void Evaluator::refuse(Span span, std::string message, std::string help) {

@@ -169,6 +169,8 @@ TEST_CASE("a dimension is written as a unit expression in SI bases") {
   CHECK(format_dimension(atom("Hz").dimension) == "1/s");
   CHECK(format_dimension(power(atom("m"), {1, 2}).dimension) == "m^(1/2)");
   CHECK(format_dimension(divide(atom("N"), power(atom("m"), {3, 1})).dimension) == "kg/(m^2 s^2)");
+  CHECK(atom("N").text_or_dimension() == "N");
+  CHECK(divide(atom("N"), atom("m")).text_or_dimension() == "kg/s^2");
 }
 
 TEST_CASE("every common name is a unit") {

@@ -24,11 +24,6 @@ Quantity const* quantity_of(Model const& model, std::string const& name, bool ch
   return state != nullptr ? state : named(model.derived, name);
 }
 
-std::string unit_of(Quantity const& quantity) {
-  if (!quantity.unit) return "";
-  return quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit->text;
-}
-
 /// Of one dimension, and not a temperature beside a difference of two; a quantity without a unit is a pure number.
 bool comparable(Quantity const& one, Quantity const& other) {
   Unit const of_one = one.unit.value_or(Unit{}), of_other = other.unit.value_or(Unit{});
@@ -115,7 +110,7 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
     quantity.comparable = to != nullptr && comparable(*own, *to);
     if (!quantity.comparable) to = own;
     BetweenQuantities const conversion(*own, *to);
-    quantity.unit = unit_of(*to);
+    quantity.unit = to->unit_of_numbers();
     conversion.apply(quantity.values);
     if (is_channel) {
       auto const c = static_cast<std::size_t>(from.channel);

@@ -55,7 +55,7 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
     CoveragePage::Channel channel;
     channel.name = model.channels[c].name;
-    channel.unit = unit_of_numbers(model.channels[c]);
+    channel.unit = model.channels[c].unit_of_numbers();
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (std::size_t i = 0; i < experiment.measured[c].size(); ++i) {
       if (experiment.scored[i] == 0) continue;

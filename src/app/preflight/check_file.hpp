@@ -21,9 +21,6 @@ CheckResult check_file(Session& session);
 /// before it searches (`prior_far_from_data`). Nothing of priors that cannot be drawn from.
 Findings check_prior_size(Session& session, FitTask const& what, std::vector<ExperimentData> const& data);
 
-/// The unit in which numbers of a quantity are, also where it has none of its own and they are in SI; empty: not known.
-std::string unit_of_numbers(Quantity const& quantity);
-
 /// Equations, unknowns and everything declared, in the user's words where the text has them. flat: the models with their parts
 /// written out (CheckedFile::tree), for what stands in modules.
 ModelPage describe_structure(ast::File const& written, ast::File const& flat, Model const& model);

@@ -97,10 +97,6 @@ void add_pasts(Model const& model, ModelPage& page) {
 
 }  // namespace
 
-std::string unit_of_numbers(Quantity const& quantity) {
-  return quantity.unit && quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit_text();
-}
-
 ModelPage describe_structure(ast::File const& written, ast::File const& flat, Model const& model) {
   ModelPage page;
   page.name = model.name;
@@ -116,7 +112,7 @@ ModelPage describe_structure(ast::File const& written, ast::File const& flat, Mo
   for (Disturbance const& disturbance : model.disturbances)
     page.disturbances.push_back({disturbance.name, disturbance.unit_text(), text_of(texts.disturbances, disturbance.name)});
   for (Channel const& channel : model.channels)
-    page.channels.push_back({channel.name, unit_of_numbers(channel), text_of(texts.channels, channel.name)});
+    page.channels.push_back({channel.name, channel.unit_of_numbers(), text_of(texts.channels, channel.name)});
   for (Parameter const& parameter : model.parameters)
     if (!parameter.coefficient)
       page.parameters.push_back({parameter.name, parameter.unit_text(), text_of(texts.parameters, parameter.name)});

@@ -36,9 +36,7 @@ TrackedUnits units_of(Model const& model, std::vector<TrackedParameter> const& t
   TrackedUnits all;
   auto const add = [&](Quantity const& quantity) {
     all.names.push_back(quantity.name);
-    all.units.push_back(quantity.unit
-                            ? quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit->text
-                            : std::string());
+    all.units.push_back(quantity.unit_of_numbers());
     all.scales.push_back(quantity.to_si(1));
   };
   for (State const& state : model.states) add(state);

@@ -294,7 +294,7 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
   errors::Subject const owner = errors::named(noun, model.name);
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, errors::Subject const& what) {
     if (!column.unit || !declared.unit) return;
-    std::string const wanted = declared.unit->text.empty() ? format_dimension(declared.unit->dimension) : declared.unit->text;
+    std::string const wanted = declared.unit->text_or_dimension();
     if (column.unit->dimension != declared.unit->dimension || zero_against_difference(*column.unit, *declared.unit))
       diagnostics.add(errors::unit_mismatch(column.span, what, column.unit->text, wanted));
     else if (cycles_against_radians(*column.unit, *declared.unit))

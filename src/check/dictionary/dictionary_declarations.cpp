@@ -83,7 +83,7 @@ void DictionaryChecker::declare_state(ast::DictionaryState const& state) {
   auto const rate = rate_unit(info.unit, state.primes);
   if (state.primes > 0 && unit && rate && unit->dimension != rate->dimension)
     diagnostics_.add(errors::unit_mismatch(state.span, errors::named(primed_name(state.name.text, state.primes)), unit->text,
-                                           rate->text.empty() ? format_dimension(rate->dimension) : rate->text));
+                                           rate->text_or_dimension()));
   Channel channel;
   channel.name = state.channel->text;
   channel.unit = unit && state.primes > 0 ? unit : rate;

@@ -283,7 +283,7 @@ class DistributionChecker {
   bool unit_fits() {
     std::optional<Unit> const& unit = variate_.unit;
     if (row_.dimensionless && unit && !unit->dimensionless()) {
-      std::string const text = unit->text.empty() ? format_dimension(unit->dimension) : unit->text;
+      std::string const text = unit->text_or_dimension();
       return refused(row_.discrete ? errors::unit_of_count(call_.span, name_, text)
                                    : errors::unit_of_share(call_.span, name_, text));
     }

@@ -60,7 +60,7 @@ std::string positive_prior(Names const& names) {
 
 std::string measure(Unit const& unit) {
   if (unit.dimensionless()) return "a pure number";
-  return fmt::format("in [{}]", unit.text.empty() ? format_dimension(unit.dimension) : unit.text);
+  return fmt::format("in [{}]", unit.text_or_dimension());
 }
 
 std::string primed(std::string const& name, int primes) { return name + std::string(static_cast<std::size_t>(primes), '\''); }

@@ -333,6 +333,8 @@ bool zero_against_difference(Unit const& a, Unit const& b) {
   return a.dimension == b.dimension && ((a.offset != 0 && measures_differences(b)) || (b.offset != 0 && measures_differences(a)));
 }
 
+std::string Unit::text_or_dimension() const { return text.empty() ? format_dimension(dimension) : text; }
+
 std::string format_dimension(Dimension const& dimension) {
   std::string above, below;
   int factors_below = 0;

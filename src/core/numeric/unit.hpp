@@ -33,6 +33,8 @@ struct Unit {
   Rational hertz{};
 
   bool dimensionless() const { return dimension == Dimension{}; }
+  /// What stands beside its numbers: the text, or of a derived unit what it is in the SI bases.
+  std::string text_or_dimension() const;
 };
 
 /// A unit name with an optional SI prefix ("N", "mm", "percent", "degC", "delta_degC", "-" for dimensionless), or nothing when

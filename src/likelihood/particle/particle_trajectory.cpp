@@ -20,11 +20,6 @@ constexpr double numbers_of_paths = 2e7;  // 160 MB
 
 double from_si_width(Quantity const& quantity, double width) { return std::fabs(quantity.from_si(width) - quantity.from_si(0)); }
 
-std::string declared_unit(Quantity const& quantity) {
-  if (!quantity.unit) return {};
-  return quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension) : quantity.unit->text;
-}
-
 bool reads_any_state(Graph const& graph, NodeId id) {
   return graph.depends(id, [](Node const& leaf) { return leaf.leaf_kind == LeafKind::state; });
 }
@@ -86,7 +81,7 @@ void ParticleTrajectory::choose_shown() {
   smoothed_.insert(smoothed_.end(), derived.begin(), derived.end());
   for (Smoothed const& each : smoothed_) {
     Quantity const& quantity = quantity_of(each);
-    smoothed_names_.push_back({quantity.name, declared_unit(quantity), each.kind == Smoothed::Kind::average});
+    smoothed_names_.push_back({quantity.name, quantity.unit_of_numbers(), each.kind == Smoothed::Kind::average});
   }
 }
 

@@ -26,12 +26,6 @@ std::vector<int> all_of(int samples) {
   return rows;
 }
 
-std::string unit_of(Quantity const& quantity) {
-  return !quantity.unit                ? std::string()
-         : quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension)
-                                       : quantity.unit->text;
-}
-
 }  // namespace
 
 /// One sample after the other: states, data and processes go into kernels as rows of lanes.
@@ -108,8 +102,9 @@ ProcessForecast::ProcessForecast(std::shared_ptr<ProcessTarget const> trained, s
   if (feeds_back(model_->model())) free_run_ = std::make_shared<FreeRun const>(model_->model());
   std::vector<Channel> const& channels = model_->model().channels;
   for (std::size_t c = 0; c < channels.size(); ++c)
-    quantities_.push_back({channels[c].name, unit_of(channels[c]), static_cast<int>(c)});
-  for (Channel const& channel : channels) quantities_.push_back({fmt::format("white({})", channel.name), unit_of(channel), -1});
+    quantities_.push_back({channels[c].name, channels[c].unit_of_numbers(), static_cast<int>(c)});
+  for (Channel const& channel : channels)
+    quantities_.push_back({fmt::format("white({})", channel.name), channel.unit_of_numbers(), -1});
 }
 
 bool ProcessForecast::at_once(std::vector<ProcessTarget::Regression> const& fitted, ConstLanes own, int count, StreamKey key,

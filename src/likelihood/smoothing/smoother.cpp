@@ -42,10 +42,7 @@ Smoother::Smoother(std::shared_ptr<SmoothingProgram const> smoothing, Experiment
   if (start_rows > 0) start_ = std::make_unique<StartState>(smoothing_->compiled, experiment, start_rows, solver, options, pool_);
   for (SmoothedKind const& kind : smoothing_->shown) {
     Quantity const& quantity = quantity_of(compiled.model, kind);
-    std::string const unit = !quantity.unit                ? std::string()
-                             : quantity.unit->text.empty() ? format_dimension(quantity.unit->dimension)
-                                                           : quantity.unit->text;
-    quantities_.push_back({quantity.name, unit, kind.kind == SmoothedKind::Kind::average});
+    quantities_.push_back({quantity.name, quantity.unit_of_numbers(), kind.kind == SmoothedKind::Kind::average});
   }
   bool const map = compiled.model.dynamics == Dynamics::discrete;
   for (std::size_t i = 0; i + 1 < experiment.time.size(); ++i)
