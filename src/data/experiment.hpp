@@ -120,6 +120,7 @@ double mean_step(std::span<double const> time);
 std::size_t unequal_step(std::span<double const> time, double tolerance = 1e-6);
 
 /// Rows [begin, end), with the samples of `lags` rows before them as their history; 0: with that of the whole, if they begin there.
+/// The whole record shapes its inputs as before.
 Experiment slice(Experiment const& experiment, int begin, int end, int lags = 0);
 
 /// The sample of a channel at `row`, which may lie before the first; NaN where it is missing or was not recorded.

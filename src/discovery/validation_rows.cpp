@@ -59,7 +59,7 @@ ValidationRows validation_rows(std::vector<ExperimentData> const& task, std::vec
     int const count = rows_in(each), last = count / share;
     bool const cut = !unseen && samples_in(each, last) >= needed;
     rows.ends.push_back(cut ? count - last : count);
-    if (cut) rows.held_out.push_back(rows_of(each, count - last, last));
+    if (cut) rows.held_out.push_back(slice(each, count - last, count));
     rows.cut = rows.cut || cut;
   }
   int shortest = std::numeric_limits<int>::max();

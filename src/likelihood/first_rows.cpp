@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 namespace sysid {
 namespace {
@@ -33,20 +32,6 @@ int rows_until(Experiment const& experiment, int scored) {
 
 }  // namespace
 
-Experiment rows_of(Experiment const& experiment, int first, int count) {
-  Experiment part = experiment;
-  auto const cut = [&](auto& values) {
-    if (!values.empty()) values = std::decay_t<decltype(values)>(values.begin() + first, values.begin() + first + count);
-  };
-  cut(part.time);
-  cut(part.scored);
-  for (auto& channel : part.measured) cut(channel);
-  for (auto& lagged : part.has_lags) cut(lagged);
-  for (InputSignal& input : part.inputs) input = input.view(first, count);
-  part.first_row += first;
-  return part;
-}
-
 int most_scored_rows(std::span<Experiment const> experiments) {
   int most = 0;
   for (Experiment const& each : experiments) most = std::max(most, scored_rows(each));
@@ -60,7 +45,7 @@ FirstRows first_rows(std::span<Experiment const> experiments, double share, int 
     int const rows = static_cast<int>(each.time.size());
     auto const wanted = static_cast<int>(std::ceil(share * scored_rows(each)));
     int const count = std::clamp(rows_until(each, std::max(wanted, least)), std::min(rows, 2), rows);
-    result.experiments.push_back(count < rows ? rows_of(each, 0, count) : each);
+    result.experiments.push_back(count < rows ? slice(each, 0, count) : each);
     kept += count;
     all += rows;
   }

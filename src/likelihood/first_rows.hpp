@@ -7,9 +7,6 @@
 
 namespace sysid {
 
-/// An experiment of some rows; inputs are shaped by the whole record as before.
-Experiment rows_of(Experiment const& experiment, int first, int count);
-
 /// Rows that are scored in any channel, of the experiment that has most of them.
 int most_scored_rows(std::span<Experiment const> experiments);
 

@@ -59,7 +59,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
      {"core", "linear_algebra", "result", "data", "expression", "function", "distribution", "model", "solver", "program",
       "program/moments", "simulate"}},
     {"likelihood/process", {"core", "gaussian_process", "model", "simulate", "likelihood"}},
-    {"likelihood/segments", {"core", "linear_algebra", "simulate", "likelihood"}},
+    {"likelihood/segments", {"core", "linear_algebra", "data", "simulate", "likelihood"}},
     {"likelihood/selection", {"core", "data", "model", "simulate", "likelihood"}},
     {"likelihood/smoothing", {"core", "result", "expression", "model", "program", "simulate", "likelihood"}},
     {"likelihood/particle",

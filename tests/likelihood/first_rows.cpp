@@ -20,6 +20,7 @@ Experiment counting(int rows, int from) {
     input.push_back(i);
     experiment.measured[0].push_back(2.0 * i);
     experiment.scored.push_back(i >= from ? 1 : 0);
+    experiment.corrects.push_back(1);
   }
   experiment.inputs.emplace_back(InputRule::cubic, experiment.time, input);
   return experiment;
@@ -37,6 +38,7 @@ TEST_CASE("all experiments are cut to the same share of their scored rows, with 
   for (Experiment const& each : part.experiments) {
     CHECK(each.measured[0].size() == each.time.size());
     CHECK(each.scored.size() == each.time.size());
+    CHECK(each.corrects.size() == each.time.size());
     CHECK(each.inputs[0].rows() == static_cast<int>(each.time.size()));
   }
   // The curve of an input is that of the whole record.

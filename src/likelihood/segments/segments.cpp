@@ -73,7 +73,8 @@ SegmentSimulation::SegmentSimulation(std::shared_ptr<CompiledModel const> compil
   log_relative_.assign(static_cast<std::size_t>(channels()), 0);
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     Segment const& segment = segments_[s];
-    Experiment const part = rows_of(experiments[static_cast<std::size_t>(segment.experiment)], segment.first, segment.count);
+    Experiment const part =
+        slice(experiments[static_cast<std::size_t>(segment.experiment)], segment.first, segment.first + segment.count);
     simulators_.emplace_back(settings_.centres, Schedule(*settings_.centres, part, settings_.solver), settings_.execution,
                              settings_.pool);
     std::vector<double> samples, weights;

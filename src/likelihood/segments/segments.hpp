@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/numeric/lanes.hpp"
+#include "data/experiment.hpp"
 #include "likelihood/compiled_model.hpp"
-#include "likelihood/first_rows.hpp"
 #include "likelihood/segments/carried_errors.hpp"
 #include "simulate/simulator.hpp"
 
