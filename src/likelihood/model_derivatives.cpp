@@ -10,24 +10,6 @@
 namespace sysid {
 namespace {
 
-/// Per lane of theta [P x W] its own column, then a step ahead and one behind along each of the coordinates.
-LaneArray moved_lanes(ConstLanes theta, std::vector<int> const& coordinates, std::span<double const> steps) {
-  int const columns = 2 * static_cast<int>(coordinates.size()) + 1;
-  LaneArray points(theta.rows(), columns * theta.width());
-  for (int p = 0; p < theta.rows(); ++p)
-    for (int w = 0; w < theta.width(); ++w)
-      for (int c = 0; c < columns; ++c) points(p, w * columns + c) = theta(p, w);
-  for (std::size_t k = 0; k < coordinates.size(); ++k) {
-    int const p = coordinates[k], c = 2 * static_cast<int>(k) + 1;
-    double const step = steps[static_cast<std::size_t>(p)];
-    for (int w = 0; w < theta.width(); ++w) {
-      points(p, w * columns + c) = theta(p, w) + step;
-      points(p, w * columns + c + 1) = theta(p, w) - step;
-    }
-  }
-  return points;
-}
-
 LaneArray picked(ConstLanes theta, std::vector<int> const& lanes) {
   LaneArray some(theta.rows(), static_cast<int>(lanes.size()));
   for (int p = 0; p < theta.rows(); ++p)

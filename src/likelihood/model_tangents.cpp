@@ -115,7 +115,7 @@ void ModelTarget::take_squares(Simulator const& simulator, Run const& run, int c
   for (int c = 0; c < static_cast<int>(compiled_->model.channels.size()); ++c) {
     int row = simulator.program().sum_row(c, 0);
     auto const next = [&] { return run.sums(row++, column); };
-    double const scale = scale_residual(simulator, c, next());  // sqrt(2 (C - sum)): its derivative is -(that of the sum)/scale
+    double const scale = scale_residual(simulator.schedule().count(c), next());  // its derivative is -(that of the sum)/scale
     for (double& each : by_scale) each = next();
     for (double& each : gradient) each -= next();
     for (Eigen::Index k = 0; k < count; ++k)

@@ -16,11 +16,6 @@
 #include "simulate/thread_pool.hpp"
 
 namespace sysid {
-double scale_residual(Simulator const& simulator, int channel, double saturated) {
-  // Keeps the radicand positive for any sensible noise level; its value does not matter, only that it is fixed.
-  double const offset = 100.0 * simulator.schedule().count(channel) + 1000.0;
-  return std::sqrt(2 * std::max(offset - saturated, 0.0));
-}
 
 ModelTarget::~ModelTarget() = default;
 
@@ -181,9 +176,7 @@ void ModelTarget::expect_values(double count) const {
   for (Part const& part : parts_) part.likelihood.expect(count);
 }
 
-double ModelTarget::roughness() const {
-  return compiled_->model.integrated() && !options_.solver.fixed_step() ? options_.solver.relative : 0;
-}
+double ModelTarget::roughness() const { return options_.roughness(compiled_->model); }
 
 int ModelTarget::residual_count() const { return static_cast<int>(places_.size()); }
 
@@ -219,7 +212,8 @@ double ModelTarget::residual(ResidualPlace const& place, Run const& run, int col
   if (place.sample >= 0) {
     value = run.records(place.sample * channels + place.channel, column);
   } else {
-    value = scale_residual(simulator, place.channel, run.sums(simulator.program().sum_row(place.channel, 0), column));
+    value =
+        scale_residual(simulator.schedule().count(place.channel), run.sums(simulator.program().sum_row(place.channel, 0), column));
   }
   return std::isnan(value) ? infinity : value;
 }

@@ -18,6 +18,9 @@ struct TargetOptions {
   int start_rows = 0;     // > 0: the start state of each experiment is estimated from so many rows
   ExecutionOptions execution;
   std::function<std::string(NodeId, Graph const&)> describe;  // a sub-expression in the user's words, for the ledger
+
+  /// `Target::roughness` of a density of simulations of the model.
+  double roughness(Model const& model) const { return model.integrated() && !solver.fixed_step() ? solver.relative : 0; }
 };
 
 /// The log likelihood is the sum over the experiments, in their order, of that of each; residual rows follow one another in the

@@ -9,9 +9,6 @@
 
 namespace sysid {
 
-/// The residual row of a channel that carries its scale, from its sum of saturated log densities.
-double scale_residual(Simulator const& simulator, int channel, double saturated);
-
 struct ModelTarget::Part {
   Simulator likelihood, residuals;
   std::unique_ptr<StartState> start;

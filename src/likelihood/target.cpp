@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
@@ -13,19 +14,6 @@ namespace {
 
 constexpr int prior_draws = 256;
 constexpr std::uint64_t scale_step = 97;  // of Purpose::start
-
-/// Per lane of theta [P x W] its own column, then a step ahead and one behind along each coordinate: 2 P + 1 columns each.
-LaneArray moved_lanes(ConstLanes theta, std::span<double const> step) {
-  int const dimension = theta.rows(), columns = 2 * dimension + 1;
-  LaneArray points(dimension, columns * theta.width());
-  for (int w = 0; w < theta.width(); ++w)
-    for (int c = 0; c < columns; ++c)
-      for (int p = 0; p < dimension; ++p) {
-        double const sign = c == 2 * p + 1 ? 1 : c == 2 * p + 2 ? -1 : 0;
-        points(p, w * columns + c) = theta(p, w) + sign * step[static_cast<std::size_t>(p)];
-      }
-  return points;
-}
 
 std::vector<double> scaled(std::vector<double> values, double by) {
   for (double& value : values) value *= by;
@@ -44,6 +32,34 @@ void take_differences(std::span<double const> values, std::vector<double> const&
 }
 
 }  // namespace
+
+LaneArray moved_lanes(ConstLanes theta, std::span<int const> coordinates, std::span<double const> steps) {
+  int const columns = 2 * static_cast<int>(coordinates.size()) + 1;
+  LaneArray points(theta.rows(), columns * theta.width());
+  for (int p = 0; p < theta.rows(); ++p)
+    for (int w = 0; w < theta.width(); ++w)
+      for (int c = 0; c < columns; ++c) points(p, w * columns + c) = theta(p, w);
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    int const p = coordinates[k], c = 2 * static_cast<int>(k) + 1;
+    double const step = steps[static_cast<std::size_t>(p)];
+    for (int w = 0; w < theta.width(); ++w) {
+      points(p, w * columns + c) = theta(p, w) + step;
+      points(p, w * columns + c + 1) = theta(p, w) - step;
+    }
+  }
+  return points;
+}
+
+LaneArray moved_lanes(ConstLanes theta, std::span<double const> steps) {
+  std::vector<int> all(static_cast<std::size_t>(theta.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return moved_lanes(theta, all, steps);
+}
+
+double scale_residual(int samples, double log_density) {
+  double const offset = 100.0 * samples + 1000.0;
+  return std::sqrt(2 * std::max(offset - log_density, 0.0));
+}
 
 double central_slope(double ahead, double at, double behind, double step) {
   if (!std::isfinite(at)) return 0;

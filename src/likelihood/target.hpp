@@ -93,6 +93,15 @@ LaneArray coordinates_of(Target const& target, std::span<double const> declared)
 /// roughness of the size of the tolerance, so wider for loose ones, up to where long records bend.
 double difference_width(Target const& target);
 
+/// Per lane of theta [P x W] its own column, then a step ahead and one behind along each of the coordinates; steps: [P].
+LaneArray moved_lanes(ConstLanes theta, std::span<int const> coordinates, std::span<double const> steps);
+/// Along all of them.
+LaneArray moved_lanes(ConstLanes theta, std::span<double const> steps);
+
+/// The residual sqrt(2 (C - l)) that carries a log density l of so many samples. C keeps the radicand positive for any sensible
+/// noise level; its value does not matter, only that it is fixed.
+double scale_residual(int samples, double log_density);
+
 /// The slope from the values of one function ahead, at and behind a place: of those that are finite, 0 where there are too few.
 double central_slope(double ahead, double at, double behind, double step);
 

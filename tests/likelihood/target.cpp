@@ -108,3 +108,29 @@ TEST_CASE("the gradient of the prior has the Jacobian of its coordinate, or has 
     CHECK(std::fabs(gradient(1, 0) - (jacobian ? 1 - 2 * share : 0)) < tolerance);
   }
 }
+
+TEST_CASE("lanes are moved ahead and behind along some coordinates") {
+  LaneArray theta(3, 2);
+  for (int p = 0; p < 3; ++p)
+    for (int w = 0; w < 2; ++w) theta(p, w) = 10 * p + w;
+  std::vector<int> const coordinates = {0, 2};
+  std::vector<double> const steps = {0.5, 1, 0.25};
+  LaneArray const some = moved_lanes(theta, coordinates, steps);
+  REQUIRE(some.width() == 10);
+  CHECK(std::vector<double>(some.row(0).begin(), some.row(0).end()) == std::vector<double>{0, 0.5, -0.5, 0, 0, 1, 1.5, 0.5, 1, 1});
+  CHECK(std::vector<double>(some.row(1).begin(), some.row(1).end()) == std::vector<double>{10, 10, 10, 10, 10, 11, 11, 11, 11, 11});
+  CHECK(some(2, 3) == 20.25);
+  CHECK(some(2, 9) == 20.75);
+  LaneArray const all = moved_lanes(theta, steps);
+  REQUIRE(all.width() == 14);
+  CHECK(all(1, 3) == 11);
+  CHECK(all(1, 4) == 9);
+  CHECK(all(2, 13) == 20.75);
+}
+
+TEST_CASE("the residual that carries a density is fixed but for the density") {
+  CHECK(scale_residual(10, 0) == std::sqrt(4000.0));
+  CHECK(scale_residual(0, 1e6) == 0);
+  double const more = scale_residual(7, 3), less = scale_residual(7, 1);
+  CHECK(less * less - more * more == doctest::Approx(4));
+}

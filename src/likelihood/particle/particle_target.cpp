@@ -197,9 +197,8 @@ void ParticleTarget::residuals(ConstLanes theta, Lanes out, Ledger& ledger) cons
   int rows = 0;
   for (Simulator const& simulator : *simulators_)
     for (int c = 0; c < simulator.program().registers.records; ++c) rows += simulator.schedule().count(c);
-  double const offset = 100.0 * rows + 1000;  // only that it is fixed matters
   for (std::size_t w = 0; w < values.size(); ++w)
-    out(0, static_cast<int>(w)) = std::isfinite(values[w]) ? std::sqrt(2 * std::max(offset - values[w], 0.0)) : infinity;
+    out(0, static_cast<int>(w)) = std::isfinite(values[w]) ? scale_residual(rows, values[w]) : infinity;
 }
 
 double ParticleTarget::roughness() const { return 1e-4; }

@@ -17,9 +17,6 @@ namespace {
 
 using gaussian_process::Marginal;
 
-/// Where a sum of squares begins: only that it is fixed matters.
-double offset(int count) { return 100.0 * count + 1000.0; }
-
 }  // namespace
 
 /// The parametric part at a batch of vectors.
@@ -188,11 +185,7 @@ double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledg
     for (int p = 0; p < dimension; ++p) gradient(p, 0) = 0;
   };
   clear();
-  LaneArray points(dimension, width);  // theta, then a step ahead and one behind along each coordinate
-  for (int p = 0; p < dimension; ++p) {
-    double const step = steps[static_cast<std::size_t>(p)];
-    for (int w = 0; w < width; ++w) points(p, w) = theta(p, 0) + (w == 2 * p + 1 ? step : w == 2 * p + 2 ? -step : 0);
-  }
+  LaneArray const points = moved_lanes(theta, steps);
   Batch const batch = evaluate(points);
   // Neighbours are solves as good as any; a failure of the covariance is looked for at theta alone.
   auto const book = [&](double at_theta) {
@@ -248,12 +241,10 @@ void ProcessTarget::residuals(ConstLanes theta, Lanes out, Ledger& ledger) const
   for (Eigen::VectorXd const& each : measured_) rows += static_cast<int>(each.size());
   for (int w = 0; w < theta.width(); ++w) {
     double const value = density[static_cast<std::size_t>(w)];
-    out(0, w) = std::isfinite(value) ? std::sqrt(2 * std::max(offset(rows) - value, 0.0)) : infinity;
+    out(0, w) = std::isfinite(value) ? scale_residual(rows, value) : infinity;
   }
 }
 
-double ProcessTarget::roughness() const {
-  return model_->model().integrated() && !options_.solver.fixed_step() ? options_.solver.relative : 0;
-}
+double ProcessTarget::roughness() const { return options_.roughness(model_->model()); }
 
 }  // namespace sysid
