@@ -14,15 +14,6 @@ namespace {
 
 constexpr std::size_t shortest_chain = 10;
 
-double log_sum(std::span<double const> values) {
-  double const largest = *std::max_element(values.begin(), values.end());
-  if (!std::isfinite(largest)) return largest;
-  std::vector<double> terms(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) terms[i] = values[i] - largest;
-  elementary::exp_lanes(terms.data(), terms.data(), static_cast<int>(terms.size()));
-  return largest + elementary::log(std::accumulate(terms.begin(), terms.end(), 0.0));
-}
-
 /// Deviations from the mean of each chain.
 class Chains {
  public:
@@ -89,7 +80,7 @@ double relative_efficiency(std::span<double const> values, int chains) {
 LeftOut weighted(std::span<double const> log_ratios, double relative_efficiency) {
   int const tail = pareto_tail_length(static_cast<int>(log_ratios.size()), relative_efficiency);
   SmoothedWeights smoothed = smooth_weights(log_ratios, tail);
-  double const sum = log_sum(smoothed.log_weights);
+  double const sum = log_of_sum(smoothed.log_weights);
   for (double& each : smoothed.log_weights) each -= sum;
   return {std::move(smoothed.log_weights), smoothed.k, relative_efficiency};
 }
@@ -108,7 +99,7 @@ LeftOut leave_out(std::span<double const> log_likelihood, int chains) {
 double log_mean(std::span<double const> log_weights, std::span<double const> log_density) {
   std::vector<double> terms(log_weights.size());
   for (std::size_t s = 0; s < terms.size(); ++s) terms[s] = log_weights[s] + log_density[s];
-  return log_sum(terms);
+  return log_of_sum(terms);
 }
 
 void DrawInfluence::add(LeftOut const& weights, std::span<double const> log_density, double log_mean) {

@@ -121,3 +121,15 @@ TEST_CASE("weights are worth as many equal ones as their squares say") {
   CHECK(effective_number(Values{0, 0}) == 0);
   CHECK(effective_number(Values{}) == 0);
 }
+
+TEST_CASE("sums and means of exponentials are added without overflow, and those of nothing are 0") {
+  double const infinity = std::numeric_limits<double>::infinity();
+  CHECK(log_of_sum(1000, 1000) == doctest::Approx(1000 + std::log(2.0)));
+  CHECK(log_of_sum(-infinity, -3) == -3);
+  CHECK(log_of_sum(-infinity, -infinity) == -infinity);
+  std::vector<double> const logs = {-800, -infinity, -800 + std::log(3.0)};
+  CHECK(log_of_sum(logs) == doctest::Approx(-800 + std::log(4.0)));
+  CHECK(log_of_mean(logs) == doctest::Approx(-800 + std::log(4.0 / 3)));
+  CHECK(log_of_sum(std::vector<double>{}) == -infinity);
+  CHECK(log_of_mean(std::vector<double>{-infinity, -infinity}) == -infinity);
+}

@@ -6,6 +6,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
 #include "diagnostics/drift.hpp"
 #include "diagnostics/function_ranges.hpp"
 
@@ -47,19 +48,10 @@ std::vector<std::vector<std::vector<double>>> noisy_again(PosteriorTrajectories 
 /// Log of the mean over the draws that are solved; -infinity where none gives the sample a density. A draw whose equations have no
 /// value at the sample says that it is impossible.
 double log_mean_density(std::vector<std::vector<double>> const& log_density, std::vector<char> const& solved, std::size_t sample) {
-  auto const of = [&](std::size_t draw) {
-    double const value = log_density[draw][sample];
-    return std::isnan(value) ? -infinity : value;
-  };
-  double largest = -infinity, sum = 0;
-  int draws = 0;
+  std::vector<double> logs;
   for (std::size_t d = 0; d < log_density.size(); ++d)
-    if (solved[d] != 0) ++draws, largest = std::max(largest, of(d));
-  if (draws == 0) return not_a_number;
-  if (!std::isfinite(largest)) return largest;
-  for (std::size_t d = 0; d < log_density.size(); ++d)
-    if (solved[d] != 0) sum += elementary::exp(of(d) - largest);
-  return largest + elementary::log(sum / draws);
+    if (solved[d] != 0) logs.push_back(std::isnan(log_density[d][sample]) ? -infinity : log_density[d][sample]);
+  return logs.empty() ? not_a_number : log_of_mean(logs);
 }
 
 std::vector<double> log_densities(PointwiseLikelihood const& pointwise, std::vector<std::vector<double>> const& of_channel,

@@ -7,7 +7,27 @@
 #include <limits>
 #include <numeric>
 
+#include "core/numeric/elementary.hpp"
+
 namespace sysid {
+namespace {
+
+/// sum exp(x - largest); only where the largest is finite.
+struct Scaled {
+  double largest, sum;
+};
+
+Scaled scaled_sum(std::span<double const> logs) {
+  if (logs.empty()) return {-std::numeric_limits<double>::infinity(), 0};
+  double const largest = *std::max_element(logs.begin(), logs.end());
+  if (!std::isfinite(largest)) return {largest, 0};
+  std::vector<double> terms(logs.size());
+  for (std::size_t i = 0; i < logs.size(); ++i) terms[i] = logs[i] - largest;
+  elementary::exp_lanes(terms.data(), terms.data(), static_cast<int>(terms.size()));
+  return {largest, std::accumulate(terms.begin(), terms.end(), 0.0)};
+}
+
+}  // namespace
 
 double mean(std::span<double const> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -45,6 +65,21 @@ double corrected_variance(std::span<double const> values, double center) {
     sum = next;
   }
   return (sum + rest) / (static_cast<double>(values.size()) - 1);
+}
+
+double log_of_sum(double a, double b) {
+  double const high = std::max(a, b), low = std::min(a, b);
+  return high == -std::numeric_limits<double>::infinity() ? high : high + elementary::log1p(elementary::exp(low - high));
+}
+
+double log_of_sum(std::span<double const> logs) {
+  Scaled const all = scaled_sum(logs);
+  return std::isfinite(all.largest) ? all.largest + elementary::log(all.sum) : all.largest;
+}
+
+double log_of_mean(std::span<double const> logs) {
+  Scaled const all = scaled_sum(logs);
+  return std::isfinite(all.largest) ? all.largest + elementary::log(all.sum / static_cast<double>(logs.size())) : all.largest;
 }
 
 double effective_number(std::span<double const> weights) {

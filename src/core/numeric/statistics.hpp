@@ -29,6 +29,13 @@ double corrected_variance(std::span<double const> values);
 /// mean: theirs, corrected.
 double corrected_variance(std::span<double const> values, double mean);
 
+/// log(exp(a) + exp(b)); -infinity is the log of nothing.
+double log_of_sum(double a, double b);
+/// The same of several, added in their order; of none: -infinity. NaN where the first is.
+double log_of_sum(std::span<double const> logs);
+/// Log of the mean of their exponentials, which are added in their order; of none: -infinity.
+double log_of_mean(std::span<double const> logs);
+
 /// How many equal weights these are worth: (sum w)^2 / sum w^2, sums in the order of the weights; 0 where all are 0.     Kish 1965
 double effective_number(std::span<double const> weights);
 

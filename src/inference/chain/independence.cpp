@@ -8,6 +8,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/normals.hpp"
+#include "core/numeric/statistics.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/substitution.hpp"
 #include "linear_algebra/decompositions.hpp"
@@ -51,11 +52,6 @@ class Scratch {
 };
 
 }  // namespace
-
-double log_of_sum(double a, double b) {
-  double const high = std::max(a, b), low = std::min(a, b);
-  return high == minus_infinity ? high : high + elementary::log1p(elementary::exp(low - high));
-}
 
 Independence::Independence(std::vector<Component> const& components, bool declared) : declared_(declared) {
   std::vector<double> weights;

@@ -10,9 +10,6 @@
 
 namespace sysid::metropolis {
 
-/// log(exp(a) + exp(b)); -infinity is the log of nothing.
-double log_of_sum(double a, double b);
-
 /// q(x) = sum over components of  weight (0.65 N(x) + 0.25 mean over j of N(x) t_3(z_j) / N(z_j) + 0.1 t_6(x)),  N and t_6 with the
 /// component's mean and covariance S = L L', z_j = (x_j - mean_j) / sd_j. x are the sampler's coordinates, or the declared values.
 ///

@@ -6,6 +6,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/lanes.hpp"
+#include "core/numeric/statistics.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/candidates.hpp"
 #include "search/laplace.hpp"

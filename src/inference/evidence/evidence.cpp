@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "core/numeric/elementary.hpp"
 #include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/random.hpp"
+#include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
 #include "inference/evidence/bridge.hpp"
 #include "inference/evidence/importance.hpp"
@@ -169,8 +170,7 @@ bool temper(Target const& target, EvidenceTask const& task, std::uint64_t most, 
   if (!second.finished) return false;
   double const difference = second.log_evidence - first.log_evidence;
   evidence.method = EvidenceMethod::smc;
-  evidence.log_evidence =
-      std::max(first.log_evidence, second.log_evidence) + elementary::log(0.5 * (1 + elementary::exp(-std::fabs(difference))));
+  evidence.log_evidence = log_of_mean(std::array{first.log_evidence, second.log_evidence});
   evidence.error = std::max(0.5 * hypotenuse(first.error, second.error), 0.5 * std::fabs(difference));
   evidence.effective = first.effective + second.effective;
   evidence.reason.clear();

@@ -36,10 +36,7 @@ std::vector<double> log_mixed(std::vector<Mixture> const& mixtures, ConstLanes t
   std::vector<double> mixed(static_cast<std::size_t>(theta.width()), -infinity);
   for (Mixture const& mixture : mixtures) {
     std::vector<double> const one = mixture.log_density(mixture.log_terms(theta));
-    for (std::size_t d = 0; d < mixed.size(); ++d) {
-      double const more = std::max(mixed[d], one[d]), less = std::min(mixed[d], one[d]);
-      if (std::isfinite(more)) mixed[d] = more + elementary::log1p(elementary::exp(less - more));
-    }
+    for (std::size_t d = 0; d < mixed.size(); ++d) mixed[d] = log_of_sum(mixed[d], one[d]);
   }
   double const count = elementary::log(static_cast<double>(mixtures.size()));
   for (double& each : mixed) each -= count;

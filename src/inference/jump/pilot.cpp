@@ -9,6 +9,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
 #include "core/system/interrupt.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/mh.hpp"
@@ -90,16 +91,12 @@ PilotDraws in_order(Target const& target, Draws const& draws) {
 
 /// log of the mean of density over proposal.
 double log_mean_weight(std::vector<double> const& log_density, std::vector<double> const& log_mixture) {
-  double highest = -infinity, sum = 0;
   std::vector<double> logs;
   for (std::size_t i = 0; i < log_density.size(); ++i) {
     logs.push_back(log_density[i] - log_mixture[i]);
     if (!(logs.back() < infinity)) logs.back() = -infinity;
-    highest = std::max(highest, logs.back());
   }
-  if (highest == -infinity) return highest;
-  for (double const each : logs) sum += elementary::exp(each - highest);
-  return highest + elementary::log(sum / static_cast<double>(logs.size()));
+  return log_of_mean(logs);
 }
 
 /// Of a model without parameters.

@@ -7,6 +7,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
 #include "inference/backend/checkpoint.hpp"
 
 namespace sysid::nuts {
@@ -40,11 +41,6 @@ struct Side {
 bool straight(Side const& a, Side const& b) {
   return straight(plus(a.sum, b.sum), a.outer, b.outer) && straight(plus(a.sum, b.inner), a.outer, b.inner) &&
          straight(plus(b.sum, a.inner), a.inner, b.outer);
-}
-
-double log_sum(double a, double b) {
-  double const high = std::max(a, b);
-  return high + elementary::log1p(elementary::exp(std::min(a, b) - high));
 }
 
 std::vector<double> normal_momentum(StreamKey key, std::size_t dimension) {
@@ -131,7 +127,7 @@ bool Trajectory::join_parts() {
   Part const second = std::move(half_.back());
   half_.pop_back();
   Part& first = half_.back();
-  double const log_weight = log_sum(first.log_weight, second.log_weight);
+  double const log_weight = log_of_sum(first.log_weight, second.log_weight);
   if (uniform() < elementary::exp(second.log_weight - log_weight)) first.draw = second.draw;
   bool const on = straight(Side{first.first, first.last, first.sum}, Side{second.last, second.first, second.sum});
   first.sum = plus(std::move(first.sum), second.sum);
@@ -153,7 +149,7 @@ bool Trajectory::join_half() {
   bool const on = straight(Side{other.momentum, end.momentum, sum_}, Side{half.last, half.first, half.sum});
   end = front_;
   sum_ = plus(std::move(sum_), half.sum);
-  log_weight_ = log_sum(log_weight_, half.log_weight);
+  log_weight_ = log_of_sum(log_weight_, half.log_weight);
   ++depth_;
   return on;
 }
