@@ -83,9 +83,36 @@ TEST_CASE("a checkpoint knows its run, and says what differs") {
   CHECK(refused->message.find("settings") != std::string::npos);
   CHECK(checkpoint::refuse(nlohmann::json::array(), own));
   CHECK(checkpoint::refuse({{"iteration", 3}}, own));
-  nlohmann::json older = own;
-  older["format"] = 1;
-  auto const of_older = checkpoint::refuse({{"identity", older}}, own);
-  REQUIRE(of_older);
-  CHECK(of_older->message.find("format differs") != std::string::npos);
+}
+
+TEST_CASE("a checkpoint of candidates knows them") {
+  Settings settings;
+  settings.set("samples", std::int64_t{10});
+  nlohmann::json const own = checkpoint::identity("abc_smc", settings, 1, nlohmann::json::array({"a", "b"}));
+  CHECK_FALSE(checkpoint::refuse({{"identity", own}}, own));
+  auto const refused =
+      checkpoint::refuse({{"identity", own}}, checkpoint::identity("abc_smc", settings, 1, nlohmann::json::array({"a"})));
+  REQUIRE(refused);
+  CHECK(refused->message.find("models differs") != std::string::npos);
+}
+
+TEST_CASE("a state is stored where checkpoints are wanted, and in between no more often than they are") {
+  Ledger ledger;
+  SilentProgress progress;
+  int given = 0, asked = 0;
+  RunContext context{1, progress, ledger, {}, {}, 60, {}, {}, {}};
+  auto const state = [&] { return nlohmann::json(++asked); };
+  checkpoint::Saver(context, state).save();
+  CHECK(asked == 0);
+  context.checkpoint = [&](nlohmann::json const&) { ++given; };
+  context.checkpoint_interval = 1e9;
+  checkpoint::Saver saver(context, state);
+  saver.save_sometimes();
+  CHECK(given == 0);
+  saver.save();
+  CHECK(given == 1);
+  context.checkpoint_interval = 0;
+  saver.save_sometimes();
+  CHECK(given == 2);
+  CHECK(asked == 2);
 }

@@ -20,8 +20,8 @@ namespace {
 
 using json = nlohmann::json;
 
-// Of the file itself. A file of an older form is refused as damaged: nothing of it can be taken up.
-constexpr int form = 7;
+// Of the file and of all that back ends store in it: raised with any change of either. A file of another form is refused.
+constexpr int form = 8;
 
 UserError refused(char const* code, std::filesystem::path const& path, std::string const& what, char const* help) {
   return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});

@@ -101,7 +101,7 @@ class Run {
       full = record_.accepted >= plan_.particles;
       context_.progress.advance(static_cast<std::uint64_t>(next_.accepted()),
                                 fmt::format("threshold {:.4g}, acceptance {:.2g}", next_.threshold, record_.acceptance()));
-      save_sometimes();
+      saver_.save_sometimes();
     }
     context_.progress.end();
     return full && weigh(proposals);
@@ -244,7 +244,7 @@ class Run {
     state_.records.push_back(record_);
     last_ = std::move(next_);
     start_population();
-    if (context_.checkpoint) save();
+    saver_.save();
   }
 
   /// Readies the next population and its threshold.
@@ -278,7 +278,7 @@ class Run {
 
   void finish() {
     // Where a run that goes on from here ends at once, too.
-    if ((result_.interrupted || last_.number > 0) && context_.checkpoint) save();
+    if (result_.interrupted || last_.number > 0) saver_.save();
     if (last_.number == 0) {
       if (!result_.interrupted)
         result_.failure = no_population(record_, next_.threshold, plan_.particles, result_.stopped_by, context_.ledger);
@@ -356,16 +356,6 @@ class Run {
     return seconds;
   }
 
-  void save_sometimes() {
-    if (!context_.checkpoint || std::chrono::duration<double>(Clock::now() - saved_).count() < context_.checkpoint_interval) return;
-    save();
-  }
-
-  void save() {
-    context_.checkpoint(store(state_, identity_, context_.ledger));
-    saved_ = Clock::now();
-  }
-
   SelectionTarget const& candidates_;
   int const at_once_;
   Plan const plan_;
@@ -378,7 +368,7 @@ class Run {
   PopulationRecord& record_ = state_.record;
   std::deque<Ahead> ahead_;  // those that are not all counted, without gaps
   Clock::time_point const began_ = Clock::now();
-  Clock::time_point saved_ = began_;
+  checkpoint::Saver saver_{context_, [this] { return store(state_, identity_, context_.ledger); }};
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
-#include <variant>
+#include <utility>
 
 #include "inference/backend/checkpoint.hpp"
 
@@ -115,14 +115,13 @@ std::uint64_t State::simulations() const {
 }
 
 json identity(SelectionTarget const& candidates, Settings const& settings, std::uint64_t seed) {
-  json values = json::object(), models = json::array();
-  for (auto const& [name, value] : settings.all()) std::visit([&](auto const& v) { values[name] = v; }, value);
+  json models = json::array();
   for (int m = 0; m < candidates.size(); ++m) {
     json parameters = json::array();
     for (ParameterInfo const& each : candidates.parameters(m)) parameters.push_back(each.name);
     models.push_back({candidates.name(m), candidates.prior_probability(m), parameters});
   }
-  return {{"backend", "abc_smc"}, {"settings", values}, {"seed", seed}, {"models", models}};
+  return checkpoint::identity("abc_smc", settings, seed, std::move(models));
 }
 
 json store(State const& state, json const& identity, Ledger const& ledger) {

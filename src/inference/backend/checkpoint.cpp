@@ -3,17 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace sysid::checkpoint {
 
-// Of what back ends store: another one is refused.
-constexpr int format = 3;
+namespace {
 
-nlohmann::json identity(std::string_view backend, Settings const& settings, std::uint64_t seed, Target const& target) {
+nlohmann::json values_of(Settings const& settings) {
   nlohmann::json values = nlohmann::json::object();
   for (auto const& [name, value] : settings.all()) std::visit([&](auto const& v) { values[name] = v; }, value);
+  return values;
+}
+
+}  // namespace
+
+nlohmann::json identity(std::string_view backend, Settings const& settings, std::uint64_t seed, Target const& target) {
   nlohmann::json parameters = nlohmann::json::array();
   for (ParameterInfo const& parameter : target.parameters()) parameters.push_back({parameter.name, parameter.unit});
-  return {{"format", format}, {"backend", backend}, {"settings", values}, {"seed", seed}, {"parameters", parameters}};
+  return {{"backend", backend}, {"settings", values_of(settings)}, {"seed", seed}, {"parameters", parameters}};
+}
+
+nlohmann::json identity(std::string_view backend, Settings const& settings, std::uint64_t seed, nlohmann::json models) {
+  return {{"backend", backend}, {"settings", values_of(settings)}, {"seed", seed}, {"models", std::move(models)}};
 }
 
 std::optional<Finding> refuse(nlohmann::json const& stored, nlohmann::json const& expected) {
@@ -42,6 +53,18 @@ std::optional<Finding> read(std::function<void()> const& what) {
   } catch (nlohmann::json::exception const&) {
     return unusable("it is damaged");
   }
+}
+
+Saver::Saver(RunContext& context, std::function<nlohmann::json()> store) : context_(context), store_(std::move(store)) {}
+
+void Saver::save_sometimes() {
+  if (std::chrono::duration<double>(Clock::now() - saved_).count() >= context_.checkpoint_interval) save();
+}
+
+void Saver::save() {
+  if (!context_.checkpoint) return;
+  context_.checkpoint(store_());
+  saved_ = Clock::now();
 }
 
 }  // namespace sysid::checkpoint

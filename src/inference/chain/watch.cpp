@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 namespace sysid {
 
-Watch::Watch(RunContext& context, std::function<nlohmann::json()> store) : context_(context), store_(std::move(store)) {}
+Watch::Watch(RunContext& context, std::function<nlohmann::json()> store) : context_(context), saver_(context, std::move(store)) {}
 
 void Watch::look(std::uint64_t done, double acceptance) {
   Clock::time_point const now = Clock::now();
@@ -15,14 +13,9 @@ void Watch::look(std::uint64_t done, double acceptance) {
     context_.progress.advance(done, fmt::format("acceptance {:.2f}", acceptance));
     shown_ = now;
   }
-  if (context_.checkpoint && std::chrono::duration<double>(now - saved_).count() >= context_.checkpoint_interval) {
-    context_.checkpoint(store_());
-    saved_ = Clock::now();
-  }
+  saver_.save_sometimes();
 }
 
-void Watch::store_now() {
-  if (context_.checkpoint) context_.checkpoint(store_());
-}
+void Watch::store_now() { saver_.save(); }
 
 }  // namespace sysid

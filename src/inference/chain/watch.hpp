@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 
+#include "inference/backend/checkpoint.hpp"
 #include "search/run_context.hpp"
 
 namespace sysid {
@@ -22,8 +23,8 @@ class Watch {
  private:
   using Clock = std::chrono::steady_clock;
   RunContext& context_;
-  std::function<nlohmann::json()> store_;
-  Clock::time_point shown_ = Clock::now(), saved_ = shown_;
+  checkpoint::Saver saver_;
+  Clock::time_point shown_ = Clock::now();
 };
 
 }  // namespace sysid

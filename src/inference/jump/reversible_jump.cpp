@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -19,7 +18,6 @@ namespace sysid::jump {
 namespace {
 
 using json = nlohmann::json;
-using Clock = std::chrono::steady_clock;
 
 /// Draws of a mixture that are tried for a start.
 constexpr std::uint64_t most_starts = 100;
@@ -44,7 +42,7 @@ class Run {
     find_live();
     if (result_.failure) return std::move(result_);
     if (!iterate()) return stopped();
-    if (context_.checkpoint && context_.checkpoint_end) save();
+    if (context_.checkpoint_end) saver_.save();
     fill_result(candidates_, models_, plan_, state_, result_);
     return std::move(result_);
   }
@@ -76,7 +74,7 @@ class Run {
       KeptPilot const kept{state_.chains_of_pilot.is_null() ? nullptr : std::make_shared<json const>(state_.chains_of_pilot),
                            [&](json const& chains) {
                              state_.chains_of_pilot = chains;
-                             if (context_.checkpoint) save();
+                             saver_.save();
                            }};
       result_.failure = checkpoint::read([&] { state_.pilots[k] = explore(candidates_[k], plan_, context_, kept); });
       if (result_.failure) return true;
@@ -188,7 +186,7 @@ class Run {
           jump_all();
         if (state_.next == plan_.burn_in) end_burn_in();
         context_.progress.advance(state_.next, fmt::format("jumps accepted {:.2g}", accepted()));
-        save_sometimes();
+        saver_.save_sometimes();
       }
     } catch (Interrupted const&) {
       whole = false;
@@ -311,18 +309,8 @@ class Run {
 
   SelectionResult stopped() {
     result_.interrupted = true;
-    if (context_.checkpoint) save();
+    saver_.save();
     return std::move(result_);
-  }
-
-  void save_sometimes() {
-    if (!context_.checkpoint || std::chrono::duration<double>(Clock::now() - saved_).count() < context_.checkpoint_interval) return;
-    save();
-  }
-
-  void save() {
-    context_.checkpoint(store(state_, identity_, context_.ledger));
-    saved_ = Clock::now();
   }
 
   std::span<LikelihoodCandidate const> candidates_;
@@ -333,7 +321,7 @@ class Run {
   SelectionResult result_;
   State state_;
   std::vector<Model> models_;
-  Clock::time_point saved_ = Clock::now();
+  checkpoint::Saver saver_{context_, [this] { return store(state_, identity_, context_.ledger); }};
 };
 
 }  // namespace

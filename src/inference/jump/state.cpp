@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
@@ -108,14 +109,13 @@ double Weights::error() const {
 double Weights::worth() const { return sum > 0 ? sum * sum / squares / count : 0; }
 
 json identity(std::span<LikelihoodCandidate const> candidates, Settings const& settings, std::uint64_t seed) {
-  json values = json::object(), models = json::array();
-  for (auto const& [name, value] : settings.all()) std::visit([&](auto const& v) { values[name] = v; }, value);
+  json models = json::array();
   for (LikelihoodCandidate const& each : candidates) {
     json parameters = json::array();
     for (ParameterInfo const& parameter : each.target->parameters()) parameters.push_back(parameter.name);
     models.push_back({each.name, each.prior, parameters, each.excluded.empty()});
   }
-  return {{"backend", "reversible_jump"}, {"settings", values}, {"seed", seed}, {"models", models}};
+  return checkpoint::identity("reversible_jump", settings, seed, std::move(models));
 }
 
 json store(State const& state, json const& identity, Ledger const& ledger) {
