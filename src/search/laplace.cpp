@@ -226,6 +226,12 @@ Eigen::VectorXd theta_of(Mode const& mode) {
   return Eigen::Map<Eigen::VectorXd const>(mode.theta.data(), static_cast<Eigen::Index>(mode.theta.size()));
 }
 
+Eigen::MatrixXd covariance_at_power(Mode const& mode, double power, Eigen::VectorXd const& widths) {
+  Eigen::MatrixXd precision = power * inverse(covariance_of(mode));
+  precision.diagonal() += (1 - power) * widths.cwiseAbs2().cwiseInverse();
+  return inverse(precision);
+}
+
 Eigen::MatrixXd covariance_of(Mode const& mode) {
   auto const n = static_cast<Eigen::Index>(mode.theta.size());
   return Eigen::Map<Eigen::MatrixXd const>(mode.covariance.data(), n, n);

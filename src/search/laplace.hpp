@@ -32,5 +32,9 @@ double distance(Mode const& a, Mode const& b);
 
 Eigen::VectorXd theta_of(Mode const& mode);
 Eigen::MatrixXd covariance_of(Mode const& mode);
+/// As wide as a power b of the likelihood leaves it in a prior of these widths:
+///
+///   (b S^-1 + (1 - b) diag(width^2)^-1)^-1,   S the mode's covariance
+Eigen::MatrixXd covariance_at_power(Mode const& mode, double power, Eigen::VectorXd const& widths);
 
 }  // namespace sysid

@@ -112,3 +112,17 @@ TEST_CASE("a ridge of a likelihood is flat in the coordinates of an interval, to
                         });
   CHECK(search(wide, ObjectiveKind::likelihood, bench.context).modes.front().flat.empty());
 }
+
+TEST_CASE("a power of the likelihood leaves a mode between its own width and the prior's") {
+  Mode mode;
+  mode.theta = {0, 0};
+  mode.covariance = {4, 1, 1, 9};
+  Eigen::VectorXd const widths{{10, 20}};
+  Eigen::MatrixXd const own = covariance_at_power(mode, 1, widths), prior = covariance_at_power(mode, 0, widths);
+  CHECK((own - covariance_of(mode)).norm() < 1e-12);
+  CHECK((prior - Eigen::MatrixXd(widths.cwiseAbs2().asDiagonal())).norm() < 1e-12 * 400);
+  mode.covariance = {4, 0, 0, 9};
+  Eigen::MatrixXd const half = covariance_at_power(mode, 0.5, widths);
+  CHECK(half(0, 0) == doctest::Approx(1 / (0.5 / 4 + 0.5 / 100)));
+  CHECK(half(1, 1) == doctest::Approx(1 / (0.5 / 9 + 0.5 / 400)));
+}

@@ -6,6 +6,7 @@
 #include "inference/backend/checkpoint.hpp"
 #include "search/global/chain_starts.hpp"
 #include "search/global/search.hpp"
+#include "search/objective.hpp"
 
 namespace sysid {
 
@@ -28,6 +29,12 @@ std::optional<ChainStarts> find_starts(Target const& target, bool global, int ch
   run.modes = std::move(found.modes);
   run.findings = std::move(found.findings);
   return starts;
+}
+
+Eigen::VectorXd widths_of_prior(Target const& target, std::uint64_t seed) {
+  LaneArray draws(target.dimension(), 1000);
+  target.sample_prior({seed, Purpose::start, 0, 0}, draws);
+  return make_objective(target, ObjectiveKind::posterior, draws).scale;
 }
 
 nlohmann::json store(ChainRun const& run, Ledger const& ledger, nlohmann::json const& identity) {

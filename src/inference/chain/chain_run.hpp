@@ -1,5 +1,6 @@
 // What the runs of mh, nuts and tempering have in common: how one begins, is stored and resumed, and what it reports.
 #pragma once
+#include <Eigen/Core>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -30,6 +31,9 @@ struct ChainStarts {
 /// search was interrupted or there is no start: `result` says which.
 std::optional<ChainStarts> find_starts(Target const& target, bool global, int chains, RunContext& context, ChainRun& run,
                                        FitResult& result);
+
+/// [P] of the sampler's coordinates, for proposals and metrics of chains that start all over the prior.
+Eigen::VectorXd widths_of_prior(Target const& target, std::uint64_t seed);
 
 /// A checkpoint: `run`, the identity it belongs to and the ledger; back ends add how their chains move.
 nlohmann::json store(ChainRun const& run, Ledger const& ledger, nlohmann::json const& identity);

@@ -130,10 +130,7 @@ std::vector<metropolis::Adaptation> make_groups(std::vector<Mode> const& modes, 
 
 /// A group for each chain, with the prior's widths: chains that start all over the prior have nothing in common yet.
 std::vector<metropolis::Adaptation> make_prior_groups(Target const& target, int chains, std::uint64_t seed) {
-  LaneArray draws(target.dimension(), 1000);
-  target.sample_prior({seed, Purpose::start, 0, 0}, draws);
-  Objective const objective = make_objective(target, ObjectiveKind::posterior, draws);
-  Eigen::MatrixXd const covariance = objective.scale.cwiseAbs2().asDiagonal();
+  Eigen::MatrixXd const covariance = widths_of_prior(target, seed).cwiseAbs2().asDiagonal();
   std::vector<metropolis::Adaptation> groups;
   for (int c = 0; c < chains; ++c) groups.emplace_back(std::vector<int>{c}, covariance);
   return groups;

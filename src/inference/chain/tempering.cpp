@@ -89,9 +89,6 @@ void restore(nlohmann::json const& stored, Target const& target, Plan const& pla
 }
 
 /// What the archive of a rung holds at first: draws from the normal distributions at the modes, as wide as the power leaves them,
-///
-///   covariance = (b S^-1 + (1 - b) diag(prior width^2)^-1)^-1,   S that of the mode
-///
 /// or from the prior where no search was made. They shape proposals alone.
 LaneArray first_archive(Target const& target, std::vector<Mode> const& modes, Eigen::VectorXd const& widths, double power,
                         StreamKey key) {
@@ -102,11 +99,7 @@ LaneArray first_archive(Target const& target, std::vector<Mode> const& modes, Ei
     return archive;
   }
   std::vector<Eigen::MatrixXd> factors;
-  for (Mode const& mode : modes) {
-    Eigen::MatrixXd precision = power * inverse(covariance_of(mode));
-    precision.diagonal() += (1 - power) * widths.cwiseAbs2().cwiseInverse();
-    factors.push_back(cholesky_or_diagonal(inverse(precision)));
-  }
+  for (Mode const& mode : modes) factors.push_back(cholesky_or_diagonal(covariance_at_power(mode, power, widths)));
   for (int w = 0; w < members; ++w) {
     Stream stream(key.with_index(key.index + static_cast<std::uint64_t>(w)));
     double which = stream.uniform();

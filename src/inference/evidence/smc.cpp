@@ -9,7 +9,6 @@
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
 #include "inference/evidence/mixture.hpp"
-#include "linear_algebra/decompositions.hpp"
 #include "search/laplace.hpp"
 #include "search/local_searches.hpp"
 
@@ -212,10 +211,8 @@ class Tempering {
     double const share = fitted.empty() ? 1 : mode_share;
     for (Mixture::Part& part : parts) part.normal *= 1 - share, part.student *= 1 - share;
     for (Mode const& mode : modes_) {
-      Eigen::MatrixXd precision = power * inverse(covariance_of(mode));
-      precision.diagonal() += (1 - power) * widths_.cwiseAbs2().cwiseInverse();
       double const each = 0.5 * share / static_cast<double>(modes_.size());
-      parts.push_back({Component(theta_of(mode), inverse(precision)), each, each, true});
+      parts.push_back({Component(theta_of(mode), covariance_at_power(mode, power, widths_)), each, each, true});
     }
     return Mixture(std::move(parts));
   }

@@ -113,10 +113,7 @@ std::vector<Metric> first_metrics(Target const& target, Plan const& plan, std::v
   std::vector<Metric> metrics;
   for (Mode const& mode : modes) metrics.push_back(metric_of(covariance_of(mode), plan.dense));
   if (!metrics.empty()) return metrics;
-  LaneArray draws(target.dimension(), 1000);
-  target.sample_prior({seed, Purpose::start, 0, 0}, draws);
-  Objective const objective = make_objective(target, ObjectiveKind::posterior, draws);
-  return {metric_of(objective.scale.cwiseAbs2().asDiagonal(), plan.dense)};
+  return {metric_of(widths_of_prior(target, seed).cwiseAbs2().asDiagonal(), plan.dense)};
 }
 
 /// The state before the first step; false where there is none.
