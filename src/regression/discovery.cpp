@@ -340,16 +340,10 @@ class Finder {
   // Independent rows are what sds and probabilities count on.
   void check_independence(Eigen::VectorXd const& residual) {
     Eigen::Index const rows = residual.size();
-    double const squares = residual.squaredNorm();
-    if (rows < 4 * lags || !(squares > 0)) return;
-    double sum = 0, portmanteau = 0;  // Ljung and Box 1978
-    for (Eigen::Index lag = 1; lag <= lags; ++lag) {
-      double const r = residual.head(rows - lag).dot(residual.tail(rows - lag)) / squares;
-      sum += r;
-      portmanteau += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
-    }
-    double const worth = 1 + 2 * sum;
-    if (portmanteau < far_from_white || worth < correlated_above) return;
+    if (rows < 4 * lags || !(residual.squaredNorm() > 0)) return;
+    Portmanteau const seen = portmanteau(residual, lags);
+    double const worth = 1 + 2 * seen.correlations;
+    if (seen.statistic < far_from_white || worth < correlated_above) return;
     Concern concern{.kind = Concern::Kind::correlated, .value = worth};
     concern.clause =
         fmt::format("the residual is correlated from window to window: {} windows are equivalent to about {:.0f} independent ones",

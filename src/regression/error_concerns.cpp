@@ -19,6 +19,18 @@ constexpr Eigen::Index short_of_average = 25;
 
 }  // namespace
 
+Portmanteau portmanteau(Eigen::VectorXd const& errors, Eigen::Index lags) {
+  Portmanteau found;
+  Eigen::Index const rows = errors.size();
+  double const squares = errors.squaredNorm();
+  for (Eigen::Index lag = 1; lag <= lags; ++lag) {
+    double const r = errors.head(rows - lag).dot(errors.tail(rows - lag)) / squares;
+    found.correlations += r;
+    found.statistic += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
+  }
+  return found;
+}
+
 Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::VectorXd const& errors, int runs, bool any_term,
                         bool coloured) {
   Concerns concerns;
@@ -38,20 +50,15 @@ Concerns error_concerns(NoiseOfEquation const& noise, int equation, Eigen::Vecto
     concerns.push_back(std::move(concern));
   }
   Eigen::Index const rows = errors.size(), most = std::min(most_lags, rows / 4);
-  double portmanteau = 0;
-  double const squares = errors.squaredNorm();
-  for (Eigen::Index lag = 1; lag <= most; ++lag) {
-    double const r = errors.head(rows - lag).dot(errors.tail(rows - lag)) / squares;
-    portmanteau += static_cast<double>(rows) * static_cast<double>(rows + 2) * r * r / static_cast<double>(rows - lag);
-  }
+  double const seen = portmanteau(errors, most).statistic;
   // Once in a million: Wilson and Hilferty 1931.
   double const part = 2 / (9.0 * static_cast<double>(std::max<Eigen::Index>(most, 1))), root = 1 - part + 4.753 * std::sqrt(part);
   double const limit = static_cast<double>(most) * root * root * root;
-  if (most >= 3 && portmanteau > limit) {
-    Concern concern{.kind = Concern::Kind::not_white, .value = portmanteau};
+  if (most >= 3 && seen > limit) {
+    Concern concern{.kind = Concern::Kind::not_white, .value = seen};
     concern.clause =
         fmt::format("the residual is not white: its chi-squared over {} lags is {:.0f}; for white noise it would be below {:.0f}",
-                    most, portmanteau, limit);
+                    most, seen, limit);
     concerns.push_back(std::move(concern));
   }
   if (auto const trace = noise.input_in(equation, errors)) {

@@ -186,14 +186,7 @@ class DifferenceProjection : public Projection, public NoiseOfEquation {
       blocks.push_back(block(experiment, roots, symbols, count, projected));
       count += blocks.back().rows();
     }
-    projected.columns.known.resize(count);
-    projected.columns.terms.resize(count, static_cast<Eigen::Index>(equation.terms.size()));
-    Eigen::Index first = 0;
-    for (Eigen::MatrixXd const& part : blocks) {
-      projected.columns.known.segment(first, part.rows()) = part.col(0);
-      projected.columns.terms.middleRows(first, part.rows()) = part.rightCols(part.cols() - 1);
-      first += part.rows();
-    }
+    projected.columns = stacked(blocks, equation.terms.size());
   }
 
   /// Roots at the rows where every sample that is read is there: [rows x roots]. before: rows of other experiments.
@@ -214,9 +207,7 @@ class DifferenceProjection : public Projection, public NoiseOfEquation {
       projected.places.push_back({static_cast<std::size_t>(&experiment - experiments_.data()), i});
       rows.push_back(i);
     }
-    Eigen::MatrixXd kept(static_cast<Eigen::Index>(rows.size()), all.cols());
-    for (std::size_t r = 0; r < rows.size(); ++r) kept.row(static_cast<Eigen::Index>(r)) = all.row(rows[r]);
-    return kept;
+    return rows_at(all, rows);
   }
 
   std::vector<double> samples_of(Symbol const& symbol, Experiment const& experiment) const {

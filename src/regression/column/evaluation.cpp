@@ -45,4 +45,22 @@ Eigen::MatrixXd evaluate_columns(Graph const& graph, std::span<NodeId const> roo
   return out;
 }
 
+Eigen::MatrixXd rows_at(Eigen::MatrixXd const& all, std::vector<int> const& rows) {
+  Eigen::MatrixXd kept(static_cast<Eigen::Index>(rows.size()), all.cols());
+  for (std::size_t r = 0; r < rows.size(); ++r) kept.row(static_cast<Eigen::Index>(r)) = all.row(rows[r]);
+  return kept;
+}
+
+Columns stacked(std::vector<Eigen::MatrixXd> const& blocks, std::size_t terms) {
+  Eigen::Index count = 0, first = 0;
+  for (Eigen::MatrixXd const& part : blocks) count += part.rows();
+  Columns columns{Eigen::VectorXd(count), Eigen::MatrixXd(count, static_cast<Eigen::Index>(terms))};
+  for (Eigen::MatrixXd const& part : blocks) {
+    columns.known.segment(first, part.rows()) = part.col(0);
+    columns.terms.middleRows(first, part.rows()) = part.rightCols(part.cols() - 1);
+    first += part.rows();
+  }
+  return columns;
+}
+
 }  // namespace sysid::regression

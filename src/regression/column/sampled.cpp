@@ -73,16 +73,7 @@ class SampledProjection : public Projection {
 
     std::vector<Eigen::MatrixXd> blocks;
     for (Experiment const& experiment : experiments_) blocks.push_back(block(experiment, roots, symbols, used));
-    Eigen::Index count = 0;
-    for (Eigen::MatrixXd const& part : blocks) count += part.rows();
-    columns.known.resize(count);
-    columns.terms.resize(count, static_cast<Eigen::Index>(equation.terms.size()));
-    Eigen::Index first = 0;
-    for (Eigen::MatrixXd const& part : blocks) {
-      columns.known.segment(first, part.rows()) = part.col(0);
-      columns.terms.middleRows(first, part.rows()) = part.rightCols(part.cols() - 1);
-      first += part.rows();
-    }
+    columns = stacked(blocks, equation.terms.size());
   }
 
   /// Roots at the samples where every symbol has a value: [rows x roots].
@@ -100,9 +91,7 @@ class SampledProjection : public Projection {
             return std::isfinite(entry.second[static_cast<std::size_t>(i)]);
           }))
         rows.push_back(i);
-    Eigen::MatrixXd kept(static_cast<Eigen::Index>(rows.size()), all.cols());
-    for (std::size_t r = 0; r < rows.size(); ++r) kept.row(static_cast<Eigen::Index>(r)) = all.row(rows[r]);
-    return kept;
+    return rows_at(all, rows);
   }
 
   Samples symbol_values(Symbol const& symbol, Experiment const& experiment, double step, std::vector<int> const& used) const {
