@@ -15,7 +15,6 @@ namespace {
 
 constexpr double expected_terms = 0.5;
 constexpr double most_probable = 0.5;  // of a term, where few are offered
-constexpr double of_factor = 0.75, of_function = 0.125;
 constexpr double highest_power = 9;
 
 /// A whole number from 1 on, as an exponent is; 0: something else.
@@ -35,16 +34,16 @@ double simplicity(ast::Expression const& term) {
   each_expression(term, [&](ast::Expression const& part) {
     if (auto const* call = std::get_if<ast::Box<ast::Call>>(&part.node)) {
       std::string const& name = (*call)->function.text;
-      weight *= name == "abs" || name == "sign" ? of_factor : of_function;
+      weight *= name == "abs" || name == "sign" ? simplicity_of_factor : simplicity_of_function;
     } else if (std::holds_alternative<ast::Box<ast::Conditional>>(part.node)) {
-      weight *= of_function;
+      weight *= simplicity_of_function;
     } else if (auto const* binary = std::get_if<ast::Box<ast::Binary>>(&part.node)) {
       ast::Binary const& of = **binary;
-      if (of.symbol == "*" && !is_number(*of.left) && !is_number(*of.right)) weight *= of_factor;
-      if (of.symbol == "/" && !is_number(*of.right)) weight *= of_function;
+      if (of.symbol == "*" && !is_number(*of.left) && !is_number(*of.right)) weight *= simplicity_of_factor;
+      if (of.symbol == "/" && !is_number(*of.right)) weight *= simplicity_of_function;
       if (of.symbol == "^") {
         double const power = whole_power(*of.right);
-        weight *= power > 0 ? std::pow(of_factor, power - 1) : of_function;
+        weight *= power > 0 ? std::pow(simplicity_of_factor, power - 1) : simplicity_of_function;
       }
     }
   });

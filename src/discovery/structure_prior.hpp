@@ -7,6 +7,9 @@
 
 namespace sysid {
 
+/// What a term's simplicity is multiplied by for each factor, and for each function, that it has.
+inline constexpr double simplicity_of_factor = 0.75, simplicity_of_function = 0.125;
+
 /// In (0, 1]: 1 of a constant or a symbol, times 3/4 for each further factor (`x*y`, `x^2`, `abs(x)`), times 1/8 for each function
 /// and for each quotient or power whose exponent is no small whole number (`sin(x)`, `x/(1 + x)`).
 double simplicity(ast::Expression const& term);

@@ -6,13 +6,14 @@
 #include <cmath>
 
 #include "core/numeric/elementary.hpp"
+#include "discovery/structure_prior.hpp"
 
 namespace sysid {
 namespace {
 
-constexpr double factor = 0.75, function = 0.125;  // as in structure_prior.cpp
-constexpr double same = 1e-9;                      // squared sine of the angle between two columns
-constexpr double largest = 1e8;                    // of its root mean square: no pole between the samples
+constexpr double factor = simplicity_of_factor, function = simplicity_of_function;
+constexpr double same = 1e-9;    // squared sine of the angle between two columns
+constexpr double largest = 1e8;  // of its root mean square: no pole between the samples
 
 struct OfOne {
   char const* text;

@@ -9,6 +9,7 @@
 
 #include "core/text/number.hpp"
 #include "report/file/csv.hpp"
+#include "report/file/number_or_null.hpp"
 #include "report/file/simulation_validation.hpp"
 #include "report/text/summary_text.hpp"
 #include "result/report.hpp"
@@ -190,14 +191,13 @@ nlohmann::ordered_json discovery_json(DiscoveryReport const& discovery) {
     out["equations"].push_back(std::move(found));
   }
   for (DifferenceForecast const& each : discovery.forecasts) {
-    auto const number = [](std::optional<double> const& error) { return error && std::isfinite(*error) ? Json(*error) : Json(); };
     out["forecasts"].push_back({{"rows", discovery.forecast_rows},
                                 {"target", each.target},
                                 {"unit", each.unit},
                                 {"sd", each.sd},
-                                {"one_step", number(each.one_step)},
-                                {"free_run", number(each.free_run)},
-                                {"expected", number(each.expected)}});
+                                {"one_step", number_or_null(each.one_step)},
+                                {"free_run", number_or_null(each.free_run)},
+                                {"expected", number_or_null(each.expected)}});
   }
   if (discovery.validation) out["judged"] = validation_json(*discovery.validation);
   return out;

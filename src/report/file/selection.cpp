@@ -13,6 +13,7 @@
 #include "core/text/told_apart.hpp"
 #include "core/text/words.hpp"
 #include "report/file/csv.hpp"
+#include "report/file/number_or_null.hpp"
 #include "report/file/task_folder.hpp"
 #include "report/text/summary_text.hpp"
 #include "result/report.hpp"
@@ -194,8 +195,6 @@ Json jumps_json(SelectionReport const& selection) {
   out["simulations"] = simulations;
   return out;
 }
-
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 void add_jumps(JumpRecord::OfModel const& of, Json& entry) {
   entry["probability_error"] = of.error;

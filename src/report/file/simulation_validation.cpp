@@ -10,6 +10,7 @@
 #include "core/text/number.hpp"
 #include "report/file/csv.hpp"
 #include "report/file/discovery.hpp"
+#include "report/file/number_or_null.hpp"
 #include "report/text/summary_text.hpp"
 #include "result/report.hpp"
 
@@ -123,8 +124,6 @@ ReportTable channel_table(ValidationReport const& validation, ValidatedStructure
   }
   return table;
 }
-
-Json number_or_null(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(); }
 
 }  // namespace
 
