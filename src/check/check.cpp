@@ -16,6 +16,7 @@
 #include "check/model/unused.hpp"
 #include "check/task/candidates.hpp"
 #include "check/task/tasks.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -34,12 +35,6 @@ class Unique {
   Diagnostics& diagnostics_;
   std::map<std::string, Span> seen_;
 };
-
-ast::Model const* find_model(ast::File const& tree, std::string const& name) {
-  for (ast::Item const& item : tree.items)
-    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
-  return nullptr;
-}
 
 bool mentioned(std::vector<ast::Task const*> const& tasks, std::string const& block) {
   return std::any_of(tasks.begin(), tasks.end(), [&](ast::Task const* task) {

@@ -21,7 +21,7 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
            std::any_of(parameter.prior->arguments.begin() + 1, parameter.prior->arguments.end(), estimated);
   });
   if (member == model.parameters.end()) return {};
-  if (draws.total() == 1)
+  if (draws.is_optimum())
     return {{FindingCode::optimum_of_hierarchy,
              Severity::warning,
              {member->name},

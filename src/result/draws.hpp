@@ -28,6 +28,8 @@ struct Draws {
     for (Chain const& chain : chains) n += chain.values.size();
     return n;
   }
+  /// What `map` and `ml` give: a single point, which has no spread.
+  bool is_optimum() const { return total() == 1; }
   /// Of one name, chain after chain.
   std::vector<double> column(std::size_t name) const;
 

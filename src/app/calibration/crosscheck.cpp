@@ -27,8 +27,6 @@
 namespace sysid {
 namespace {
 
-bool is_optimum(Report const& report) { return report.draws.total() == 1; }
-
 /// Another way of sampling: trajectories where there were random moves, and moves where there were trajectories or none.
 std::string other_than(std::string const& backend) { return backend == "mh" ? "nuts" : "mh"; }
 
@@ -45,8 +43,8 @@ std::vector<ComparedNumber> compared(Report const& first, Report const& second) 
     Summary const& one = first.summary[p];
     if (one.coefficient) continue;
     std::vector<ComparedNumber> numbers =
-        is_optimum(first) ? compare_optimum(one.name, one.unit, chains_of(second.draws, p), one.mean, one.sd)
-                          : compare_draws(one.name, one.unit, chains_of(first.draws, p), chains_of(second.draws, p));
+        first.draws.is_optimum() ? compare_optimum(one.name, one.unit, chains_of(second.draws, p), one.mean, one.sd)
+                                 : compare_draws(one.name, one.unit, chains_of(first.draws, p), chains_of(second.draws, p));
     all.insert(all.end(), numbers.begin(), numbers.end());
   }
   return all;
@@ -157,7 +155,7 @@ class Crosscheck {
       for (auto const& [name, value] : each->report.settings) report.settings.emplace_back(each->backend + " " + name, value);
     }
     if (!left_out_.empty()) report.settings.emplace_back("left_out", "search = " + left_out_);
-    bool const with_optimum = is_optimum(first.report);
+    bool const with_optimum = first.report.draws.is_optimum();
     std::vector<ComparedNumber> const numbers = compared(first.report, second.report);
     report.tables.push_back(number_table(numbers, first.backend, second.backend, with_optimum));
     report.findings = agreement_findings(numbers, first.backend, second.backend, with_optimum);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "syntax/parse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -201,12 +202,10 @@ std::string model_with_disturbances(Source const& source, std::string const& mod
                                     std::vector<DisturbedEquation> const& equations, std::vector<DisturbanceSize> const& sizes) {
   std::vector<Edit> edits = disturbance_edits(source, equations, sizes);
   ast::File const tree = tree_of(source);
-  for (ast::Item const& item : tree.items)
-    if (auto const* written = std::get_if<ast::Model>(&item); written != nullptr && written->name.text == model) {
-      edits.push_back({written->name.span, name});
-      return edited(source, written->span, std::move(edits));
-    }
-  throw InternalError("a model that was disturbed is not in the file");
+  ast::Model const* const written = find_model(tree, model);
+  if (written == nullptr) throw InternalError("a model that was disturbed is not in the file");
+  edits.push_back({written->name.span, name});
+  return edited(source, written->span, std::move(edits));
 }
 
 }  // namespace sysid

@@ -226,18 +226,12 @@ class EquationReader {
   std::map<std::string, int> order_;
 };
 
-ast::Model const* flat_model(CheckedFile const& file, std::string const& name) {
-  for (ast::Item const& item : file.tree.items)
-    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
-  return nullptr;
-}
-
 }  // namespace
 
 std::vector<DisturbedEquation> disturbed_equations(Source const& source, CheckedFile const& file, Task const& fit) {
   Model const& model = file.models[static_cast<std::size_t>(std::get<FitTask>(fit.what).model)];
   require_open(model, fit);
-  ast::Model const* const flat = flat_model(file, model.name);
+  ast::Model const* const flat = find_model(file.tree, model.name);
   if (flat == nullptr) throw InternalError("a fitted model is not in the tree");
   bool const discrete = model.dynamics == Dynamics::discrete;
   std::vector<Span> const places = chosen_places(*flat, discrete);

@@ -80,7 +80,7 @@ class ProcessLikelihood : public FitLikelihood {
   // Of what was sampled as the back end has them, of what was integrated out from the draws; at an optimum its sd given the rest.
   std::vector<Summary> summaries(FitResult const& result, Draws const& draws) const override {
     std::vector<Summary> const sampled = summarise(result);
-    auto const sds = draws.total() == 1 ? coefficient_sds(*target_, *space_, parameters_of_best(draws))
+    auto const sds = draws.is_optimum() ? coefficient_sds(*target_, *space_, parameters_of_best(draws))
                                         : std::vector<std::pair<std::string, double>>{};
     std::vector<Summary> summaries;
     for (std::size_t p = 0; p < space_->infos().size(); ++p) {

@@ -8,6 +8,7 @@
 #include "core/text/without_index.hpp"
 #include "core/text/words.hpp"
 #include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -21,26 +22,24 @@ struct Texts {
 // What is said of a name first stays.
 void add_texts(ast::File const& tree, std::string const& model, bool equations, Texts& texts) {
   auto const call = [](ast::Call const& use) { return unparse(ast::Expression{{}, ast::Box<ast::Call>(use)}); };
-  for (ast::Item const& item : tree.items) {
-    auto const* found = std::get_if<ast::Model>(&item);
-    if (found == nullptr || found->name.text != model) continue;
-    for (ast::ModelStatement const& statement : found->statements) {
-      if (auto const* equation = std::get_if<ast::Equation>(&statement); equation != nullptr && equations)
-        texts.equations.push_back(unparse(equation->left) + " = " + unparse(equation->right));
-      if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
-        texts.parameters.try_emplace(parameter->name.name.text, parameter->prior   ? "~ " + call(*parameter->prior)
-                                                                : parameter->value ? "= " + unparse(*parameter->value)
-                                                                                   : std::string());
-      if (auto const* disturbance = std::get_if<ast::DisturbanceDeclaration>(&statement))
-        texts.disturbances.try_emplace(disturbance->name.name.text, "~ " + call(disturbance->law));
-      if (auto const* initials = std::get_if<ast::InitialDeclaration>(&statement))
-        for (ast::InitialValue const& initial : initials->values)
-          if (initial.law) texts.starts.try_emplace(unparse(ast::Expression{{}, initial.state}), "~ " + call(*initial.law));
-      if (auto const* observation = std::get_if<ast::Observation>(&statement))
-        texts.channels.try_emplace(observation->channel.name.text, "~ " + call(observation->noise));
-      if (auto const* definition = std::get_if<ast::Definition>(&statement))
-        texts.derived.try_emplace(definition->name.name.text, "= " + unparse(definition->value));
-    }
+  ast::Model const* const found = find_model(tree, model);
+  if (found == nullptr) return;
+  for (ast::ModelStatement const& statement : found->statements) {
+    if (auto const* equation = std::get_if<ast::Equation>(&statement); equation != nullptr && equations)
+      texts.equations.push_back(unparse(equation->left) + " = " + unparse(equation->right));
+    if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
+      texts.parameters.try_emplace(parameter->name.name.text, parameter->prior   ? "~ " + call(*parameter->prior)
+                                                              : parameter->value ? "= " + unparse(*parameter->value)
+                                                                                 : std::string());
+    if (auto const* disturbance = std::get_if<ast::DisturbanceDeclaration>(&statement))
+      texts.disturbances.try_emplace(disturbance->name.name.text, "~ " + call(disturbance->law));
+    if (auto const* initials = std::get_if<ast::InitialDeclaration>(&statement))
+      for (ast::InitialValue const& initial : initials->values)
+        if (initial.law) texts.starts.try_emplace(unparse(ast::Expression{{}, initial.state}), "~ " + call(*initial.law));
+    if (auto const* observation = std::get_if<ast::Observation>(&statement))
+      texts.channels.try_emplace(observation->channel.name.text, "~ " + call(observation->noise));
+    if (auto const* definition = std::get_if<ast::Definition>(&statement))
+      texts.derived.try_emplace(definition->name.name.text, "= " + unparse(definition->value));
   }
 }
 

@@ -59,7 +59,7 @@ Draws with_coefficients(ProcessTarget const& target, ParameterSpace const& all, 
     result.units.push_back(each.unit);
   }
   result.parameter_count = all.dimension();
-  bool const optimum = sampled.total() == 1;
+  bool const optimum = sampled.is_optimum();
   std::uint64_t number = 0;
   for (Chain const& chain : sampled.chains) {
     Chain whole = chain;

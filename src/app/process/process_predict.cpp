@@ -39,7 +39,7 @@ class ProcessPredict {
             model.dynamics == Dynamics::discrete ? fmt::format(" ({})", prediction_text(model, what_.prediction)) : std::string()),
         seed_);
     add_prediction_rule(model, what_.prediction, report);
-    if (trajectories_.fitted().draws.total() == 1)
+    if (trajectories_.fitted().draws.is_optimum())
       report.findings.push_back({FindingCode::optimum_alone,
                                  Severity::note,
                                  {fit_task_.name},

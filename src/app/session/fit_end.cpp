@@ -60,7 +60,7 @@ Summary of_column(Draws const& draws, std::size_t column) {
     for (auto const& draw : chain.values) values.back().push_back(draw[column]);
   }
   Summary summary = summarise(draws.names[column], draws.units[column], values);
-  if (draws.total() == 1) summary.sd = summary.mad = summary.q5 = summary.q95 = std::nan("");
+  if (draws.is_optimum()) summary.sd = summary.mad = summary.q5 = summary.q95 = std::nan("");
   return summary;
 }
 

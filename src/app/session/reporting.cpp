@@ -25,6 +25,7 @@
 #include "syntax/inserted.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 #include "typeset/fixed_values.hpp"
 #include "typeset/typeset.hpp"
 

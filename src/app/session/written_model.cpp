@@ -10,12 +10,6 @@
 
 namespace sysid {
 
-ast::Model const* find_model(ast::File const& tree, std::string const& name) {
-  for (ast::Item const& item : tree.items)
-    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
-  return nullptr;
-}
-
 ast::Model const* as_written(ast::File const& tree, Span span) {
   for (ast::Item const& item : tree.items)
     if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->span == span) return model;

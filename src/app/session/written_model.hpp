@@ -7,9 +7,6 @@
 
 namespace sysid {
 
-/// With its arguments, parts and modules put in; null where the file has no such model.
-ast::Model const* find_model(ast::File const& tree, std::string const& name);
-
 /// As the user wrote it; null when it stands in a module. tree: of the user's file, not flat.
 ast::Model const* as_written(ast::File const& tree, Span span);
 

@@ -48,7 +48,7 @@ class Predict {
                      seed_);
     add_predicted_rule(model_, what_.prediction, report);
     if (what_.ahead > 1) report.prediction_rule = fmt::format("{} steps", what_.ahead);
-    if (trajectories_.fitted().draws.total() == 1)
+    if (trajectories_.fitted().draws.is_optimum())
       report.findings.push_back(
           {FindingCode::optimum_alone,
            Severity::note,

@@ -7,6 +7,7 @@
 
 #include "check/expression/option_reader.hpp"
 #include "check/message/errors.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -139,14 +140,11 @@ class CandidatesChecker {
   }
 
   Span place_of(CandidateModel const& candidate, Parameter const& parameter) const {
-    for (ast::Item const& item : file_.tree.items) {
-      auto const* model = std::get_if<ast::Model>(&item);
-      if (model == nullptr || model->name.text != candidate.name) continue;
+    if (ast::Model const* const model = find_model(file_.tree, candidate.name))
       for (ast::ModelStatement const& statement : model->statements)
         if (auto const* each = std::get_if<ast::ParameterDeclaration>(&statement);
             each != nullptr && each->name.name.text == parameter.name)
           return each->prior ? each->prior->span : each->value ? each->value->span : each->name.span;
-    }
     return parameter.span;
   }
 

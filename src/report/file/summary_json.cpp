@@ -275,7 +275,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
   out["lags"] = report.lags;
   out["model"] = report.model_name;
   out["parameters"] = parameters(report.summary);
-  if (report.draws.total() == 1) add_sd_methods(report, out["parameters"]);
+  if (report.draws.is_optimum()) add_sd_methods(report, out["parameters"]);
   if (thinned(report) && report.draws.total() > 1) out["kept_draws"] = kept_draws(report);
   if (report.selection) {
     out["models"] = models_json(*report.selection);

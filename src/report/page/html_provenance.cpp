@@ -49,7 +49,7 @@ std::string repetition_html(Report const& report) {
     out += fmt::format(
         "<p>Seed {}. The same file, data, seed and version of the program give the same {}, byte for byte, for any number "
         "of threads.</p>\n",
-        report.seed, report.draws.total() == 1 ? "result" : verb_words(report).repeated);
+        report.seed, report.draws.is_optimum() ? "result" : verb_words(report).repeated);
   else
     out += "<p>The same file, data, fit and version of the program give the same table, byte for byte.</p>\n";
   return out + folded("The file that repeats this task, with all settings", report.resolved_text);

@@ -68,7 +68,7 @@ std::string within_prior(PriorInfo const& prior, Summary const& s) {
 
 std::string parameters(Report const& report) {
   if (report.summary.empty()) return "";
-  bool const optimum = report.draws.total() == 1;
+  bool const optimum = report.draws.is_optimum();
   // What was found comes first: on a narrow screen it stands there without scrolling.
   HtmlTable table{"Posteriors against priors", {"parameter"}, {}, 1, 2};
   for (std::string const& column :

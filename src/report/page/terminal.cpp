@@ -20,13 +20,13 @@ namespace {
 
 std::string draws_line(Draws const& draws) {
   if (draws.chains.empty()) return "";
-  if (draws.total() == 1) return "optimum, a single point";
+  if (draws.is_optimum()) return "optimum, a single point";
   std::size_t const chains = draws.chains.size();
   return fmt::format("{} of {} draws", counted(chains, "chain"), draws.chains[0].values.size());
 }
 
 std::string summary_table(Report const& report) {
-  if (report.draws.total() == 1) {
+  if (report.draws.is_optimum()) {
     std::vector<std::vector<std::string>> rows = {{"", "unit", "optimum", "Laplace sd"}};
     for (Summary const& s : report.summary)
       if (!s.coefficient) rows.push_back({s.name, s.unit, format_summary(s).mean, format_summary(s).sd});
