@@ -105,9 +105,10 @@ std::string elsewhere_clause(ValidationReport const& validation) {
   return fmt::format("the equation fails on {} (rms error of a free run: {} % of the sd)", validation.held_out, size);
 }
 
-/// A term of the target is shown as "m, in the target".
-bool is_term(DiscoveredTerm const& shown, std::string const& term) {
-  return shown.text == term || (shown.fate.kind == TermFate::Kind::known && shown.text.starts_with(term + ","));
+/// Of a term that was left out as a combination of others: whether all of those are there.
+bool others_are_kept(regression::Concern const& concern, std::vector<int> const& kept) {
+  return std::all_of(concern.terms.begin() + std::min<std::ptrdiff_t>(1, std::ssize(concern.terms)), concern.terms.end(),
+                     [&](int term) { return std::find(kept.begin(), kept.end(), term) != kept.end(); });
 }
 
 }  // namespace
@@ -117,22 +118,13 @@ bool is_settled(ValidationReport const& validation) {
          validation.structures.front().residual_over_noise <= settled_residual;
 }
 
-void temper_by_terms(DiscoveredEquation const& equation, Finding& finding) {
-  if (finding.code != FindingCode::terms_collinear || finding.names.empty()) return;
-  auto const kept = [&](std::string const& term) {
-    return std::any_of(equation.terms.begin(), equation.terms.end(),
-                       [&](DiscoveredTerm const& each) { return each.kept && is_term(each, term); });
-  };
-  if (!std::all_of(finding.names.begin() + 1, finding.names.end(), kept)) finding.severity = Severity::note;
+void temper_by_terms(regression::Concern const& concern, std::vector<int> const& kept, Finding& finding) {
+  if (finding.code == FindingCode::terms_collinear && !others_are_kept(concern, kept)) finding.severity = Severity::note;
 }
 
-void temper_by_form(ValidationReport const& validation, std::string const& target, Finding& finding) {
+void temper_by_form(ValidationReport const& validation, regression::Concern const& concern, std::vector<int> const& kept,
+                    Finding& finding) {
   if (!checked(validation)) return;
-  auto const kept = [&](std::string const& term) {
-    std::vector<ValidatedCoefficient> const& all = validation.structures.front().coefficients;
-    return std::any_of(all.begin(), all.end(),
-                       [&](ValidatedCoefficient const& each) { return each.target == target && each.term == term; });
-  };
   switch (finding.code) {
     case FindingCode::terms_interchangeable:
     case FindingCode::terms_nearly_collinear:
@@ -140,8 +132,7 @@ void temper_by_form(ValidationReport const& validation, std::string const& targe
       break;
     case FindingCode::terms_collinear:
       // Where all of the others are in the equation, the one that was left out makes an equation that is no longer.
-      if (!std::all_of(finding.names.begin() + std::min<std::ptrdiff_t>(1, std::ssize(finding.names)), finding.names.end(), kept))
-        finding.severity = Severity::note;
+      if (!others_are_kept(concern, kept)) finding.severity = Severity::note;
       break;
     case FindingCode::residual_correlated:
     case FindingCode::selection_not_settled:
@@ -164,15 +155,13 @@ Findings undecided_form(ValidationReport const& validation) {
            "add a record from another start or of another amplitude to the same discovery: `discover ... from first, second`"}};
 }
 
-Findings undecided_terms(DiscoveredEquation const& equation) {
-  std::vector<std::string> kept;
-  for (DiscoveredTerm const& each : equation.terms)
-    if (each.kept && each.fate.kind != TermFate::Kind::known) kept.push_back(each.text);
+Findings undecided_terms(regression::FoundEquation const& found, DiscoveredEquation const& equation) {
   double own = 0, sum = 0, known = 0;
   std::vector<std::string> names, listed;
-  for (DiscoveredSupport const& each : equation.supports) {
+  for (std::size_t s = 0; s < equation.supports.size(); ++s) {
+    DiscoveredSupport const& each = equation.supports[s];
     known += each.probability;
-    if (each.terms == kept) own = each.probability;
+    if (found.supports[s].terms == found.chosen.terms) own = each.probability;
     if (sum >= shared_probability || names.size() >= most_named) continue;
     sum += each.probability;
     names.push_back(each.terms.empty() ? "none" : fmt::format("{}", fmt::join(each.terms, ", ")));

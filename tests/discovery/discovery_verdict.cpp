@@ -53,8 +53,12 @@ Finding finding(FindingCode code, std::vector<std::string> names, Severity sever
   return {code, severity, std::move(names), "x': a sentence", "a help"};
 }
 
-Severity tempered(ValidationReport const& validation, Finding each) {
-  temper_by_form(validation, "x'", each);
+/// terms: of the concern; kept: those of the leading structure.
+Severity tempered(ValidationReport const& validation, Finding each, std::vector<int> terms = {},
+                  std::vector<int> const& kept = {}) {
+  regression::Concern concern;
+  concern.terms = std::move(terms);
+  temper_by_form(validation, concern, kept, each);
   return each.severity;
 }
 
@@ -103,42 +107,35 @@ TEST_CASE("a form that is not decided is one warning with the structures that sh
 
 TEST_CASE("sets of terms that share the probability of a regression are one warning, where none is simulated") {
   DiscoveredEquation equation;
+  regression::FoundEquation chosen;
   equation.target = "y";
-  for (auto const& [text, kept] : {std::pair("lag(y, 1)", true), {"lag(u, 1)", true}, {"lag(u, 1)^2", false}}) {
-    equation.terms.emplace_back().text = text;
-    equation.terms.back().kept = kept;
-  }
-  CHECK(undecided_terms(equation).empty());  // a selector without probabilities
+  chosen.chosen.terms = {0, 1};
+  CHECK(undecided_terms(chosen, equation).empty());  // a selector without probabilities
   equation.supports = {{{"lag(y, 1)", "lag(u, 1)"}, 0.5}, {{"lag(y, 1)", "lag(u, 1)", "lag(u, 1)^2"}, 0.4}, {{"lag(y, 1)"}, 0.08}};
-  Findings const found = undecided_terms(equation);
+  chosen.supports.resize(3);
+  chosen.supports[0].terms = {0, 1};
+  chosen.supports[1].terms = {0, 1, 2};
+  chosen.supports[2].terms = {0};
+  Findings const found = undecided_terms(chosen, equation);
   REQUIRE(found.size() == 1);
   CHECK(found.front().code == FindingCode::form_undecided);
   CHECK(found.front().names.size() == 3);
   equation.supports.front().probability = 0.9;
-  CHECK(undecided_terms(equation).empty());
-  // A term of the target is in every equation, and in none of the sets.
-  equation.terms.emplace_back().text = "m, in the target";
-  equation.terms.back().kept = true;
-  equation.terms.back().fate = {TermFate::Kind::known};
-  CHECK(undecided_terms(equation).empty());
+  CHECK(undecided_terms(chosen, equation).empty());
   // What is kept is not the most probable.
-  equation.terms[2].kept = true;
-  CHECK(undecided_terms(equation).size() == 1);
+  chosen.chosen.terms = {0, 1, 2};
+  CHECK(undecided_terms(chosen, equation).size() == 1);
 }
 
 TEST_CASE("a term that others make up is a note, unless all of these are in the equation") {
-  DiscoveredEquation equation;
-  for (auto const& [text, kept] : {std::pair("lag(y, 1)", true), {"lag(y, 3)", false}}) {
-    equation.terms.emplace_back().text = text;
-    equation.terms.back().kept = kept;
-  }
-  auto const severity = [&](std::vector<std::string> names) {
-    Finding each = finding(FindingCode::terms_collinear, std::move(names));
-    temper_by_terms(equation, each);
+  auto const severity = [&](std::vector<int> terms) {
+    regression::Concern concern{.kind = regression::Concern::Kind::collinear, .terms = std::move(terms)};
+    Finding each = finding(FindingCode::terms_collinear, {});
+    temper_by_terms(concern, {0}, each);
     return each.severity;
   };
-  CHECK(severity({"lag(y, 2)", "lag(y, 1)", "lag(y, 3)"}) == Severity::note);
-  CHECK(severity({"lag(y, 2)", "lag(y, 1)"}) == Severity::warning);
+  CHECK(severity({1, 0, 2}) == Severity::note);
+  CHECK(severity({1, 0}) == Severity::warning);
 }
 
 TEST_CASE("other terms are a warning where the record is described as well by them, with their coefficients counted") {
@@ -180,13 +177,13 @@ TEST_CASE("what the regression cannot tell apart is a note where simulation comp
 }
 
 TEST_CASE("a term left out as a combination of others warns where it makes another equation of as many terms") {
-  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"sin(x)", "x", "x^2"})) == Severity::warning);
-  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"sin(x)", "x"})) == Severity::warning);
-  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"sin(x)", "x", "x^3"})) == Severity::note);
-  CHECK(tempered(report(0.99), finding(FindingCode::terms_collinear, {"x", "cos(x)", "1"})) == Severity::note);
-  Finding other = finding(FindingCode::terms_collinear, {"sin(x)", "x"});
-  temper_by_form(report(0.99), "y'", other);
-  CHECK(other.severity == Severity::note);
+  // Terms x, x^2, x^3, sin(x), of which the first two are in the leading structure.
+  Finding const collinear = finding(FindingCode::terms_collinear, {"sin(x)", "x"});
+  CHECK(tempered(report(0.99), collinear, {3, 0, 1}, {0, 1}) == Severity::warning);
+  CHECK(tempered(report(0.99), collinear, {3, 0}, {0, 1}) == Severity::warning);
+  CHECK(tempered(report(0.99), collinear, {3, 0, 2}, {0, 1}) == Severity::note);
+  CHECK(tempered(report(0.99), collinear, {0, 2, 3}, {0, 1}) == Severity::note);
+  CHECK(tempered(report(0.99), collinear, {3, 0}, {}) == Severity::note);
 }
 
 TEST_CASE("findings of one code are one, with all names") {

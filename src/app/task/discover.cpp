@@ -232,7 +232,7 @@ class Discover {
                        {"statement_sha256", statement_digest(session_, task_)}};
     add_fitted_data(session_.file, data_, dictionary_.measured, report);
     DiscoveryReport discovery = described_discovery({what_, dictionary_, inner_, inner_sd_}, found, selector);
-    add_findings(found, discovery.equations, validation ? &validation->report : nullptr, report.findings);
+    add_findings(found, discovery.equations, validation ? &*validation : nullptr, report.findings);
     say_once(report.findings);
     for (Finding& each : interpolation_findings(validation)) report.findings.push_back(std::move(each));
     if (dictionary_.numbers.discrete && !structures.empty()) add_forecasts(found, discovery, report.findings);
@@ -362,7 +362,7 @@ class Discover {
   }
 
   void add_findings(regression::Discovery const& found, std::vector<DiscoveredEquation> const& described,
-                    ValidationReport const* validation, Findings& findings) const {
+                    Validation const* validation, Findings& findings) const {
     for (std::size_t e = 0; e < found.equations.size(); ++e) {
       regression::FoundEquation const& equation = found.equations[e];
       for (regression::Concern const& concern : equation.concerns) {
@@ -376,13 +376,13 @@ class Discover {
           finding.message = fmt::format("input {}: {}", input, finding.message);
         }
         if (validation != nullptr)
-          temper_by_form(*validation, dictionary_.equations[e].text, finding);
+          temper_by_form(validation->report, concern, validation->order.front().equations[e]->terms, finding);
         else
-          temper_by_terms(described[e], finding);
+          temper_by_terms(concern, equation.chosen.terms, finding);
         if (std::find(findings.begin(), findings.end(), finding) == findings.end()) findings.push_back(std::move(finding));
       }
       if (validation == nullptr)
-        for (Finding& each : undecided_terms(described[e])) findings.push_back(std::move(each));
+        for (Finding& each : undecided_terms(equation, described[e])) findings.push_back(std::move(each));
     }
   }
 
