@@ -9,6 +9,8 @@
 #include "repl/tasks.hpp"
 #include "repl/words.hpp"
 #include "syntax/entry.hpp"
+#include "syntax/parse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid::repl {
 namespace {
@@ -30,17 +32,12 @@ std::string fit_of(std::string const& statement, std::string const& name, std::s
 
 /// Whether all stand in the text of this model, none in that of a part.
 bool all_in(Source const& source, std::string const& model, std::vector<DisturbedEquation> const& equations) {
-  for (Span const statement : top_level_statements(source.text(0))) {
-    std::string const text = in_one_line(source.text(statement));
-    std::string const head = "model " + model;
-    if (!text.starts_with(head) || text.size() <= head.size() ||
-        std::string_view(" ({").find(text[head.size()]) == std::string_view::npos)
-      continue;
-    return std::all_of(equations.begin(), equations.end(), [&](DisturbedEquation const& each) {
-      return each.place.begin >= statement.begin && each.place.end <= statement.end;
-    });
-  }
-  return false;
+  Diagnostics ignored;
+  auto const tree = parse(source, ignored);
+  ast::Model const* const written = tree ? find_model(*tree, model) : nullptr;
+  return written != nullptr && std::all_of(equations.begin(), equations.end(), [&](DisturbedEquation const& each) {
+           return each.place.begin >= written->span.begin && each.place.end <= written->span.end;
+         });
 }
 
 }  // namespace

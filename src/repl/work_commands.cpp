@@ -13,6 +13,7 @@
 #include "repl/work/change.hpp"
 #include "syntax/entry.hpp"
 #include "syntax/format.hpp"
+#include "syntax/unparse.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::repl {
@@ -30,8 +31,8 @@ std::string without_settings(std::string const& statement) {
   head = trimmed(head.substr(0, head.size() - with.size()));
   // What a prediction takes first is a number of draws.
   if (first.key || first.input || words::task_kind(task.verb.text) == TaskKind::predict) return std::string(head);
-  std::string_view const option = std::string_view(statement).substr(first.span.begin, first.span.end - first.span.begin);
-  return fmt::format("{} {} {}", head, with, trimmed(option.substr(0, option.find('('))));
+  auto const* const call = std::get_if<ast::Box<ast::Call>>(&first.value.node);
+  return fmt::format("{} {} {}", head, with, call != nullptr ? (*call)->function.text : unparse(first.value));
 }
 
 std::string score(std::optional<double> value) { return value ? significant(*value, 4) : std::string(); }
