@@ -8,7 +8,9 @@
 #include "core/text/diagnostic.hpp"
 #include "expression/finite_slope.hpp"
 #include "program/embedded.hpp"
+#include "program/moments/covariance_pattern.hpp"
 #include "program/moments/factored_covariance.hpp"
+#include "program/moments/past_sample.hpp"
 #include "solver/exact_moments.hpp"
 #include "solver/solver.hpp"
 
@@ -72,7 +74,7 @@ class MomentWriter {
     result.factored = factored_;
     for (int i = 0; i < states_; ++i)
       for (int j = 0; j < states_; ++j) result.covariance.push_back(covariance_(i, j));
-    if (since) add_past(result);
+    if (since) result.since = with_past_sample(so_far());
     result.source = std::move(source_);
     return result;
   }
@@ -230,73 +232,19 @@ class MomentWriter {
   NodeId column(int i, std::size_t p) const { return columns_[static_cast<std::size_t>(i) * weights_.size() + p]; }
 
   // --- which covariances there are
-  /// Of which states a sample corrects the means, by points along the columns of the Cholesky factor, whose entries are more than
-  /// those of the covariance.
-  std::vector<bool> corrected_by_points(MomentRow const& output, std::vector<std::vector<bool>> some) const {
-    auto const state = [&](int k) { return static_cast<std::size_t>((random_.first_column + k) % states_); };
-    for (int k = 0; k < states_; ++k)
-      for (int i = k + 1; i < states_; ++i)
-        for (int j = k + 1; j < states_; ++j)
-          if (some[state(i)][state(k)] && some[state(j)][state(k)]) some[state(i)][state(j)] = true;
-    std::vector<bool> corrected(static_cast<std::size_t>(states_));
-    for (int p = 0; p < states_; ++p) {
-      bool bends = false;
-      for (int k = p; k < states_; ++k)
-        bends = bends || (some[state(k)][state(p)] && passage_.moves(output, static_cast<int>(state(k))));
-      for (int i = p; i < states_; ++i)
-        if (bends && some[state(i)][state(p)]) corrected[state(i)] = true;
-    }
-    return corrected;
-  }
-
   void number_covariances() {
-    std::vector<std::vector<bool>> some(static_cast<std::size_t>(states_), std::vector<bool>(static_cast<std::size_t>(states_)));
-    auto const is = [&](int i, int j) { return some[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]; };
-    bool grown = true;
-    auto const mark = [&](int i, int j, bool there) {
-      if (!there || is(i, j)) return;
-      some[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
-          some[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = true;
-      grown = true;
-    };
-    // Whether what a row gives varies together with state j.
-    auto const varies_with = [&](MomentRow const& row, int j) {
-      for (int k = 0; k < states_; ++k)
-        if (passage_.moves(row, k) && is(k, j)) return true;
-      return false;
-    };
-    auto const vary_together = [&](MomentRow const& a, MomentRow const& b) {
-      for (int k = 0; k < states_; ++k)
-        if (passage_.moves(b, k) && varies_with(a, k)) return true;
-      return false;
-    };
+    StatePairs first(states_);
     for (int i = 0; i < states_; ++i) {
-      mark(i, i, random_.initial_variances[static_cast<std::size_t>(i)].has_value());
-      for (int j = 0; j <= i; ++j) mark(i, j, !is_zero(noise_(i, j)));
+      if (random_.initial_variances[static_cast<std::size_t>(i)]) first.add(i, i);
+      for (int j = 0; j <= i; ++j)
+        if (!is_zero(noise_(i, j))) first.add(i, j);
     }
-    while (std::exchange(grown, false)) {
-      for (int i = 0; i < states_; ++i)
-        for (int j = 0; j <= i; ++j) {
-          if (is(i, j)) continue;
-          MomentRow const &of_i = rules_[static_cast<std::size_t>(i)], &of_j = rules_[static_cast<std::size_t>(j)];
-          mark(i, j, source_.map ? vary_together(of_i, of_j) : varies_with(of_i, j) || varies_with(of_j, i));
-          for (MomentRow const& output : outputs_) mark(i, j, varies_with(output, i) && varies_with(output, j));
-        }
-      for (MomentRow const& output : outputs_) {
-        if (!passage_.by_points(output)) continue;
-        std::vector<bool> const corrected = corrected_by_points(output, some);
-        for (int i = 0; i < states_; ++i)
-          for (int j = 0; j <= i; ++j) mark(i, j, corrected[static_cast<std::size_t>(i)] && corrected[static_cast<std::size_t>(j)]);
-      }
-      if (factored_)  // what an elimination from the last state on fills, the factors have
-        for (int k = states_ - 1; k >= 0; --k)
-          for (int i = 0; i < k; ++i)
-            for (int j = 0; j <= i; ++j) mark(i, j, is(i, k) && is(j, k));
-    }
+    StatePairs const there =
+        covariance_pattern({passage_, rules_, outputs_, source_.map, random_.first_column, factored_}, std::move(first));
     int next = states_;
     for (int i = 0; i < states_; ++i)
       for (int j = 0; j <= i; ++j)
-        if (is(i, j)) {
+        if (there(i, j)) {
           stored_(i, j) = graph_.leaf(LeafKind::state, next++);
           entries_.emplace_back(i, j);
         }
@@ -372,79 +320,13 @@ class MomentWriter {
     return result;
   }
 
-  // --- what was at the last sample
-  /// A further state.
-  NodeId add_state(NodeId initial, NodeId derivative) {
-    source_.initial.push_back(initial);
-    source_.derivative.push_back(derivative);
-    return graph_.leaf(LeafKind::state, static_cast<int>(source_.derivative.size()) - 1);
-  }
-
-  void add_past(Moments& result) {
-    SincePastSample since;
-    auto const n = static_cast<std::size_t>(states_);
-    int next = static_cast<int>(source_.derivative.size());
-    for (int i = 0; i < next; ++i) since.begin.push_back(graph_.leaf(LeafKind::state, i));
-    since.states.assign(n * n, zero_);
-    for (int j = 0; j < states_; ++j) {
-      std::vector<NodeId> column(n, zero_), change(n, zero_);
-      bool const at_once = source_.map && !source_.stepped;  // the next sample is one step away
-      for (int i = 0; i < states_ && at_once; ++i)
-        change[static_cast<std::size_t>(i)] = passage_.with_state(rules_[static_cast<std::size_t>(i)], j);
-      // Between samples P is closed under A, so that C has its zeros.
-      for (int i = 0; i < states_; ++i)
-        if (!is_zero(at_once ? change[static_cast<std::size_t>(i)] : covariance_(i, j)))
-          column[static_cast<std::size_t>(i)] = graph_.leaf(LeafKind::state, next++);
-      if (!at_once) change = passage_.moved(rules_, column);
-      for (int i = 0; i < states_; ++i) {
-        auto const row = static_cast<std::size_t>(i);
-        if (is_zero(column[row])) continue;
-        add_state(zero_, change[row]);
-        since.begin.push_back(covariance_(i, j));
-        since.states[row * n + static_cast<std::size_t>(j)] = column[row];
-      }
+  MomentsSoFar so_far() {
+    MomentsSoFar out{source_, passage_, rules_, covariance_, {}, whole_gains_, length_};
+    for (Gain const& gain : gains_) {
+      out.intensities.push_back(gain.intensity);
+      if (!source_.stepped) out.gains.push_back(gain.rows);
     }
-    for (std::size_t d = 0; d < gains_.size(); ++d) add_summed_noise(d, since);
-    result.since = std::move(since);
-  }
-
-  void add_summed_noise(std::size_t d, SincePastSample& since) {
-    auto const n = static_cast<std::size_t>(states_);
-    bool const at_once = source_.map && !source_.stepped;
-    std::vector<bool> some(n);
-    for (bool grown = true; std::exchange(grown, false);)
-      for (std::size_t i = 0; i < n; ++i) {
-        if (some[i]) continue;
-        bool there = !is_zero(whole_gain(d, i));
-        for (std::size_t k = 0; k < n && !at_once; ++k)
-          there = there || (some[k] && passage_.moves(rules_[i], static_cast<int>(k)));
-        if (there) some[i] = grown = true;
-      }
-    int next = static_cast<int>(source_.derivative.size());
-    std::vector<NodeId> column(n, zero_);
-    for (std::size_t i = 0; i < n; ++i)
-      if (some[i]) column[i] = graph_.leaf(LeafKind::state, next++);
-    std::vector<NodeId> change = at_once ? std::vector<NodeId>(n, zero_) : passage_.moved(rules_, column);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (some[i]) {
-        add_product(change[i], whole_gain(d, i), gains_[d].intensity);
-        add_state(zero_, change[i]);
-        since.begin.push_back(zero_);
-      }
-      since.noises.push_back(column[i]);
-    }
-    since.sums.push_back(add_state(zero_, summed(gains_[d].intensity)));
-    since.begin.push_back(zero_);
-  }
-
-  /// What a noise gives to state i: per time; of a map, over its step.
-  NodeId whole_gain(std::size_t d, std::size_t i) const { return source_.stepped ? whole_gains_[d][i] : gains_[d].rows[i]; }
-
-  /// The next value, or the derivative, of the variance of a summed noise.
-  NodeId summed(NodeId intensity) {
-    if (!source_.stepped) return intensity;
-    NodeId const now = graph_.leaf(LeafKind::state, static_cast<int>(source_.derivative.size()));
-    return graph_.add(now, graph_.multiply(length_, intensity));
+    return out;
   }
 
   // --- at a sample
