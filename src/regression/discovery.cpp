@@ -14,7 +14,7 @@
 #include "regression/error_concerns.hpp"
 #include "regression/input_rules.hpp"
 #include "regression/outside_term.hpp"
-#include "regression/propagated_noise.hpp"
+#include "regression/residual_concerns.hpp"
 
 namespace sysid::regression {
 namespace {
@@ -26,15 +26,8 @@ constexpr int most_whitenings = 50;
 constexpr double settled_step = 0.02;
 /// Residual of all terms, of the target: rounding.
 constexpr double exact_below = 1e-10;
-/// Residual against noise from which on something is missing in the dictionary, and the least share that makes it worth a word.
-constexpr double settled_probability = 0.99, settled_sd = 0.05;  // of the coefficient
-constexpr double unexplained_above = 2;
-constexpr double unexplained_share = 1e-3;
-/// The same of forms on samples, whose derivatives are not exact.
-constexpr double unexplained_sampled = 3, unexplained_share_sampled = 0.03;
-/// Whitened residuals: over so many lags; chi^2 of as many degrees exceeds this once in a million; a row is worth less than half.
-constexpr Eigen::Index lags = 20;
-constexpr double far_from_white = 66, correlated_above = 2;
+/// A term that is needed, and a coefficient that is known: the least probability, and the largest sd as a part of it.
+constexpr double settled_probability = 0.99, settled_sd = 0.05;
 
 /// Of windows or samples for a choice among so many terms: more than twice as many; of a large dictionary a quarter more and
 /// twenty, which determine the residual of all terms together, since few of them are chosen.
@@ -68,21 +61,6 @@ std::vector<int> all_of(std::size_t count) {
   std::vector<int> all;
   for (std::size_t k = 0; k < count; ++k) all.push_back(static_cast<int>(k));
   return all;
-}
-
-/// Terms of which one is needed and not which: at least one is in, seldom both, neither for sure.
-void add_interchangeable(Equation const& equation, Eigen::MatrixXd const& joint, Concerns& concerns) {
-  for (int a = 0; a < joint.rows(); ++a)
-    for (int b = a + 1; b < joint.rows(); ++b) {
-      double const one = joint(a, a), other = joint(b, b), both = joint(a, b), any = one + other - both;
-      if (std::min(one, other) < 0.05 || any < 0.9 || both > 0.25 * std::min(one, other)) continue;
-      Concern concern{.kind = Concern::Kind::interchangeable, .terms = {a, b}, .value = any};
-      concern.clause = fmt::format(
-          "{} can replace each other: one is needed with probability {:.2f}, but the data do not show which one "
-          "(inclusion probabilities {:.2f} and {:.2f})",
-          names_of(equation, {a, b}), any, one, other);
-      concerns.push_back(std::move(concern));
-    }
 }
 
 class Finder {
@@ -293,23 +271,22 @@ class Finder {
       for (std::size_t a = 0; a < usable_.size(); ++a)
         for (std::size_t b = 0; b < usable_.size(); ++b)
           found_.joint(usable_[a], usable_[b]) = choice.joint(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
-      add_interchangeable(equation_, found_.joint, found_.concerns);
+      add(interchangeable_terms(equation_, found_.joint));
     }
     for (Concern& near : near_dependence(equation_, whitened_, found_.chosen.terms))
       if (std::any_of(near.terms.begin(), near.terms.end(), [&](int j) { return !is_settled(j); }))
         found_.concerns.push_back(std::move(near));
-    if (NoiseOfEquation const* noise = projection_.noise_of_equation()) {
-      Concerns const of_errors =
-          error_concerns(*noise, index_, errors_, runs_, !found_.chosen.terms.empty(), !found_.moving_average.empty());
-      found_.concerns.insert(found_.concerns.end(), of_errors.begin(), of_errors.end());
-    }
+    if (NoiseOfEquation const* noise = projection_.noise_of_equation())
+      add(error_concerns(*noise, index_, errors_, runs_, !found_.chosen.terms.empty(), !found_.moving_average.empty()));
     if (projection_.residual_size() == ResidualSize::one) {
       Columns const by_channels = found_.own_noise > 0 ? projection_.whitened(index_, weights_, 0) : whitened_;
       Eigen::VectorXd against_noise = by_channels.known;
       for (int const j : found_.chosen.terms)
         against_noise -= found_.terms[static_cast<std::size_t>(j)].coefficient * by_channels.terms.col(j);
-      check_residual(against_noise, residual.norm() / known);
-      check_independence(whitened_residual);
+      double const freedom = static_cast<double>(against_noise.size()) - static_cast<double>(found_.chosen.terms.size());
+      found_.noise_ratio = std::sqrt(against_noise.squaredNorm() / freedom);
+      add(unexplained_residual(found_.noise_ratio, residual.norm() / known, found_.own_noise > 0));
+      add(correlated_windows(whitened_residual));
     }
     if (!choice.converged) {
       Concern concern{.kind = Concern::Kind::no_convergence, .value = static_cast<double>(choice.iterations)};
@@ -325,30 +302,9 @@ class Finder {
     return needed && term.sd < settled_sd * std::abs(term.coefficient);
   }
 
-  void check_residual(Eigen::VectorXd const& residual, double share) {
-    double const freedom = static_cast<double>(residual.size()) - static_cast<double>(found_.chosen.terms.size());
-    found_.noise_ratio = std::sqrt(residual.squaredNorm() / freedom);
-    if (found_.noise_ratio < unexplained_above || share < unexplained_share) return;
-    Concern concern{.kind = Concern::Kind::unexplained, .value = found_.noise_ratio};
-    concern.clause = fmt::format(
-        "the residual is {:.3g} times what the measurement noise explains: an input or a term is "
-        "missing{}",
-        found_.noise_ratio, found_.own_noise > 0 ? ", or a recorded input is itself noisy" : "");
-    found_.concerns.push_back(std::move(concern));
-  }
-
-  // Independent rows are what sds and probabilities count on.
-  void check_independence(Eigen::VectorXd const& residual) {
-    Eigen::Index const rows = residual.size();
-    if (rows < 4 * lags || !(residual.squaredNorm() > 0)) return;
-    Portmanteau const seen = portmanteau(residual, lags);
-    double const worth = 1 + 2 * seen.correlations;
-    if (seen.statistic < far_from_white || worth < correlated_above) return;
-    Concern concern{.kind = Concern::Kind::correlated, .value = worth};
-    concern.clause =
-        fmt::format("the residual is correlated from window to window: {} windows are equivalent to about {:.0f} independent ones",
-                    rows, static_cast<double>(rows) / worth);
-    found_.concerns.push_back(std::move(concern));
+  void add(Concerns const& concerns) { found_.concerns.insert(found_.concerns.end(), concerns.begin(), concerns.end()); }
+  void add(std::optional<Concern> concern) {
+    if (concern) found_.concerns.push_back(std::move(*concern));
   }
 
   Equation const& equation_;
@@ -362,32 +318,6 @@ class Finder {
   Eigen::VectorXd errors_;   // of a difference equation; empty where they are rounding
   Eigen::VectorXd weights_;  // [J], those that whitened_ was last whitened with
 };
-
-// Of forms that know no covariance: the size of the residual alone, and more of it than a derivative may be off.
-void check_against_noise(Dictionary const& dictionary, std::span<Experiment const> experiments, Method const& method,
-                         Projection const& projection, Discovery& discovery) {
-  std::vector<Columns> const noise =
-      noise_of_columns(dictionary, experiments, *method.form, method.form_settings, projection, method.seed);
-  for (std::size_t e = 0; e < discovery.equations.size(); ++e) {
-    FoundEquation& found = discovery.equations[e];
-    Columns const& columns = projection.columns(static_cast<int>(e));
-    if (!found.found || noise[e].known.size() == 0) continue;
-    Eigen::VectorXd left = columns.known, expected = noise[e].known;
-    for (std::size_t k = 0; k < found.chosen.terms.size(); ++k) {
-      double const coefficient = found.chosen.coefficient(static_cast<Eigen::Index>(k));
-      left -= coefficient * columns.terms.col(found.chosen.terms[k]);
-      expected -= coefficient * noise[e].terms.col(found.chosen.terms[k]);
-    }
-    double const ratio = left.norm() / expected.norm(), share = left.norm() / columns.known.norm();
-    if (!(ratio > unexplained_sampled) || share < unexplained_share_sampled) continue;
-    Concern concern{.kind = Concern::Kind::unexplained, .value = ratio};
-    concern.clause = fmt::format(
-        "the residual is {:.3g} times what the measurement noise explains: an input or a term is missing, or the derivatives are "
-        "not accurate",
-        ratio);
-    found.concerns.push_back(std::move(concern));
-  }
-}
 
 }  // namespace
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
@@ -15,11 +14,10 @@
 #include "app/session/resolved.hpp"
 #include "app/session/session.hpp"
 #include "app/task/described_discovery.hpp"
+#include "app/task/discovery_conclusions.hpp"
 #include "core/system/interrupt.hpp"
-#include "core/text/number.hpp"
 #include "diagnostics/verdict.hpp"
 #include "discovery/difference_forecast.hpp"
-#include "discovery/discovery_findings.hpp"
 #include "discovery/discovery_verdict.hpp"
 #include "discovery/found_source.hpp"
 #include "discovery/idle_terms.hpp"
@@ -31,7 +29,6 @@
 #include "discovery/simulation_validation.hpp"
 #include "discovery/validation_findings.hpp"
 #include "experiment/experiments.hpp"
-#include "load/load.hpp"
 #include "regression/discovery.hpp"
 #include "report/file/discovery.hpp"
 
@@ -183,21 +180,6 @@ class Discover {
       if (counts[c] > 0) dictionary_.numbers.channels[c].noise_sd = std::sqrt(squares[c] / counts[c]);
   }
 
-  Findings interpolation_findings(std::optional<Validation> const& validation) const {
-    bool const simulated = validation && validation->report.structures.front().failure.empty();
-    Findings findings;
-    for (std::string const& name : interpolated_)
-      findings.push_back(
-          {FindingCode::steps_interpolated,
-           simulated ? Severity::note : Severity::warning,
-           {name},
-           fmt::format("the time steps of `{}` are unequal: the regression uses the record interpolated to equal steps{}", name,
-                       simulated ? ", the simulation uses the samples at their own times" : ""),
-           fmt::format("{}if it was sampled regularly, write `step` or `rate` in place of `time` in the data block",
-                       simulated ? "" : "take the coefficients and sds as approximate; ")});
-    return findings;
-  }
-
   // With the noise that the task gives.
   regression::Dictionary numbers() const {
     regression::Dictionary numbers = dictionary_.numbers;
@@ -232,9 +214,9 @@ class Discover {
                        {"statement_sha256", statement_digest(session_, task_)}};
     add_fitted_data(session_.file, data_, dictionary_.measured, report);
     DiscoveryReport discovery = described_discovery({what_, dictionary_, inner_, inner_sd_}, found, selector);
-    add_findings(found, discovery.equations, validation ? &*validation : nullptr, report.findings);
-    say_once(report.findings);
-    for (Finding& each : interpolation_findings(validation)) report.findings.push_back(std::move(each));
+    add_regression_findings(dictionary_, found, discovery.equations, validation ? &*validation : nullptr, report.findings);
+    bool const simulated = validation && validation->report.structures.front().failure.empty();
+    for (Finding& each : interpolation_findings(interpolated_, simulated)) report.findings.push_back(std::move(each));
     if (dictionary_.numbers.discrete && !structures.empty()) add_forecasts(found, discovery, report.findings);
     if (validation) {
       temper_by_simulation(validation->report, report.findings);
@@ -243,12 +225,12 @@ class Discover {
       discovery.validation = std::move(validation->report);
       discovery.free_runs = std::move(validation->free_runs);
     }
-    report.equations = equations(discovery);
+    report.equations = found_equations(discovery);
     if (!what_.candidates && !structures.empty()) structures.resize(1);
     FoundSource as_simulated = source;
-    as_simulated.noise_sd = simulated_noise(discovery);
-    add_source(as_simulated, structures, discovery, report.findings);
-    add_prior_findings(discovery, report.findings);
+    as_simulated.noise_sd = simulated_noise(dictionary_, discovery);
+    add_found_source(as_simulated, structures, discovery, report.findings);
+    add_prior_findings(dictionary_, discovery, report.findings);
     report.findings = merged(report.findings);
     report.tables = discovery_tables(discovery);
     report.settings = {{"selector", what_.selector}};
@@ -258,7 +240,7 @@ class Discover {
     report.resolved_text = resolved_discover(session_, task_, what_, seed_);
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began_;
     report.timing.emplace_back("wall_seconds", wall.count());
-    report.verdict = headline(discovery, report.equations, report.findings);
+    report.verdict = discovery_headline(discovery, report.equations, report.findings);
     if (!discovery.source.empty()) discovery.source = with_verdict(discovery.source, report.verdict, report.findings);
     report.discovery = std::move(discovery);
     keep_result(session_, task_, report);
@@ -266,39 +248,6 @@ class Discover {
       session_.notices << fmt::format("{}: the model that was found is `{}`\n", task_.name,
                                       (session_.result_folder(task_) / "found.sysid").string());
     return verdict_of(report.findings).pass ? ExitCode::success : ExitCode::doubtful;
-  }
-
-  // Per channel of the dictionary, SI; 0 where nothing was simulated.
-  std::vector<double> simulated_noise(DiscoveryReport const& discovery) const {
-    std::vector<double> noise(dictionary_.measured.channels.size());
-    if (!discovery.validation || !discovery.validation->structures.front().failure.empty()) return noise;
-    for (ValidatedChannel const& each : discovery.validation->structures.front().channels)
-      for (std::size_t c = 0; c < noise.size(); ++c)
-        if (Channel const& channel = dictionary_.measured.channels[c]; channel.name == each.channel)
-          noise[c] = channel.to_si(each.residual);
-    return noise;
-  }
-
-  // The fit is by the likelihood alone, so a prior may be far away.
-  void add_prior_findings(DiscoveryReport const& discovery, Findings& findings) const {
-    if (!discovery.validation) return;
-    for (ValidatedCoefficient const& each : discovery.validation->structures.front().coefficients)
-      for (InnerParameter const& inner : dictionary_.inner) {
-        if (!each.inside || inner.quantity.name != each.name) continue;
-        constexpr int draws = 1023;
-        std::vector<double> const prior = sorted_draws(inner, draws);
-        double const value = inner.quantity.to_si(each.value);
-        if (value >= prior.front() && value <= prior.back()) continue;
-        findings.push_back(
-            {FindingCode::prior_contradicted,
-             Severity::warning,
-             {each.name},
-             fmt::format("the record gives {} = {}{}, outside the range of {} draws of its prior ({} to {})", each.name,
-                         significant(each.value, 3), unit_after_number(each.unit), draws,
-                         significant(inner.quantity.from_si(prior.front()), 3),
-                         significant(inner.quantity.from_si(prior.back()), 3)),
-             "check the prior and its unit; if they are right, a term is missing. The fit in `found.sysid` includes the prior"});
-      }
   }
 
   // Of the chosen difference equations, on the parts of the data that were not used.
@@ -322,98 +271,6 @@ class Discover {
     }
     Findings of_forecast = forecast_findings(dictionary_, errors, discovery.forecast_rows);
     findings.insert(findings.end(), of_forecast.begin(), of_forecast.end());
-  }
-
-  // By simulation where that has validated a structure.
-  static std::vector<std::string> equations(DiscoveryReport const& discovery) {
-    if (discovery.validation && discovery.validation->structures.front().failure.empty())
-      return discovery.validation->structures.front().equations;
-    std::vector<std::string> all;
-    for (DiscoveredEquation const& each : discovery.equations)
-      if (!each.equation.empty()) all.push_back(each.equation);
-    return all;
-  }
-
-  static std::string headline(DiscoveryReport const& discovery, std::vector<std::string> const& equations,
-                              Findings const& findings) {
-    std::string terms = fmt::format("{}", fmt::join(equations, "; "));
-    for (DiscoveredEquation const& each : discovery.equations)
-      if (each.equation.empty()) terms += fmt::format("{}{}: no equation found", terms.empty() ? "" : "; ", each.target);
-    if (discovery.validation && discovery.validation->structures.front().failure.empty()) {
-      for (ValidatedCoefficient const& each : discovery.validation->structures.front().coefficients)
-        if (each.inside) terms += fmt::format("; {} = {}{}", each.name, significant(each.value, 4), unit_after_number(each.unit));
-    } else {
-      for (DiscoveryReport::Inner const& each : discovery.inner)
-        terms += fmt::format("; {} = {}{}", each.name, significant(each.value, 4), unit_after_number(each.unit));
-    }
-    return fmt::format("{}; {}{}{}", terms, discovery.answer, discovery.answer.empty() ? "" : "; ", verdict_of(findings).headline);
-  }
-
-  // A channel at rest is a channel that is constant.
-  void say_once(Findings& findings) const {
-    if (std::none_of(findings.begin(), findings.end(),
-                     [](Finding const& each) { return each.code == FindingCode::record_at_rest; }))
-      return;
-    std::erase_if(findings, [&](Finding const& each) {
-      return each.code == FindingCode::column_constant &&
-             std::any_of(dictionary_.measured.channels.begin(), dictionary_.measured.channels.end(),
-                         [&](Channel const& channel) { return channel.name == each.names.front(); });
-    });
-  }
-
-  void add_findings(regression::Discovery const& found, std::vector<DiscoveredEquation> const& described,
-                    Validation const* validation, Findings& findings) const {
-    for (std::size_t e = 0; e < found.equations.size(); ++e) {
-      regression::FoundEquation const& equation = found.equations[e];
-      for (regression::Concern const& concern : equation.concerns) {
-        std::vector<std::string> names;
-        for (int const term : concern.terms) names.push_back(dictionary_.equations[e].terms[static_cast<std::size_t>(term)].text);
-        Finding finding = finding_of(concern, found.equations.size() > 1 ? equation.name : "", std::move(names));
-        if (concern.input >= 0) {
-          std::string const& input = dictionary_.measured.inputs[static_cast<std::size_t>(concern.input)].name;
-          finding.names = {input};
-          if (concern.kind == regression::Concern::Kind::other_rule) finding.names.emplace_back(rule_name(concern.rule));
-          finding.message = fmt::format("input {}: {}", input, finding.message);
-        }
-        if (validation != nullptr)
-          temper_by_form(validation->report, concern, validation->order.front().equations[e]->terms, finding);
-        else
-          temper_by_terms(concern, equation.chosen.terms, finding);
-        if (std::find(findings.begin(), findings.end(), finding) == findings.end()) findings.push_back(std::move(finding));
-      }
-      if (validation == nullptr)
-        for (Finding& each : undecided_terms(equation, described[e])) findings.push_back(std::move(each));
-    }
-  }
-
-  // Written are structures that the program takes, one after the other: one may be no model that can be simulated.
-  void add_source(FoundSource const& source, std::vector<FoundStructure> const& structures, DiscoveryReport& discovery,
-                  Findings& findings) const {
-    std::vector<FoundStructure> written;
-    std::vector<std::string> excluded, names;
-    for (FoundStructure const& each : structures) {
-      written.push_back(each);
-      std::string text = source.text(written);
-      Source read((session_.result_folder(task_) / "found.sysid").string(), text);
-      Diagnostics diagnostics;
-      if (load(read, diagnostics)) {
-        discovery.source = std::move(text);
-        continue;
-      }
-      written.pop_back();
-      names.push_back(structure_text(dictionary_, each));
-      excluded.push_back(fmt::format("`{}` ({})", names.back(), diagnostics.all().front().message));
-    }
-    if (excluded.empty()) return;
-    std::string const help = "a model needs as many equations as states, each with a derivative in it";
-    if (written.empty())
-      findings.push_back({FindingCode::equation_no_model, Severity::warning, std::move(names),
-                          "the equation that was found is not a model that can be simulated: " + excluded.front(), help});
-    else
-      findings.push_back({FindingCode::candidates_left_out, Severity::warning, std::move(names),
-                          fmt::format("`found.sysid` contains {} of {} structures; the others cannot be simulated: {}",
-                                      written.size(), structures.size(), fmt::join(excluded, ", ")),
-                          help});
   }
 
   Session& session_;
