@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/numeric/unit.hpp"
+#include "data/cell/rounded_times.hpp"
 #include "data/input_rule.hpp"
 
 namespace sysid {
@@ -113,11 +114,6 @@ struct Experiment {
     return has_lags.empty() || has_lags[channel].empty() || has_lags[channel][index] != 0;
   }
 };
-
-/// [s] time: [N], N >= 2.
-double mean_step(std::span<double const> time);
-/// The first sample whose step from the one before differs from the mean by more than a part in a million; 0: none.
-std::size_t unequal_step(std::span<double const> time, double tolerance = 1e-6);
 
 /// Rows [begin, end), with the samples of `lags` rows before them as their history; 0: with that of the whole, if they begin there.
 /// The whole record shapes its inputs as before.

@@ -9,15 +9,6 @@
 
 namespace sysid {
 
-double mean_step(std::span<double const> time) { return (time.back() - time.front()) / static_cast<double>(time.size() - 1); }
-
-std::size_t unequal_step(std::span<double const> time, double tolerance) {
-  double const usual = mean_step(time);
-  for (std::size_t i = 1; i < time.size(); ++i)
-    if (!(std::fabs(time[i] - time[i - 1] - usual) <= tolerance * usual)) return i;
-  return 0;
-}
-
 InputSignal::InputSignal(InputRule rule, std::vector<double> time, std::vector<double> samples) {
   if (time.size() < 2 || time.size() != samples.size()) throw InternalError("an input signal needs two samples, each with a time");
   InputRuleRow const& row = row_of(rule);

@@ -35,15 +35,6 @@ bool rise(std::vector<double> const& values) {
   return values.size() > 2;
 }
 
-/// As they stand, or before they were rounded.
-bool of_equal_length(std::vector<double> const& values) {
-  constexpr double rounding = 1e-6;
-  double const step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
-  bool equal = true;
-  for (std::size_t i = 1; i < values.size() && equal; ++i) equal = std::fabs(values[i] - values[i - 1] - step) <= rounding * step;
-  return equal || equal_times_before_rounding(values).has_value();
-}
-
 Times in_unit(std::string const& column, std::vector<double> const& values, Unit const& unit) {
   Times times{column, fmt::format("`time {}`", column_text(column, unit.text)), {}};
   for (double const value : values) times.seconds.push_back((value - values.front()) * unit.scale);
@@ -158,7 +149,7 @@ class Finder {
       auto times = read(column);
       if (!times) continue;
       if (!is_temperature_name(column)) return times;
-      if (!temperature && !is_input(column) && of_equal_length(times->seconds)) temperature = std::move(times);
+      if (!temperature && !is_input(column) && has_equal_steps(times->seconds)) temperature = std::move(times);
     }
     return temperature;
   }
@@ -171,7 +162,7 @@ class Finder {
       if (column.empty() || is_measured(column) || is_input(column)) continue;
       if (auto const unit = stated_unit(column); unit && unit->dimension != unit_atom("s").value().dimension) continue;
       std::vector<double> const values = numbers(column);
-      if (values.size() < fewest || !of_equal_length(values)) continue;
+      if (values.size() < fewest || !has_equal_steps(values)) continue;
       double const step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
       if (step == 1 || only) return std::nullopt;
       only = read(column);
@@ -261,7 +252,7 @@ std::string find_measured_time(RecordFile const& file, RecordRequest const& requ
     if (unit && unit->dimension == unit_atom("s").value().dimension) continue;
     try {
       std::vector<double> const values = file.numbers(channel->column);
-      if (rise(values) && of_equal_length(values)) return channel->column;
+      if (rise(values) && has_equal_steps(values)) return channel->column;
     } catch (UserError const&) {
       continue;
     }

@@ -86,12 +86,4 @@ void add_leading_predictions(Candidate const& leading, LeadingDraws const& draws
   }
 }
 
-void add_timing(Session const& session, std::chrono::steady_clock::time_point began, Report& report) {
-  std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
-  report.timing.emplace_back("wall_seconds", wall.count());
-  report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
-  report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
-  report.timing.emplace_back("executor", std::string(name(session.options.execution.executor)));
-}
-
 }  // namespace sysid

@@ -1,7 +1,5 @@
 // What the page of every selection begins with and ends with, whichever back end has chosen.
 #pragma once
-#include <chrono>
-
 #include "app/selection/candidate.hpp"
 #include "app/session/session.hpp"
 #include "result/report.hpp"
@@ -27,7 +25,5 @@ struct LeadingDraws {
 /// Bands over the fitted rows, restoring forces, and whether unknown functions can be believed there.
 void add_leading_predictions(Candidate const& leading, LeadingDraws const& draws, std::uint64_t seed,
                              ExecutionOptions const& execution, Report& report);
-
-void add_timing(Session const& session, std::chrono::steady_clock::time_point began, Report& report);
 
 }  // namespace sysid

@@ -83,11 +83,7 @@ ExitCode conclude_fit(Session& session, int index, Task const& task, TaskCheckpo
                       Report report, std::chrono::steady_clock::time_point began, bool interrupted) {
   Verdict const verdict = verdict_of(report.findings);
   report.verdict = verdict.headline;
-  std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
-  report.timing.emplace_back("wall_seconds", wall.count());
-  report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
-  report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
-  report.timing.emplace_back("executor", std::string(name(session.options.execution.executor)));
+  add_timing(session, began, report);
   keep_result(session, task, report);
   if (interrupted) {
     session.notices << fmt::format("{}: interrupted; continue with {}\n", task.name, to_resume(session.options.surface));

@@ -253,6 +253,14 @@ std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& t
                      [&] { return otherwise(session, task, seed, verb.empty() ? verb_of(task) : verb, summary); });
 }
 
+void add_timing(Session const& session, std::chrono::steady_clock::time_point began, Report& report) {
+  std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - began;
+  report.timing.emplace_back("wall_seconds", wall.count());
+  report.timing.emplace_back("threads", static_cast<std::int64_t>(session.threads()));
+  report.timing.emplace_back("lanes", static_cast<std::int64_t>(session.options.execution.lanes));
+  report.timing.emplace_back("executor", std::string(name(session.options.execution.executor)));
+}
+
 ExitCode keep_complete(Session& session, Task const& task) {
   auto const folder = session.result_folder(task);
   auto verdict = nlohmann::json::object();  // a plain simulation has none

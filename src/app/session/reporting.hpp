@@ -1,5 +1,6 @@
 // What reports of all tasks share: model text, equations, priors, versions.
 #pragma once
+#include <chrono>
 #include <optional>
 
 #include "app/session/session.hpp"
@@ -49,6 +50,9 @@ std::string statement_digest(Session const& session, Task const& task);
 /// (empty: the task's own); nothing when they fit.
 std::optional<Diagnostic> stored_otherwise(Session const& session, Task const& task, std::optional<std::uint64_t> seed,
                                            std::string const& verb = {});
+
+/// How long it took, and on what.
+void add_timing(Session const& session, std::chrono::steady_clock::time_point began, Report& report);
 
 /// Says that a task is complete, with the verdict of its stored result, which stays as it is; the exit code of the run that made
 /// it: a script that is started again must not take a failed check for success.

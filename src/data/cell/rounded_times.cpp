@@ -144,6 +144,19 @@ std::optional<RoundedSteps> rounded_steps(std::span<double const> time, double s
                       shortest_between(1 / (most * scale), 1 / (least * scale))};
 }
 
+double mean_step(std::span<double const> time) { return (time.back() - time.front()) / static_cast<double>(time.size() - 1); }
+
+std::size_t unequal_step(std::span<double const> time, double part) {
+  double const usual = mean_step(time);
+  for (std::size_t i = 1; i < time.size(); ++i)
+    if (!(std::fabs(time[i] - time[i - 1] - usual) <= part * usual)) return i;
+  return 0;
+}
+
+bool has_equal_steps(std::span<double const> time) {
+  return unequal_step(time) == 0 || equal_times_before_rounding(time).has_value();
+}
+
 std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time, double unit) {
   double const middle = static_cast<double>(time.size() - 1) / 2;
   if (unit == 0) unit = last_unit(time);

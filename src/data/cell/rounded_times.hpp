@@ -1,10 +1,16 @@
-// Times of equal steps that a file holds with few digits.
+// Whether the steps of times are equal, as they stand or before they were written with few digits.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace sysid {
+
+/// [s] time: [N], N >= 2.
+double mean_step(std::span<double const> time);
+/// The first sample whose step from the one before differs from the mean by more than a part in a million; 0: none.
+std::size_t unequal_step(std::span<double const> time, double tolerance = 1e-6);
 
 /// The equal steps that rounded times come from; nothing where no equal steps give them.
 ///
@@ -15,6 +21,9 @@ namespace sysid {
 /// 20 units: of fewer digits, steps that differ look the same. Numbers of single precision were rounded to its last binary digit.
 /// time: as the numbers stand in the file, at least two, rising. unit: of their last digit; 0: it is found from them.
 std::optional<std::vector<double>> equal_times_before_rounding(std::span<double const> time, double unit = 0);
+
+/// Whether steps are equal, as the numbers stand or before they were rounded.
+bool has_equal_steps(std::span<double const> time);
 
 /// The unit of the last digit of these numbers, as they stand in the file.
 double last_digit(std::span<double const> time);

@@ -275,11 +275,8 @@ class Looking {
       if (!look_.columns[c].unread.empty() || values.size() < fewest || !keeps_increasing(values)) continue;
       if (auto const unit = unit_of_text(look_.columns[c].unit); unit && unit->dimension != unit_atom("s").value().dimension)
         continue;
-      double const step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
-      bool equal = true;
-      for (std::size_t i = 1; i < values.size() && equal; ++i) equal = std::fabs(values[i] - values[i - 1] - step) <= 1e-6 * step;
-      if (!equal && !equal_times_before_rounding(values)) continue;
-      if (step == 1 || only) return std::nullopt;
+      if (!has_equal_steps(values)) continue;
+      if (mean_step(values) == 1 || only) return std::nullopt;
       only = c;
     }
     return only;

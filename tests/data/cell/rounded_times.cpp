@@ -154,3 +154,16 @@ TEST_CASE("clocks that vary, few steps and equal ones are no rounding") {
   CHECK_FALSE(rounded_steps(at_random, 1e-3));
   CHECK_FALSE(rounded_steps(slow, 1e-3));
 }
+
+TEST_CASE("steps are equal as the numbers stand, or before they were rounded") {
+  std::vector<double> const as_they_stand = {0, 0.25, 0.5, 0.75, 1};
+  CHECK(mean_step(as_they_stand) == 0.25);
+  CHECK(unequal_step(as_they_stand) == 0);
+  CHECK(has_equal_steps(as_they_stand));
+  std::vector<double> const rounded = printed(0, 1.0 / 30, 300, 4);
+  CHECK(unequal_step(rounded) > 0);
+  CHECK(has_equal_steps(rounded));
+  std::vector<double> const uneven = {0, 0.25, 0.5, 0.8, 1};
+  CHECK(unequal_step(uneven) == 3);
+  CHECK_FALSE(has_equal_steps(uneven));
+}
