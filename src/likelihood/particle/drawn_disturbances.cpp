@@ -44,22 +44,17 @@ DrawnDisturbances draw_disturbances(Model model, ConstLanes parameters, Experime
     input.name += " (drawn)";
     model.inputs.push_back(std::move(input));
   }
-  auto const as_inputs = [&](NodeId root) {
-    return graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
-      Node const node = graph[leaf];
-      if (node.leaf_kind != LeafKind::disturbance) return std::nullopt;
-      return graph.leaf(LeafKind::input, first + node.index);
-    });
-  };
+  std::vector<NodeId> inputs;
+  for (std::size_t d = 0; d < model.disturbances.size(); ++d)
+    inputs.push_back(graph.leaf(LeafKind::input, first + static_cast<int>(d)));
+  replace_disturbances(model, inputs);
   Stream stream(key.with_step(starts));
   for (State& state : model.states) {
-    state.derivative = as_inputs(state.derivative);
     if (!state.initial_variance) continue;
     double const sd = std::sqrt(value(*state.initial_variance));
     state.initial = graph.add(state.initial, graph.constant(sd * stream.normal()));
     state.initial_variance.reset();
   }
-  model.disturbances.clear();
   return {std::move(model), std::move(experiment)};
 }
 

@@ -1,10 +1,9 @@
 // Leaves of disturbances become leaves of states, whose values the filter sets at every sample.
 #include "likelihood/particle/particle_model.hpp"
 
-#include <optional>
-
 #include "core/text/diagnostic.hpp"
 #include "likelihood/compiled_model.hpp"
+#include "model/replaced_disturbances.hpp"
 
 namespace sysid {
 namespace {
@@ -23,12 +22,8 @@ class Written {
       throw InternalError("particles of a model with algebraic unknowns or processes");
     for (int i = 0; i < made_.states; ++i) write_start(model.states[static_cast<std::size_t>(i)]);
     for (Disturbance const& each : model.disturbances) add_states(each);
-    for (int i = 0; i < made_.states; ++i) replace(model.states[static_cast<std::size_t>(i)].derivative);
-    for (NodeId& memory : model.memories) replace(memory);
-    for (Derived& each : model.derived) replace(each.value);
-    for (LaggedQuantity& each : model.lagged_quantities) replace(each.present);
-    for (Channel& channel : model.channels) replace(channel.noise);
-    model.disturbances.clear();
+    for (Channel const& channel : model.channels) find_observed(channel.noise);
+    replace_disturbances(model, sizes_);
     return std::move(made_);
   }
 
@@ -70,24 +65,15 @@ class Written {
     made_.model.states.push_back(std::move(state));
   }
 
-  void replace(NodeId& root) {
-    root = graph().substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
-      Node const& node = graph()[leaf];
-      if (node.leaf_kind != LeafKind::disturbance) return std::nullopt;
-      return sizes_[static_cast<std::size_t>(node.index)];
-    });
-  }
-
-  void replace(Distribution& noise) {
-    auto const look = [&](NodeId& root) {
+  void find_observed(Distribution const& noise) {
+    auto const look = [&](NodeId root) {
       graph().depends(root, [&](Node const& node) {
         if (node.leaf_kind == LeafKind::disturbance && node.operation == Operation::leaf)
           made_.noises[static_cast<std::size_t>(node.index)].observed = true;
         return false;
       });
-      replace(root);
     };
-    for (NodeId& argument : noise.arguments) look(argument);
+    for (NodeId const argument : noise.arguments) look(argument);
     if (noise.lower) look(*noise.lower);
     if (noise.upper) look(*noise.upper);
   }

@@ -2,7 +2,8 @@
 #include "likelihood/selection/drawn_simulation.hpp"
 
 #include <cmath>
-#include <optional>
+
+#include "model/replaced_disturbances.hpp"
 
 namespace sysid {
 
@@ -29,20 +30,7 @@ DrawnSimulation drawn_simulation(Model model) {
     values.push_back(graph.multiply(graph.unary(Operation::square_root, each.intensity), drawn_number));
     drawn.white.push_back(model.dynamics == Dynamics::continuous && !each.held);
   }
-  auto const replace = [&](NodeId& root) {
-    root = graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
-      Node const& node = graph[leaf];
-      if (node.leaf_kind != LeafKind::disturbance) return std::nullopt;
-      return values[static_cast<std::size_t>(node.index)];
-    });
-  };
-  for (State& state : model.states) replace(state.derivative);
-  for (NodeId& memory : model.memories) replace(memory);
-  for (Derived& each : model.derived) replace(each.value);
-  for (LaggedQuantity& each : model.lagged_quantities) replace(each.present);
-  for (Channel& channel : model.channels)
-    for (NodeId& argument : channel.noise.arguments) replace(argument);
-  model.disturbances.clear();
+  replace_disturbances(model, values);
   drawn.model = std::move(model);
   return drawn;
 }

@@ -6,6 +6,7 @@
 #include "core/numeric/statistics.hpp"
 #include "likelihood/particle/cases.hpp"
 #include "likelihood/trajectory.hpp"
+#include "model/replaced_disturbances.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -46,4 +47,25 @@ TEST_CASE("drawn disturbances: motion that is fast against the sampling has its 
   CHECK(variance_with(16) == doctest::Approx(1).epsilon(0.03));
   CHECK(variance_with(8) == doctest::Approx(1).epsilon(0.03));
   CHECK(variance_with(1) == doctest::Approx(0.9).epsilon(0.03));
+}
+
+TEST_CASE("a disturbance is replaced wherever a model reads it") {
+  Model model;
+  Graph& graph = model.graph;
+  NodeId const w = graph.leaf(LeafKind::disturbance, 0), x = graph.leaf(LeafKind::state, 0), u = graph.leaf(LeafKind::input, 0);
+  model.disturbances.emplace_back();
+  model.states.emplace_back().derivative = graph.add(x, w);
+  model.memories = {graph.multiply(x, w)};
+  model.derived.emplace_back().value = w;
+  model.lagged_quantities.emplace_back().present = w;
+  model.channels.emplace_back().noise.arguments = {w, x};
+  model.channels.front().noise.upper = w;
+  replace_disturbances(model, std::vector<NodeId>{u});
+  CHECK(model.disturbances.empty());
+  CHECK(model.states.front().derivative == graph.add(x, u));
+  CHECK(model.memories.front() == graph.multiply(x, u));
+  CHECK(model.derived.front().value == u);
+  CHECK(model.lagged_quantities.front().present == u);
+  CHECK(model.channels.front().noise.arguments == std::vector<NodeId>{u, x});
+  CHECK(*model.channels.front().noise.upper == u);
 }
