@@ -187,6 +187,15 @@ class Results(Desk):
         self.assertTrue(again.posterior.equals(fit.posterior))
         self.assertEqual(again.text, fit.text)
 
+    def test_a_pickle_has_no_other_files_of_the_folder(self):
+        pathlib.Path("other").mkdir()
+        pathlib.Path("other/record.csv").write_text("t\n0\n")
+        pathlib.Path("notes.txt").write_text("mine")
+        fit = sysid.load("decay.sysid").fit(output=".")
+        again = pickle.loads(pickle.dumps(fit))
+        self.assertEqual([each.name for each in again.folder.parent.iterdir()], [fit.task])
+        self.assertEqual(files_of(again.folder), files_of(fit.folder))
+
     def test_pickle_with_arrays(self):
         model = sysid.load("decay.sysid", data={"t": T, "d": D})
         kept = pickle.dumps(model.fit())

@@ -59,6 +59,14 @@ def stamp(folder: pathlib.Path) -> Optional[tuple]:
     return about.st_ino, about.st_mtime_ns, about.st_size
 
 
+def _made_from(folder: pathlib.Path) -> str:
+    """The task that a result was made from; "": none, or it is no result."""
+    try:
+        return json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("versions", {}).get("made_from", "")
+    except (OSError, ValueError, AttributeError):
+        return ""
+
+
 def placed(path: str, folder: str) -> str:
     """A path that was relative to a working directory, as it is to be written now."""
     return path if folder == os.getcwd() else os.path.join(folder, path)
@@ -224,8 +232,16 @@ class Result:
     def _repr_html_(self) -> str:
         return _display.result(self.summary, self.text, self.interrupted)
 
+    def _belonging(self) -> list[pathlib.Path]:
+        """The folders that its groups are read from: its own, that of what it was made from, those of predictions from it."""
+        source = _made_from(self.folder)
+        beside = [each for each in self._run.path.iterdir() if each.is_dir() and _made_from(each) == self.task]
+        return [self.folder, *([self._run.path / source] if source else []), *beside]
+
     def __getstate__(self) -> dict:
-        results = {str(path.relative_to(self._run.path)): path.read_bytes() for path in self._run.path.rglob("*") if path.is_file()}
+        # A folder of results may be any: with all that a user has in it.
+        files = [path for folder in self._belonging() for path in folder.rglob("*") if path.is_file()]
+        results = {str(path.relative_to(self._run.path)): path.read_bytes() for path in files}
         return {
             "path": self._file.path,
             "text": self._file.text,
