@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/replaced_disturbances.hpp"
+
 namespace sysid {
 
 DrawnDisturbances draw_disturbances(Model model, ConstLanes parameters, Experiment experiment, StreamKey key, int pieces) {

@@ -71,10 +71,10 @@ ReportTable fits_table(Comparison const& comparison) {
   return table;
 }
 
-/// Of fits with draws, by what each says of samples that it has not seen.
 /// An error, of which there is none where a score is infinite.
 std::string known(double error) { return std::isnan(error) ? "-" : fmt::format("{:.1f}", error); }
 
+/// Of fits with draws, by what each says of samples that it has not seen.
 ReportTable scores_table(ComparedScores const& scores) {
   ReportTable table;
   table.title = fmt::format("expected log predictive density (elpd) of {}, {}", counted(scores.samples, "sample"),
