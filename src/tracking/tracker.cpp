@@ -11,6 +11,7 @@
 #include "core/system/interrupt.hpp"
 #include "core/text/diagnostic.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "tracking/tracked_rows.hpp"
 
 namespace sysid {
 namespace {
@@ -23,54 +24,7 @@ constexpr int most_lags = 1000;   // of a model that looks back
 constexpr double far_off = 8;     // expected sds: no sample of a right model
 constexpr int most_in_a_row = 2;  // samples of a channel; more, one after the other, are a change
 
-/// With a column for every channel: an experiment may lack those that come last.
-Schedule schedule_of(TrackedProgram const& program, Experiment experiment, SolverSettings const& solver) {
-  experiment.measured.resize(program.channels.size());
-  if (program.program->source.map) return {*program.program, experiment, SolverSettings{}};
-  return {*program.program, experiment, solver};
-}
-
-LaneArray parameters_of(TrackedProgram const& program, std::span<double const> intensities, std::span<double const> moments) {
-  LaneArray all(program.tracked + program.moments, 1);
-  for (int j = 0; j < program.tracked; ++j) all(j, 0) = intensities.empty() ? 0 : intensities[static_cast<std::size_t>(j)];
-  for (int m = 0; m < program.moments; ++m) all(program.tracked + m, 0) = moments[static_cast<std::size_t>(m)];
-  return all;
-}
-
-/// Records of all rows of an experiment [rows x records]; false where they are not finite.
-bool records_along(TrackedProgram const& program, SolverSettings const& solver, ExecutionOptions const& execution,
-                   Experiment const& experiment, LaneArray const& parameters, LaneArray& records) {
-  int const rows = static_cast<int>(experiment.time.size());
-  Simulator const simulator(program.program, schedule_of(program, experiment, solver), execution);
-  records = LaneArray(rows * program.records, 1);
-  Outcome outcome;
-  simulator.records(parameters, 0, rows, records, {&outcome, 1});
-  return outcome.ok;
-}
-
-UserError diverged(Experiment const& experiment, std::int64_t row) {
-  return UserError({Severity::error,
-                    "",
-                    fmt::format("the filter has no finite values at row {} of {}", row, experiment.name),
-                    std::nullopt,
-                    {},
-                    "the model diverges on these rows: check the record there, use a smaller --drift, or fit the model again"});
-}
-
 }  // namespace
-
-std::vector<double> moments_of(TrackedProgram const& program, StatePrior const& states, TrackedPrior const& parameters) {
-  std::vector<double> moments(static_cast<std::size_t>(program.moments));
-  for (int i = 0; i < program.size(); ++i) {
-    bool const state = i < program.states;
-    moments[static_cast<std::size_t>(i)] = state ? states.mean(i) : parameters.mean(i - program.states);
-    for (int j = 0; j <= i; ++j)
-      if (int const place = program.place(i, j); place >= 0 && state == (j < program.states))
-        moments[static_cast<std::size_t>(place)] =
-            state ? states.covariance(i, j) : parameters.covariance(i - program.states, j - program.states);
-  }
-  return moments;
-}
 
 Tracker::Tracker(TrackedProgram program, SolverSettings solver, ExecutionOptions execution, TrackedPrior parameters,
                  StatePrior states, TrackingOptions options)
@@ -276,68 +230,6 @@ Alarm Tracker::respond(Experiment const& experiment, int index, DetectedJump con
   std::tie(alarm.after, alarm.after_sd) = value_of(jump.parameter, moments_[static_cast<std::size_t>(entry)], variance(entry));
   detector_.forget();
   return alarm;
-}
-
-StatePrior states_along(TrackedProgram const& program, SolverSettings const& solver, ExecutionOptions const& execution,
-                        Experiment const& experiment, StatePrior const& first, TrackedPrior const& parameters, bool corrects) {
-  TrackedPrior known = parameters;
-  known.covariance.setZero();
-  Experiment along = experiment;
-  if (!corrects) std::fill(along.scored.begin(), along.scored.end(), std::uint8_t{0});
-  LaneArray records;
-  int const rows = static_cast<int>(along.time.size()), n = program.states;
-  StatePrior prior{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), true};
-  if (!records_along(program, solver, execution, along, parameters_of(program, {}, moments_of(program, first, known)), records))
-    throw diverged(experiment, experiment.first_row);
-  Eigen::MatrixXd path(n, rows);
-  for (int i = 0; i < rows; ++i)
-    for (int s = 0; s < n; ++s) path(s, i) = records(i * program.records + program.after + s, 0);
-  prior.mean = path.rowwise().mean();
-  path.colwise() -= prior.mean;
-  prior.covariance = 4 * path * path.transpose() / rows;
-  return prior;
-}
-
-SolverSettings steps_for_tracking(SolverSettings const& solver) {
-  SolverRow const& row = solver.row();
-  if (solver.fixed_step() && !row.exact && row.in_program) return solver;
-  SolverSettings fixed;
-  fixed.method = "rk4";
-  return fixed;
-}
-
-SolverSettings tracking_solver(TrackedProgram const& program, SolverSettings solver, ExecutionOptions const& execution,
-                               Experiment const& experiment, StatePrior const& first, TrackedPrior const& parameters) {
-  if (program.program->source.map || solver.as_model) return solver;
-  constexpr int rows_compared = 400;
-  int const most_substeps = std::max(64, 2 * solver.substeps);  // those of the fit are compared once, however many
-  Experiment const part = slice(experiment, 0, std::min<int>(rows_compared, static_cast<int>(experiment.time.size())), 0);
-  LaneArray const start = parameters_of(program, {}, moments_of(program, first, parameters));
-  LaneArray coarse, fine;
-  bool solved = records_along(program, solver, execution, part, start, coarse);
-  for (; solver.substeps < most_substeps; solver.substeps *= 2) {
-    SolverSettings finer = solver;
-    finer.substeps *= 2;
-    bool const now = records_along(program, finer, execution, part, start, fine);
-    bool agree = solved && now;
-    for (int i = 0; agree && i < static_cast<int>(part.time.size()); ++i)
-      for (auto const& channel : program.channels) {
-        int const row = i * program.records;
-        if (std::isnan(fine(row + channel.innovation, 0))) continue;
-        double const apart = std::fabs(coarse(row + channel.innovation, 0) - fine(row + channel.innovation, 0));
-        agree = agree && apart < 0.01 * std::sqrt(fine(row + channel.variance, 0));
-      }
-    if (agree) return solver;
-    std::swap(coarse, fine);
-    solved = now;
-  }
-  throw UserError(
-      {Severity::error,
-       "",
-       fmt::format("{} steps of {} between two samples are not enough for tracking", most_substeps, solver.method),
-       std::nullopt,
-       {},
-       "the equations are too stiff for the sampling interval: remove the fast dynamics from the model, or sample faster"});
 }
 
 }  // namespace sysid

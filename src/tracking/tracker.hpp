@@ -110,21 +110,4 @@ class Tracker {
   std::vector<double> scratch_;
 };
 
-/// Means and covariances as the program has them.
-std::vector<double> moments_of(TrackedProgram const& program, StatePrior const& states, TrackedPrior const& parameters);
-
-/// A state somewhere along a record: the mean and four times the covariance of what a simulation with the mean parameters passes
-/// through. first: the states at its beginning. The rows are filtered where `corrects`.
-StatePrior states_along(TrackedProgram const& program, SolverSettings const& solver, ExecutionOptions const& execution,
-                        Experiment const& experiment, StatePrior const& first, TrackedPrior const& parameters, bool corrects);
-
-/// A solver with fixed steps, fine enough that halving them moves the innovations along the experiment's first rows by less than a
-/// hundredth of their sds; UserError where 64 steps are not enough.
-SolverSettings tracking_solver(TrackedProgram const& program, SolverSettings solver, ExecutionOptions const& execution,
-                               Experiment const& experiment, StatePrior const& first, TrackedPrior const& parameters);
-
-/// The method that tracking integrates with, where the solver of a fit is `solver`: itself if its steps are fixed and it is no
-/// exact one, which needs equations that are linear in the states and the parameters; else rk4.
-SolverSettings steps_for_tracking(SolverSettings const& solver);
-
 }  // namespace sysid

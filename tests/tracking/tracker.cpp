@@ -5,6 +5,7 @@
 
 #include "linear_algebra/decompositions.hpp"
 #include "made_oscillator.hpp"
+#include "tracking/tracking_steps.hpp"
 
 using namespace sysid;
 

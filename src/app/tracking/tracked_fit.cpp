@@ -22,6 +22,7 @@
 #include "experiment/record_request.hpp"
 #include "model/lags.hpp"
 #include "report/file/stored_files.hpp"
+#include "tracking/tracking_steps.hpp"
 
 namespace sysid {
 namespace {
