@@ -229,3 +229,9 @@ TEST_CASE("a cycle takes its moves in turn, each from where the one before ended
   CHECK(std::fabs(mean - 1) < 0.04);
   CHECK(square == doctest::Approx(1).epsilon(0.05));
 }
+
+TEST_CASE("what acceptances move a scale by is 1 at first and settles") {
+  CHECK(metropolis::learning_gain(0.5, 1) == 1);
+  CHECK(metropolis::learning_gain(0.5, 100) == doctest::Approx(4 * std::pow(100.0, -0.6)));
+  CHECK(metropolis::learning_gain(metropolis::best_acceptance, 1'000'000) < 0.002);
+}

@@ -63,9 +63,7 @@ void Adaptation::learn_scale(Info const& info) {
   }
   if (walks > 0) ++walks_;
   if (moves == 0) return;
-  // 1 / (a (1 - a)) is the gain that is optimal in one dimension (Garthwaite, Fan and Sisson 2016); n^-0.6 lets it settle.
-  double const gain = 1 / (best_acceptance * (1 - best_acceptance)) * elementary::pow(static_cast<double>(walks_), -0.6);
-  log_scale_ += std::min(1.0, gain) * (acceptance / moves - best_acceptance);
+  log_scale_ += learning_gain(best_acceptance, walks_) * (acceptance / moves - best_acceptance);
 }
 
 void Adaptation::learn_shape(State const& state, std::span<char const> away) {

@@ -58,8 +58,7 @@ void DifferenceMoves::learn(State const& state, Info const& info, int first, int
     ++moves;
   }
   if (moves > 0) {
-    double const gain = 1 / (best_acceptance * (1 - best_acceptance)) * elementary::pow(static_cast<double>(iteration_), -0.6);
-    log_scale_ += std::min(1.0, gain) * (acceptance / moves - best_acceptance);
+    log_scale_ += learning_gain(best_acceptance, iteration_) * (acceptance / moves - best_acceptance);
     scale_ = elementary::exp(log_scale_);
   }
   if (iteration_ % entry_interval != 0) return;

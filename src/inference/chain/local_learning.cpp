@@ -31,10 +31,8 @@ void LocalLearning::learn(Info const& info) {
   }
   if (moves == 0) return;
   ++iterations_;
-  // As for the walk's scale (Garthwaite, Fan and Sisson 2016).
-  double const gain =
-      1 / (autoregressive_acceptance * (1 - autoregressive_acceptance)) * elementary::pow(static_cast<double>(iterations_), -0.6);
-  log_step_ = std::min(0.0, log_step_ + std::min(1.0, gain) * (acceptance / moves - autoregressive_acceptance));
+  double const off = acceptance / moves - autoregressive_acceptance;
+  log_step_ = std::min(0.0, log_step_ + learning_gain(autoregressive_acceptance, iterations_) * off);
   step_ = elementary::exp(log_step_);
 }
 

@@ -85,6 +85,10 @@ LaneArray states_of(State const& state, int width, ChainOf const& chain_of) {
 
 }  // namespace
 
+double learning_gain(double best, std::uint64_t n) {
+  return std::min(1.0, 1 / (best * (1 - best)) * elementary::pow(static_cast<double>(n), -0.6));
+}
+
 Move decide(StreamKey key, State& state, std::size_t w, ConstLanes proposed, int lane, double log_prior, double log_likelihood,
             Odds odds) {
   Move move;

@@ -27,6 +27,14 @@ struct Proposal {
 /// What the scales of moves that start from where a chain stands are tuned to.            Roberts, Gelman and Gilks 1997
 inline constexpr double best_acceptance = 0.234;
 
+/// What an acceptance beyond the best moves the logarithm of a step by, as a part of what it is beyond, the n-th time that it is
+/// learnt:
+///
+///   min(1, n^-0.6 / (a (1 - a))),   a the best acceptance
+///
+/// 1 / (a (1 - a)) is optimal in one dimension (Garthwaite, Fan and Sisson 2016); n^-0.6 lets it settle.
+double learning_gain(double best, std::uint64_t n);
+
 /// Moves from where a chain stands: random walks, and in `share` of them, drawn by chance, autoregressive moves about a mixture.
 /// Either kind leaves the posterior as it is, so a fixed mixture of them does.
 struct LocalMoves {

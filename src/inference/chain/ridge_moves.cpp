@@ -269,9 +269,8 @@ void RidgeMoves::learn(Info const& info) {
   ++steps_;
   double acceptance = 0;
   for (Move const& move : info) acceptance += move.acceptance_probability;
-  double const gain =
-      1 / (best_ridge_acceptance * (1 - best_ridge_acceptance)) * elementary::pow(static_cast<double>(steps_), -0.6);
-  log_length_ += std::min(1.0, gain) * (acceptance / static_cast<double>(info.size()) - best_ridge_acceptance);
+  log_length_ +=
+      learning_gain(best_ridge_acceptance, steps_) * (acceptance / static_cast<double>(info.size()) - best_ridge_acceptance);
 }
 
 nlohmann::json RidgeMoves::store() const {
