@@ -245,6 +245,25 @@ std::optional<Quantity> Evaluator::statistic(ast::Call const& call) {
   return Quantity{Quantity::Kind::number, {*result}, row.pure ? Unit{} : of[0].unit, "", of[0].of, {}, {}, nullptr};
 }
 
+void Evaluator::refuse_unknown(ast::Reference const& reference, Span span) {
+  std::string const path = path_of(reference);
+  std::vector<std::string> names = known_names();
+  for (CommandRow const& row : commands()) names.emplace_back(row.name);  // a command misspelt reads like a quantity
+  std::string near = did_you_mean(path, names);
+  if (std::string ours = instead_of_command(path); !ours.empty()) near = std::move(ours);
+  if (find(series_functions(), path) != nullptr) near = fmt::format("write `{}(CHANNEL)`", path);
+  auto const* text = reference.index.size() == 1 ? std::get_if<ast::Text>(&reference.index.front().node) : nullptr;
+  if (text != nullptr) near = fmt::format("write `{}.{}`", reference.name.text, text->value);
+  if (results_.empty())
+    refuse(span, fmt::format("there is no `{}`: no task has been run yet", path),
+           !near.empty() ? near : "expressions at the prompt use results; run a fit first");
+  else if (result(path) != nullptr)
+    refuse(span, fmt::format("`{}` is a task, not a quantity", path),
+           fmt::format("`{}.NAME` is one of its quantities; `show {}` shows all of it", path, path));
+  else
+    refuse(span, fmt::format("no result has a `{}`", path), near);
+}
+
 bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
   auto const put = [&](Quantity quantity) {
     quantity.label = unparse(tree);
@@ -276,22 +295,7 @@ bool Evaluator::resolve(ast::Expression& tree, std::vector<Quantity>& found) {
       put(std::move(*quantity));
       return true;
     }
-    std::string const path = path_of(*reference);
-    std::vector<std::string> names = known_names();
-    for (CommandRow const& row : commands()) names.emplace_back(row.name);  // a command misspelt reads like a quantity
-    std::string near = did_you_mean(path, names);
-    if (std::string ours = instead_of_command(path); !ours.empty()) near = std::move(ours);
-    if (find(series_functions(), path) != nullptr) near = fmt::format("write `{}(CHANNEL)`", path);
-    auto const* text = reference->index.size() == 1 ? std::get_if<ast::Text>(&reference->index.front().node) : nullptr;
-    if (text != nullptr) near = fmt::format("write `{}.{}`", reference->name.text, text->value);
-    if (results_.empty())
-      refuse(tree.span, fmt::format("there is no `{}`: no task has been run yet", path),
-             !near.empty() ? near : "expressions at the prompt use results; run a fit first");
-    else if (result(path) != nullptr)
-      refuse(tree.span, fmt::format("`{}` is a task, not a quantity", path),
-             fmt::format("`{}.NAME` is one of its quantities; `show {}` shows all of it", path, path));
-    else
-      refuse(tree.span, fmt::format("no result has a `{}`", path), near);
+    refuse_unknown(*reference, tree.span);
     return false;
   }
   bool sound = true;

@@ -58,6 +58,8 @@ class Evaluator {
   std::pair<RecordSeries const*, SeriesColumn const*> along_record(std::string const& path, std::string* of) const;
   /// Calls and names that only the prompt knows replaced by names of `found`.
   bool resolve(ast::Expression& tree, std::vector<Quantity>& found);
+  /// A name that no result has.
+  void refuse_unknown(ast::Reference const& reference, Span span);
   std::optional<Unit> unit(std::string const& text) const;
   std::vector<std::string> known_names() const;
   void refuse(Span span, std::string message, std::string help = {});

@@ -231,7 +231,7 @@ TEST_CASE("a cycle takes its moves in turn, each from where the one before ended
 }
 
 TEST_CASE("what acceptances move a scale by is 1 at first and settles") {
-  CHECK(metropolis::learning_gain(0.5, 1) == 1);
-  CHECK(metropolis::learning_gain(0.5, 100) == doctest::Approx(4 * std::pow(100.0, -0.6)));
-  CHECK(metropolis::learning_gain(metropolis::best_acceptance, 1'000'000) < 0.002);
+  CHECK(learning_gain(0.5, 1) == 1);
+  CHECK(learning_gain(0.5, 100) == doctest::Approx(4 * std::pow(100.0, -0.6)));
+  CHECK(learning_gain(best_acceptance, 1'000'000) < 0.002);
 }

@@ -39,6 +39,69 @@ Span own_name(ast::Item const& item) {
       item);
 }
 
+/// An item beside those that it refers to, where one of them is about to change.
+struct Dependence {
+  std::vector<ItemReference> references;
+  Span own;              // its name
+  bool reaches = false;  // depends on what changes
+  bool held = false;     // and a task that was run depends on it
+};
+
+std::vector<Dependence> dependences(std::vector<WorkItem> const& items, std::size_t changed, std::set<std::string> const& run) {
+  std::vector<Dependence> nodes;
+  for (WorkItem const& item : items) {
+    ast::Item const tree = item_of(item.text);
+    nodes.push_back({references_of(tree), own_name(tree)});
+  }
+  nodes[changed].reaches = true;
+  auto const refers = [&](Dependence const& node, std::size_t to) {
+    return std::any_of(node.references.begin(), node.references.end(),
+                       [&](ItemReference const& each) { return each.kind == items[to].kind && each.name == items[to].name; });
+  };
+  // Blocks do not refer in circles; as many passes as there are items reach all.
+  for (std::size_t pass = 0; pass < items.size(); ++pass)
+    for (std::size_t i = 0; i < items.size(); ++i)
+      for (std::size_t j = 0; j < items.size() && !nodes[i].reaches; ++j)
+        nodes[i].reaches = items[i].kind != ItemKind::task && nodes[j].reaches && refers(nodes[i], j);
+  for (std::size_t pass = 0; pass < items.size(); ++pass)
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      bool const holds = items[i].kind == ItemKind::task ? run.contains(items[i].name) : nodes[i].held;
+      for (std::size_t j = 0; j < items.size() && holds; ++j)
+        nodes[j].held = nodes[j].held || (nodes[j].reaches && refers(nodes[i], j));
+    }
+  return nodes;
+}
+
+/// What is kept of what was called so.
+using KeptNames = std::map<std::pair<ItemKind, std::string>, std::string>;
+
+/// Where the text refers to what is kept, and how.
+std::map<std::uint32_t, std::pair<std::uint32_t, std::string>> renamed(Dependence const& node, KeptNames const& names) {
+  std::map<std::uint32_t, std::pair<std::uint32_t, std::string>> all;
+  for (ItemReference const& each : node.references)
+    if (auto const name = names.find({each.kind, each.name}); name != names.end())
+      all[each.span.begin] = {each.span.end, name->second};
+  return all;
+}
+
+/// A task that was run goes on with what it was run on.
+WorkItem reading_kept(WorkItem task, Dependence const& node, KeptNames const& names) {
+  task.text = replaced(task.text, renamed(node, names));
+  // Without a name of its own it would be called after the model's new one.
+  if (node.own.begin == node.own.end) task.text = task.name + " = " + task.text;
+  return task;
+}
+
+/// As it was, under its new name.
+WorkItem kept(WorkItem item, Dependence const& node, KeptNames const& names) {
+  item.kept_of = item.name;
+  item.name = names.at({item.kind, item.kept_of});
+  auto places = renamed(node, names);
+  places[node.own.begin] = {node.own.end, item.name};
+  item.text = replaced(item.text, places);
+  return item;
+}
+
 }  // namespace
 
 std::string title_of(ItemKind kind, std::string_view name) { return std::string(word_of(kind)) + " " + std::string(name); }
@@ -178,35 +241,9 @@ std::vector<std::string> Workspace::put(WorkItem item, std::set<std::string> con
 }
 
 std::vector<std::string> Workspace::keep_earlier(std::size_t changed, std::set<std::string> const& run) {
-  struct Node {
-    std::vector<ItemReference> references;
-    Span own;
-    bool reaches = false;  // depends on what changes
-    bool held = false;     // and a task that was run depends on it
-  };
-  std::vector<Node> nodes;
-  for (WorkItem const& item : items) {
-    ast::Item const tree = item_of(item.text);
-    nodes.push_back({references_of(tree), own_name(tree)});
-  }
-  nodes[changed].reaches = true;
-  auto const refers = [&](Node const& node, std::size_t to) {
-    return std::any_of(node.references.begin(), node.references.end(),
-                       [&](ItemReference const& each) { return each.kind == items[to].kind && each.name == items[to].name; });
-  };
-  // Blocks do not refer in circles; as many passes as there are items reach all.
-  for (std::size_t pass = 0; pass < items.size(); ++pass)
-    for (std::size_t i = 0; i < items.size(); ++i)
-      for (std::size_t j = 0; j < items.size() && !nodes[i].reaches; ++j)
-        nodes[i].reaches = items[i].kind != ItemKind::task && nodes[j].reaches && refers(nodes[i], j);
-  for (std::size_t pass = 0; pass < items.size(); ++pass)
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      bool const holds = items[i].kind == ItemKind::task ? run.contains(items[i].name) : nodes[i].held;
-      for (std::size_t j = 0; j < items.size() && holds; ++j)
-        nodes[j].held = nodes[j].held || (nodes[j].reaches && refers(nodes[i], j));
-    }
+  std::vector<Dependence> const nodes = dependences(items, changed, run);
   if (!nodes[changed].held) return {};
-  std::map<std::pair<ItemKind, std::string>, std::string> names;
+  KeptNames names;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (!nodes[i].held) continue;
     int number = 1;
@@ -217,22 +254,9 @@ std::vector<std::string> Workspace::keep_earlier(std::size_t changed, std::set<s
   std::vector<std::string> notices;
   for (std::size_t i = 0; i < items.size(); ++i) {
     bool const task = items[i].kind == ItemKind::task && run.contains(items[i].name);
-    std::map<std::uint32_t, std::pair<std::uint32_t, std::string>> renamed;
-    for (ItemReference const& each : nodes[i].references)
-      if (auto const name = names.find({each.kind, each.name}); name != names.end())
-        renamed[each.span.begin] = {each.span.end, name->second};
-    WorkItem item = items[i];
-    if (task) {
-      item.text = replaced(item.text, renamed);
-      // Without a name of its own it would be called after the model's new one.
-      if (nodes[i].own.begin == nodes[i].own.end) item.text = item.name + " = " + item.text;
-    }
+    WorkItem item = task ? reading_kept(items[i], nodes[i], names) : items[i];
     if (nodes[i].held) {
-      WorkItem earlier = items[i];
-      earlier.kept_of = earlier.name;
-      earlier.name = names[{earlier.kind, earlier.name}];
-      renamed[nodes[i].own.begin] = {nodes[i].own.end, earlier.name};
-      earlier.text = replaced(earlier.text, renamed);
+      WorkItem earlier = kept(items[i], nodes[i], names);
       if (i == changed)
         notices.push_back(fmt::format("the earlier `{}` is kept as `{}`, with the tasks that used it", item.name, earlier.name));
       after.push_back(std::move(earlier));
