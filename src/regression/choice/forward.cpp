@@ -79,39 +79,55 @@ class Path {
   std::vector<Step> taken_;
 };
 
-}  // namespace
+/// With so many terms to choose from, every size being as probable.
+class Score {
+ public:
+  Score(LinearProblem const& problem, Triangle const& triangle, double base)
+      : count_(static_cast<std::size_t>(problem.terms.cols())),
+        always_(static_cast<std::size_t>(std::count(problem.always.begin(), problem.always.end(), 1))),
+        most_(std::max(always_, std::min(count_, static_cast<std::size_t>(triangle.rows) / 2))),
+        base_(base),
+        rows_(triangle.rows - static_cast<double>(always_)) {}
 
-std::span<SettingRow const> settings() { return rows; }
-
-Choice choose(LinearProblem const& problem, Settings const& settings, SelectorContext const&) {
-  Triangle const triangle = reduce(problem);
-  double const least = settings.real("least_ratio");
-  auto const count = static_cast<std::size_t>(problem.terms.cols());
-  auto const always = static_cast<std::size_t>(std::count(problem.always.begin(), problem.always.end(), 1));
-  std::size_t const most = std::max(always, std::min(count, static_cast<std::size_t>(triangle.rows) / 2));
-  auto const evidence = [&](std::vector<int> const& terms) { return default_log_evidence(triangle, problem.always, terms); };
-  Path path(problem, triangle);
-  double const base = path.squares(), rows = triangle.rows - static_cast<double>(always);
-  // With so many terms to choose from, every size being as probable.
-  auto const score = [&](std::size_t terms, double squares) {
-    auto const free = static_cast<double>(count - always), size = static_cast<double>(terms - always);
-    return log_bayes_factor(CoefficientPrior::beta_prime, rows, size, squares, base, rows) + elementary::lgamma(size + 1) +
+  double operator()(std::size_t terms, double squares) const {
+    auto const free = static_cast<double>(count_ - always_), size = static_cast<double>(terms - always_);
+    return log_bayes_factor(CoefficientPrior::beta_prime, rows_, size, squares, base_, rows_) + elementary::lgamma(size + 1) +
            elementary::lgamma(free - size + 1) - elementary::lgamma(free + 1);
-  };
-  std::size_t chosen = path.taken().size();
-  double best = score(chosen, base);
-  while (path.go_on(most)) {
+  }
+  /// Terms that the way goes up to.
+  std::size_t most() const { return most_; }
+  std::size_t always() const { return always_; }
+
+ private:
+  std::size_t count_, always_, most_;
+  double base_, rows_;
+};
+
+/// So many terms of the way, and their score.
+struct Place {
+  std::size_t terms;
+  double score;
+};
+
+/// Where a term has a ratio below `least`, or, where that is 0, where the score is best.
+Place walk(Path& path, Score const& score, double least) {
+  Place chosen{path.taken().size(), score(path.taken().size(), path.squares())};
+  while (path.go_on(score.most())) {
     std::size_t const size = path.taken().size();
     if (least > 0) {
       if (path.taken().back().ratio < least) break;
-      chosen = size;
-    } else if (double const each = score(size, path.squares()); each > best) {
-      best = each;
-      chosen = size;
+      chosen.terms = size;
+    } else if (double const each = score(size, path.squares()); each > chosen.score) {
+      chosen = {size, each};
     }
   }
-  std::vector<int> terms = path.first(chosen);
-  for (bool lowered = least == 0; lowered;) {
+  return chosen;
+}
+
+/// Terms go as long as the score rises.
+void drop_needless(LinearProblem const& problem, Triangle const& triangle, Score const& score, double best,
+                   std::vector<int>& terms) {
+  for (bool lowered = true; lowered;) {
     lowered = false;
     for (std::size_t k = 0; k < terms.size() && !lowered; ++k) {
       if (problem.always[static_cast<std::size_t>(terms[k])] != 0) continue;
@@ -124,13 +140,27 @@ Choice choose(LinearProblem const& problem, Settings const& settings, SelectorCo
       }
     }
   }
+}
+
+}  // namespace
+
+std::span<SettingRow const> settings() { return rows; }
+
+Choice choose(LinearProblem const& problem, Settings const& settings, SelectorContext const&) {
+  Triangle const triangle = reduce(problem);
+  double const least = settings.real("least_ratio");
+  Path path(problem, triangle);
+  Score const score(problem, triangle, path.squares());
+  auto const [chosen, best] = walk(path, score, least);
+  std::vector<int> terms = path.first(chosen);
+  if (least == 0) drop_needless(problem, triangle, score, best, terms);
 
   Choice choice;
   choice.iterations = static_cast<int>(path.taken().size());
-  choice.terms.resize(count);
+  choice.terms.resize(static_cast<std::size_t>(problem.terms.cols()));
   auto const offer = [&](std::vector<int> const& each) {
     Support support = support_of(triangle, each);
-    support.log_evidence = evidence(each);
+    support.log_evidence = default_log_evidence(triangle, problem.always, each);
     return support;
   };
   choice.chosen = offer(terms);
@@ -147,7 +177,7 @@ Choice choose(LinearProblem const& problem, Settings const& settings, SelectorCo
   choice.supports.push_back(choice.chosen);
   for (int distance = 1; distance <= neighbours; ++distance) {
     auto const away = static_cast<std::size_t>(distance);
-    if (chosen >= always + away) choice.supports.push_back(offer(path.first(chosen - away)));
+    if (chosen >= score.always() + away) choice.supports.push_back(offer(path.first(chosen - away)));
     if (chosen + away <= path.taken().size()) choice.supports.push_back(offer(path.first(chosen + away)));
   }
   return choice;
