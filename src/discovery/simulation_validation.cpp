@@ -261,6 +261,14 @@ class Validator {
     out.draws = draws_of(m);
     out.bounded = scored.bounded;
     out.follows = scored.errors.follows;
+    add_coefficients(m, out);
+    add_channels(m, out);
+    return out;
+  }
+
+  /// And the equations with them.
+  void add_coefficients(std::size_t m, ValidatedStructure& out) const {
+    ShootingFit const& fit = fits_->fit(m);
     std::vector<std::vector<PrintedTerm>> printed(dictionary_.equations.size());
     for (std::size_t j = 0; j < models_[m].coefficients.size(); ++j) {
       ValidatedModel::Coefficient const& of = models_[m].coefficients[j];
@@ -291,6 +299,11 @@ class Validator {
                                   .inside = true});
     }
     for (std::size_t e = 0; e < printed.size(); ++e) out.equations.push_back(equation_text(dictionary_.equations[e], printed[e]));
+  }
+
+  void add_channels(std::size_t m, ValidatedStructure& out) const {
+    ShootingFit const& fit = fits_->fit(m);
+    Scored const& scored = scored_[m];
     for (std::size_t c = 0; c < models_[m].channels.size(); ++c) {
       Channel const& channel = dictionary_.measured.channels[models_[m].channels[c]];
       double const noise = noise_of(models_[m].channels[c], fit.noise_sd[c]);
@@ -309,7 +322,6 @@ class Validator {
       }
       out.channels.push_back(std::move(of));
     }
-    return out;
   }
 
   void report(Validation& out) const {

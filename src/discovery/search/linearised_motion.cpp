@@ -79,6 +79,90 @@ struct Freed {
   }
 };
 
+/// columns: all of them, whose products with each other are `products`; terms: those of the least squares.
+Beside beside_of(Eigen::MatrixXd const& columns, Eigen::VectorXd const& known, Eigen::MatrixXd const& products,
+                 Terms const& terms) {
+  auto const p = static_cast<Eigen::Index>(terms.size());
+  if (p == 0) return {products, columns.transpose() * known, {}, {}, {}, known.squaredNorm()};
+  Beside beside;
+  Eigen::MatrixXd chosen(columns.rows(), p);
+  for (Eigen::Index i = 0; i < p; ++i) chosen.col(i) = columns.col(terms[static_cast<std::size_t>(i)]);
+  OrthogonalTriangular const factored(chosen);
+  Eigen::MatrixXd const basis = factored.basis(), triangle = factored.triangle();
+  Eigen::MatrixXd const onto = basis.transpose() * columns;
+  Eigen::VectorXd const part = basis.transpose() * known;
+  Eigen::VectorXd residual = known - basis * part;
+  residual -= basis * (basis.transpose() * residual).eval();
+  beside.gram = products - onto.transpose() * onto;
+  beside.dots = columns.transpose() * residual;
+  Eigen::MatrixXd const inverse = solve_upper(triangle, Eigen::MatrixXd::Identity(p, p));
+  beside.inverse = inverse * inverse.transpose();
+  beside.along = inverse * onto;
+  beside.estimate = inverse * part;
+  beside.squares = residual.squaredNorm();
+  return beside;
+}
+
+/// The best of the moves that take up to two terms out and up to two others in: so many of each kind.
+class BestMoves {
+ public:
+  /// others: columns that may come in.
+  BestMoves(Beside const& beside, std::vector<int> others, int most)
+      : beside_(beside),
+        others_(std::move(others)),
+        best_{{{Best(most), Best(most), Best(most)}, {Best(most), Best(most), Best(most)}, {Best(most), Best(most), Best(most)}}} {}
+
+  double pairs() const { return static_cast<double>(others_.size()) * static_cast<double>(others_.size()) / 2; }
+
+  /// Where the terms `out` go, with what comes free.
+  void consider(Freed const& freed, std::vector<int> const& out, bool with_pairs) {
+    double const base = beside_.squares + freed.rise;
+    std::array<Best, 3>& kinds = best_[out.size()];
+    if (!out.empty() && base < kinds[0].worst()) kinds[0].offer(base, out, {});
+    std::vector<double> norms, dots;
+    for (int const j : others_) {
+      double norm = beside_.gram(j, j), dot = beside_.dots(j);
+      for (std::size_t f = 0; f < freed.along.size(); ++f) {
+        norm += freed.along[f](j) * freed.along[f](j);
+        dot += freed.along[f](j) * freed.residual[f];
+      }
+      norms.push_back(norm);
+      dots.push_back(dot);
+      double const squares = base - dot * dot / norm;
+      if (squares < kinds[1].worst()) kinds[1].offer(squares, out, {j});
+    }
+    if (with_pairs) consider_pairs(freed, out, norms, dots);
+  }
+
+  std::vector<LinearisedMotion::Move> all() const {
+    std::vector<LinearisedMotion::Move> all;
+    for (auto const& kinds : best_)
+      for (Best const& each : kinds) all.insert(all.end(), each.moves().begin(), each.moves().end());
+    return all;
+  }
+
+ private:
+  void consider_pairs(Freed const& freed, std::vector<int> const& out, std::vector<double> const& norms,
+                      std::vector<double> const& dots) {
+    double const base = beside_.squares + freed.rise;
+    Best& kind = best_[out.size()][2];
+    for (std::size_t a = 0; a < others_.size(); ++a)
+      for (std::size_t b = a + 1; b < others_.size(); ++b) {
+        double cross = beside_.gram(others_[a], others_[b]);
+        for (Eigen::RowVectorXd const& row : freed.along) cross += row(others_[a]) * row(others_[b]);
+        double const determinant = norms[a] * norms[b] - cross * cross;
+        if (!(determinant > independent * norms[a])) continue;
+        double const gain =
+            (dots[a] * dots[a] * norms[b] - 2 * dots[a] * dots[b] * cross + dots[b] * dots[b] * norms[a]) / determinant;
+        if (base - gain < kind.worst()) kind.offer(base - gain, out, {others_[a], others_[b]});
+      }
+  }
+
+  Beside const& beside_;
+  std::vector<int> others_;
+  std::array<std::array<Best, 3>, 3> best_;  // by terms that go, and that come
+};
+
 }  // namespace
 
 LinearisedMotion::LinearisedMotion(std::vector<SegmentSlopes> const& slopes, Eigen::VectorXd const& at, Settings settings)
@@ -157,80 +241,28 @@ WeighedTerms LinearisedMotion::weigh(Terms terms) const {
 }
 
 std::vector<LinearisedMotion::Move> LinearisedMotion::moves(Terms const& terms, int most) const {
-  auto const p = static_cast<Eigen::Index>(terms.size()), k = columns_.cols();
-  Beside beside;
-  if (p > 0) {
-    Eigen::MatrixXd chosen(columns_.rows(), p);
-    for (Eigen::Index i = 0; i < p; ++i) chosen.col(i) = columns_.col(terms[static_cast<std::size_t>(i)]);
-    OrthogonalTriangular const factored(chosen);
-    Eigen::MatrixXd const basis = factored.basis(), triangle = factored.triangle();
-    Eigen::MatrixXd const onto = basis.transpose() * columns_;
-    Eigen::VectorXd const part = basis.transpose() * known_;
-    Eigen::VectorXd residual = known_ - basis * part;
-    residual -= basis * (basis.transpose() * residual).eval();
-    beside.gram = products_ - onto.transpose() * onto;
-    beside.dots = columns_.transpose() * residual;
-    Eigen::MatrixXd const inverse = solve_upper(triangle, Eigen::MatrixXd::Identity(p, p));
-    beside.inverse = inverse * inverse.transpose();
-    beside.along = inverse * onto;
-    beside.estimate = inverse * part;
-    beside.squares = residual.squaredNorm();
-  } else {
-    beside = {products_, columns_.transpose() * known_, {}, {}, {}, known_.squaredNorm()};
-  }
+  Beside const beside = beside_of(columns_, known_, products_, terms);
   std::vector<int> others, droppable;
-  for (int j = 0; j < k; ++j)
+  for (int j = 0; j < columns_.cols(); ++j)
     if (usable(j) && !std::binary_search(terms.begin(), terms.end(), j) && beside.gram(j, j) > independent) others.push_back(j);
-  for (int i = 0; i < p; ++i)
-    if (!always(terms[static_cast<std::size_t>(i)])) droppable.push_back(i);
-
-  std::array<std::array<Best, 3>, 3> best{
-      {{Best(most), Best(most), Best(most)}, {Best(most), Best(most), Best(most)}, {Best(most), Best(most), Best(most)}}};
-  double const pairs = static_cast<double>(others.size()) * static_cast<double>(others.size()) / 2;
-  auto const consider = [&](Freed const& freed, std::vector<int> const& out, bool with_pairs) {
-    double const base = beside.squares + freed.rise;
-    std::array<Best, 3>& kinds = best[out.size()];
-    if (!out.empty() && base < kinds[0].worst()) kinds[0].offer(base, out, {});
-    std::vector<double> norms, dots;
-    for (int const j : others) {
-      double norm = beside.gram(j, j), dot = beside.dots(j);
-      for (std::size_t f = 0; f < freed.along.size(); ++f) {
-        norm += freed.along[f](j) * freed.along[f](j);
-        dot += freed.along[f](j) * freed.residual[f];
-      }
-      norms.push_back(norm);
-      dots.push_back(dot);
-      double const squares = base - dot * dot / norm;
-      if (squares < kinds[1].worst()) kinds[1].offer(squares, out, {j});
-    }
-    for (std::size_t a = 0; with_pairs && a < others.size(); ++a)
-      for (std::size_t b = a + 1; b < others.size(); ++b) {
-        double cross = beside.gram(others[a], others[b]);
-        for (Eigen::RowVectorXd const& row : freed.along) cross += row(others[a]) * row(others[b]);
-        double const determinant = norms[a] * norms[b] - cross * cross;
-        if (!(determinant > independent * norms[a])) continue;
-        double const gain =
-            (dots[a] * dots[a] * norms[b] - 2 * dots[a] * dots[b] * cross + dots[b] * dots[b] * norms[a]) / determinant;
-        if (base - gain < kinds[2].worst()) kinds[2].offer(base - gain, out, {others[a], others[b]});
-      }
-  };
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    if (!always(terms[i])) droppable.push_back(static_cast<int>(i));
+  BestMoves best(beside, std::move(others), most);
   auto const count = static_cast<double>(droppable.size());
-  consider({}, {}, true);
+  double const pairs = best.pairs();
+  best.consider({}, {}, true);
   for (std::size_t a = 0; a < droppable.size(); ++a) {
     Freed one;
     one.add(beside, droppable[a]);
-    consider(one, {terms[static_cast<std::size_t>(droppable[a])]}, count * pairs <= most_pairs);
+    best.consider(one, {terms[static_cast<std::size_t>(droppable[a])]}, count * pairs <= most_pairs);
     for (std::size_t b = a + 1; b < droppable.size(); ++b) {
       Freed two;
       two.add(beside, droppable[a], droppable[b]);
-      consider(two, {terms[static_cast<std::size_t>(droppable[a])], terms[static_cast<std::size_t>(droppable[b])]},
-               count * count / 2 * pairs <= most_pairs);
+      best.consider(two, {terms[static_cast<std::size_t>(droppable[a])], terms[static_cast<std::size_t>(droppable[b])]},
+                    count * count / 2 * pairs <= most_pairs);
     }
   }
-  std::vector<Move> all;
-  for (auto const& kinds : best)
-    for (Best const& each : kinds) all.insert(all.end(), each.moves().begin(), each.moves().end());
-  return all;
+  return best.all();
 }
 
 std::vector<Terms> built_up(LinearisedMotion const& motion, Terms const& others, std::size_t most) {
