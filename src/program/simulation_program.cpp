@@ -166,55 +166,69 @@ class Compilation {
 
   /// Splits the channel's sums and emits what is left to do at each sample.
   void compile_observation(int channel) {
-    std::vector<NodeId> sums = program_.source.channels[static_cast<std::size_t>(channel)].sums;
-    if (!adjoint_.direct.empty()) {
-      std::vector<NodeId> const& direct = adjoint_.direct[static_cast<std::size_t>(channel)];
-      for (std::size_t k = 0; k < direct.size(); ++k) {
-        if (graph_.is_constant(direct[k], 0)) continue;
-        program_.reverse.direct.push_back({static_cast<int>(sums_.size() + sums.size()), static_cast<int>(k)});
-        sums.push_back(direct[k]);
-      }
-    }
+    std::vector<NodeId> const sums = sums_of(channel);
     program_.first_sums.push_back(static_cast<int>(sums_.size()));
     std::vector<NodeId> const& correct = program_.source.channels[static_cast<std::size_t>(channel)].correct;
     std::vector<NodeId> roots = sums;
     roots.insert(roots.end(), correct.begin(), correct.end());
-    Algebra algebra(graph_, roots);
-    std::vector<Goal> goals;
-    std::vector<NodeId> data_terms;
-    std::map<NodeId, NodeId> place_of;  // term -> its place holder: sums of one channel share accumulators
+    Observation of{channel, Algebra(graph_, roots), {}, {}, {}};
     for (NodeId const sum : sums) {
       std::vector<SumTerm> terms;
-      for (Product term : algebra.expand(sum)) {
-        NodeId factor = term.negative ? graph_.negate(term.parameter) : term.parameter;
-        term.negative = false;
-        term.parameter = graph_.constant(1);
-        bool const at_step = !term.numerator.empty() || !term.denominator.empty();
-        NodeId const value = at_step ? algebra.product(term) : term.data;
-        auto const [place, fresh] = place_of.try_emplace(value, 0);
-        if (fresh) {
-          if (at_step) {
-            int const accumulator = program_.registers.accumulators++;
-            place->second = graph_.leaf(LeafKind::unknown, accumulator_leaf + accumulator);
-            goals.push_back(
-                {algebra.sum({algebra.single(place->second), term}), accumulator_bank + static_cast<std::uint32_t>(accumulator)});
-          } else if (graph_.is_constant(value, 1)) {
-            place->second = epilogue_uniform(channel);
-          } else {
-            place->second = epilogue_uniform(static_cast<int>(program_.source.channels.size()) + data_sums_++);
-            data_terms.push_back(value);
-          }
-        }
-        terms.push_back({factor, place->second});
-      }
+      for (Product const& term : of.algebra.expand(sum)) terms.push_back(split(term, of));
       program_.running_sums.push_back(running(terms));
       sums_.push_back(std::move(terms));
     }
     for (std::size_t i = 0; i < correct.size(); ++i)
-      if (!is_state(correct[i], i)) goals.push_back({algebra.rewrite(correct[i]), state_bank + static_cast<std::uint32_t>(i)});
-    add_records(channel, algebra, goals);
-    program_.observe.push_back(section(goals, correct.empty() ? Order::goal_by_goal : Order::eager));
-    program_.data_sums.push_back(table(data_terms));
+      if (!is_state(correct[i], i))
+        of.goals.push_back({of.algebra.rewrite(correct[i]), state_bank + static_cast<std::uint32_t>(i)});
+    add_records(channel, of.algebra, of.goals);
+    program_.observe.push_back(section(of.goals, correct.empty() ? Order::goal_by_goal : Order::eager));
+    program_.data_sums.push_back(table(of.data_terms));
+  }
+
+  /// Those of the source, and behind them what an adjoint needs of the channel directly.
+  std::vector<NodeId> sums_of(int channel) {
+    std::vector<NodeId> sums = program_.source.channels[static_cast<std::size_t>(channel)].sums;
+    if (adjoint_.direct.empty()) return sums;
+    std::vector<NodeId> const& direct = adjoint_.direct[static_cast<std::size_t>(channel)];
+    for (std::size_t k = 0; k < direct.size(); ++k) {
+      if (graph_.is_constant(direct[k], 0)) continue;
+      program_.reverse.direct.push_back({static_cast<int>(sums_.size() + sums.size()), static_cast<int>(k)});
+      sums.push_back(direct[k]);
+    }
+    return sums;
+  }
+
+  /// A channel whose sums are being split.
+  struct Observation {
+    int channel;
+    Algebra algebra;
+    std::vector<Goal> goals;
+    std::vector<NodeId> data_terms;     // that are summed once per data set
+    std::map<NodeId, NodeId> place_of;  // term -> its place holder: sums of one channel share accumulators
+  };
+
+  /// What parameters give to a term, and a place holder for the sum of the rest.
+  SumTerm split(Product term, Observation& of) {
+    NodeId const factor = term.negative ? graph_.negate(term.parameter) : term.parameter;
+    term.negative = false;
+    term.parameter = graph_.constant(1);
+    bool const at_step = !term.numerator.empty() || !term.denominator.empty();
+    NodeId const value = at_step ? of.algebra.product(term) : term.data;
+    auto const [place, fresh] = of.place_of.try_emplace(value, 0);
+    if (!fresh) return {factor, place->second};
+    if (at_step) {
+      int const accumulator = program_.registers.accumulators++;
+      place->second = graph_.leaf(LeafKind::unknown, accumulator_leaf + accumulator);
+      of.goals.push_back(
+          {of.algebra.sum({of.algebra.single(place->second), term}), accumulator_bank + static_cast<std::uint32_t>(accumulator)});
+    } else if (graph_.is_constant(value, 1)) {
+      place->second = epilogue_uniform(of.channel);
+    } else {
+      place->second = epilogue_uniform(static_cast<int>(program_.source.channels.size()) + data_sums_++);
+      of.data_terms.push_back(value);
+    }
+    return {factor, place->second};
   }
 
   /// Of those that are computed at that time.
