@@ -127,71 +127,93 @@ void ProcessModel::find_coefficients(std::vector<std::vector<int>>& of_channel) 
   if (integrated == static_cast<std::size_t>(with_prior)) of_channel.assign(read.size(), {});
 }
 
+/// The parametric part on its way.
+struct ProcessModel::Writing {
+  Model parametric;
+  std::vector<NodeId> outputs;                      // hyper-parameters and sds of noise
+  std::vector<std::vector<int>> arguments, slopes;  // of each channel, among parametric.derived
+
+  int record(NodeId value) {
+    parametric.derived.push_back({{}, value, true});
+    return static_cast<int>(parametric.derived.size()) - 1;
+  }
+};
+
 ProcessModel::ProcessModel(Model model, bool free_start, std::string const& method) : model_(std::move(model)), reduced_(model_) {
   std::vector<std::vector<int>> coefficients;
   find_coefficients(coefficients);
-  Model parametric = model_;
-  Graph& graph = parametric.graph;
-  parametric.derived.clear();
-  remove_processes(parametric);
-  std::vector<NodeId> outputs;
-  std::vector<std::vector<int>> arguments(model_.channels.size()), slopes(model_.channels.size());  // among parametric.derived
-  auto const record = [&](NodeId value) {
-    parametric.derived.push_back({{}, value, true});
-    return static_cast<int>(parametric.derived.size()) - 1;
-  };
-  for (std::size_t c = 0; c < model_.channels.size(); ++c) {
-    std::optional<gaussian_process::Covariance> covariance;
-    ProcessChannel process_channel{static_cast<int>(c), {*gaussian_process::find_kernel("constant"), {}}, {}, 0, {}, 0, {}, {}};
-    for (Process const& process : model_.processes) {
-      if (process.channel != static_cast<int>(c)) continue;
-      auto own = covariance_of(process, static_cast<int>(arguments[c].size()));
-      covariance = covariance ? *covariance + own : std::move(own);
-      for (NodeId const argument : process.arguments) arguments[c].push_back(record(argument));
-      for (KernelUse const& kernel : process.kernels)
-        for (NodeId const hyper_parameter : kernel.hyper_parameters) {
-          process_channel.hyper_parameters.push_back(static_cast<int>(outputs.size()));
-          outputs.push_back(hyper_parameter);
-        }
-    }
-    if (!covariance) throw InternalError("a channel without a process");
-    process_channel.covariance = std::move(*covariance);
-    Channel& channel = parametric.channels[c];
-    NodeId const centre = centre_of(graph, channel);
-    for (NodeId const argument : channel.noise.arguments)
-      if (argument != centre) {
-        process_channel.noise_sd = static_cast<int>(outputs.size());
-        outputs.push_back(argument);
-      }
-    for (int const p : coefficients[c]) {
-      Parameter& fixed = reduced_.parameters[static_cast<std::size_t>(p)];
-      auto const number = [&](std::size_t i) { return graph.constant_value(fixed.prior->arguments[i]).value(); };
-      process_channel.coefficients.push_back({p, number(0), number(1)});
-      slopes[c].push_back(record(graph.differentiate(centre_of(graph, channel), graph.leaf(LeafKind::parameter, p))));
-      fixed.value = fixed.prior->arguments[0];
-      fixed.prior.reset();
-    }
-    channels_.push_back(std::move(process_channel));
-  }
+  std::size_t const channels = model_.channels.size();
+  Writing writing{model_, {}, std::vector<std::vector<int>>(channels), std::vector<std::vector<int>>(channels)};
+  writing.parametric.derived.clear();
+  remove_processes(writing.parametric);
+  for (std::size_t c = 0; c < channels; ++c) add_channel(static_cast<int>(c), coefficients[c], writing);
   std::erase_if(reduced_.sampling_order,
                 [&](int p) { return !reduced_.parameters[static_cast<std::size_t>(p)].prior.has_value(); });
+  compile_covariance_parameters(writing);
+  parametric_ = compile(std::move(writing.parametric), free_start, method);
+  find_records(writing);
+}
+
+void ProcessModel::add_channel(int index, std::vector<int> const& coefficients, Writing& writing) {
+  auto const c = static_cast<std::size_t>(index);
+  Graph& graph = writing.parametric.graph;
+  std::vector<NodeId>& outputs = writing.outputs;
+  std::optional<gaussian_process::Covariance> covariance;
+  ProcessChannel process_channel{index, {*gaussian_process::find_kernel("constant"), {}}, {}, 0, {}, 0, {}, {}};
+  for (Process const& process : model_.processes) {
+    if (process.channel != index) continue;
+    auto own = covariance_of(process, static_cast<int>(writing.arguments[c].size()));
+    covariance = covariance ? *covariance + own : std::move(own);
+    for (NodeId const argument : process.arguments) writing.arguments[c].push_back(writing.record(argument));
+    for (KernelUse const& kernel : process.kernels)
+      for (NodeId const hyper_parameter : kernel.hyper_parameters) {
+        process_channel.hyper_parameters.push_back(static_cast<int>(outputs.size()));
+        outputs.push_back(hyper_parameter);
+      }
+  }
+  if (!covariance) throw InternalError("a channel without a process");
+  process_channel.covariance = std::move(*covariance);
+  Channel& channel = writing.parametric.channels[c];
+  NodeId const centre = centre_of(graph, channel);
+  for (NodeId const argument : channel.noise.arguments)
+    if (argument != centre) {
+      process_channel.noise_sd = static_cast<int>(outputs.size());
+      outputs.push_back(argument);
+    }
+  for (int const p : coefficients) {
+    Parameter& fixed = reduced_.parameters[static_cast<std::size_t>(p)];
+    auto const number = [&](std::size_t i) { return graph.constant_value(fixed.prior->arguments[i]).value(); };
+    process_channel.coefficients.push_back({p, number(0), number(1)});
+    writing.slopes[c].push_back(writing.record(graph.differentiate(centre_of(graph, channel), graph.leaf(LeafKind::parameter, p))));
+    fixed.value = fixed.prior->arguments[0];
+    fixed.prior.reset();
+  }
+  channels_.push_back(std::move(process_channel));
+}
+
+void ProcessModel::compile_covariance_parameters(Writing& writing) {
+  Graph& graph = writing.parametric.graph;
   std::vector<NodeId> leaves;
   for (std::size_t p = 0; p < model_.parameters.size(); ++p) leaves.push_back(graph.leaf(LeafKind::parameter, static_cast<int>(p)));
   // Parameters that are fixed for all experiments need no rows of their own.
-  for (NodeId& output : outputs)
+  for (NodeId& output : writing.outputs)
     output = graph.substitute(output, [&](NodeId leaf) -> std::optional<NodeId> {
       Parameter const& parameter = model_.parameters[static_cast<std::size_t>(graph[leaf].index)];
       return parameter.per_experiment ? std::nullopt : parameter.value;
     });
-  covariance_parameters_ = compile_kernel(graph, leaves, outputs);
-  parametric_ = compile(std::move(parametric), free_start, method);
+  covariance_parameters_ = compile_kernel(graph, leaves, writing.outputs);
+}
+
+/// Where the compiled model records centres, arguments of the processes and slopes by the coefficients.
+void ProcessModel::find_records(Writing const& writing) {
   for (int r = 0; r < static_cast<int>(parametric_->records.size()); ++r) {
     CompiledModel::Record const& one = parametric_->records[static_cast<std::size_t>(r)];
     if (one.kind == CompiledModel::Record::Kind::centre) channels_[static_cast<std::size_t>(one.index)].centre = r;
     if (one.kind != CompiledModel::Record::Kind::derived) continue;
+    auto const among = [&](std::vector<int> const& all) { return std::find(all.begin(), all.end(), one.index) != all.end(); };
     for (std::size_t c = 0; c < channels_.size(); ++c) {
-      if (std::find(arguments[c].begin(), arguments[c].end(), one.index) != arguments[c].end()) channels_[c].arguments.push_back(r);
-      if (std::find(slopes[c].begin(), slopes[c].end(), one.index) != slopes[c].end()) channels_[c].slopes.push_back(r);
+      if (among(writing.arguments[c])) channels_[c].arguments.push_back(r);
+      if (among(writing.slopes[c])) channels_[c].slopes.push_back(r);
     }
   }
 }

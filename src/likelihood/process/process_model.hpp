@@ -52,7 +52,11 @@ class ProcessModel {
   LaneArray parameters_of_covariance(ConstLanes parameters) const;
 
  private:
+  struct Writing;
   void find_coefficients(std::vector<std::vector<int>>& of_channel) const;
+  void add_channel(int channel, std::vector<int> const& coefficients, Writing& writing);
+  void compile_covariance_parameters(Writing& writing);
+  void find_records(Writing const& writing);
 
   Model model_, reduced_;
   std::shared_ptr<CompiledModel const> parametric_;
