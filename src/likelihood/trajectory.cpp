@@ -39,6 +39,16 @@ Quantity const& quantity_of(Model const& model, CompiledModel::Record const& rec
   return model.channels[index];
 }
 
+/// Of a constraint whose value and size are records r and r + 1 of each sample: the largest value, over the largest size.
+double largest_drift(LaneArray const& records, int lane, int r, int samples, int rows) {
+  double violation = 0, size = 0;
+  for (int i = 0; i < samples; ++i) {
+    violation = std::max(violation, std::abs(records(i * rows + r, lane)));
+    size = std::max(size, records(i * rows + r + 1, lane));
+  }
+  return size > 0 ? violation / size : 0.0;
+}
+
 }  // namespace
 
 Experiment with_corrections(Model const& model, Experiment experiment) {
@@ -100,14 +110,8 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
     std::size_t q = 0;
     for (int r = 0; r < rows; ++r) {
       auto const& record = compiled_->records[static_cast<std::size_t>(r)];
-      if (record.kind == RecordKind::constraint) {
-        double violation = 0, size = 0;
-        for (int i = 0; i < samples; ++i) {
-          violation = std::max(violation, std::abs(records(i * rows + r, w)));
-          size = std::max(size, records(i * rows + r + 1, w));
-        }
-        result.drift[static_cast<std::size_t>(record.index)].push_back(!good ? nan : size > 0 ? violation / size : 0.0);
-      }
+      if (record.kind == RecordKind::constraint)
+        result.drift[static_cast<std::size_t>(record.index)].push_back(good ? largest_drift(records, w, r, samples, rows) : nan);
       if (!is_shown(record)) continue;
       Quantity const& quantity = quantity_of(model, record);
       std::vector<double> values(static_cast<std::size_t>(samples), nan);
