@@ -11,7 +11,10 @@ NodeId mass(Graph& graph, Distribution const& use) {
   Support const inside = support(graph, use);
   // A bound that is the natural one cuts nothing off.
   auto const cuts = [&](std::optional<NodeId> const& bound, auto natural) {
-    return bound && !(natural != nullptr && *bound == natural(graph, use.arguments));
+    if (!bound || natural == nullptr) return bound.has_value();
+    NodeId const at = natural(graph, use.arguments);
+    auto const number = graph.constant_value(*bound), there = graph.constant_value(at);
+    return *bound != at && !(number && there && *number == *there);  // -0 is another node than 0
   };
   bool const below = cuts(inside.lower, row.lower), above = cuts(inside.upper, row.upper);
   if (!row.proper || !(below || above)) return graph.constant(1);

@@ -171,6 +171,17 @@ TEST_CASE("a bound that is a parameter cuts off like a number") {
   CHECK(bounds.upper == bound);
 }
 
+TEST_CASE("a lower bound of -0 cuts nothing off what begins at 0") {
+  for (Case const& each : {Case{"half_cauchy", {1}}, Case{"half_normal", {1}}}) {
+    Graph graph;
+    Distribution use = each.in(graph);
+    NodeId const whole = log_density(graph, use, graph.constant(0.5));
+    use.lower = graph.constant(-0.0);
+    CHECK(mass(graph, use) == graph.constant(1));
+    CHECK(log_density(graph, use, graph.constant(0.5)) == whole);
+  }
+}
+
 TEST_CASE("infinite bounds are none") {
   Graph graph;
   Distribution use = Case{"normal", {0, 1}}.in(graph);
