@@ -36,8 +36,6 @@ void to_si(std::vector<double>& values, ColumnRequest const& request) {
   for (double& value : values) value = convert(value, unit, *declared) * declared->scale;
 }
 
-bool is_interval(Unit const& unit) { return unit.text.starts_with("delta_"); }
-
 /// Of numbers that need no change to be in the other: a difference of temperatures is called as they are, and what turns 3000 times
 /// in a minute has 3000 rpm and 3000 1/min.
 bool same_unit(Unit const& a, Unit const& b) {
@@ -45,7 +43,7 @@ bool same_unit(Unit const& a, Unit const& b) {
   if (turns && a.hertz == b.hertz) return true;
   auto const same = [](double x, double y) { return std::fabs(x - y) <= 1e-9 * std::max(std::fabs(x), std::fabs(y)); };
   return a.dimension == b.dimension && same(a.scale, b.scale) && !turns &&
-         (same(a.offset, b.offset) || is_interval(a) || is_interval(b));
+         (same(a.offset, b.offset) || is_named_difference(a) || is_named_difference(b));
 }
 
 /// `F [kN]` that the data block has in N. What is no unit of the kind that is wanted may be no unit at all, as in `sensor (A)`; two
@@ -97,7 +95,7 @@ Request with_unit_of_file(RecordFile const& file, Request request) {
                                                       request.declared->text_or_dimension(), request.mention));
   request.unit = unit;
   // A file that calls differences of temperatures degC does not mean that they begin at 273.15 K.
-  if (request.declared && is_interval(*request.declared)) request.unit->offset = 0;
+  if (request.declared && is_named_difference(*request.declared)) request.unit->offset = 0;
   return request;
 }
 

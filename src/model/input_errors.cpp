@@ -18,21 +18,12 @@ bool is_leaf(Node const& node, LeafKind kind, int index) {
   return node.operation == Operation::leaf && node.leaf_kind == kind && node.index == index;
 }
 
-/// Of an error without its zero point: what lies between two temperatures.
-std::optional<Unit> unit_of_error(std::optional<Unit> unit) {
-  if (unit && unit->offset != 0) {
-    unit->offset = 0;
-    unit->text = "delta_" + unit->text;
-  }
-  return unit;
-}
-
 class InputError {
  public:
   InputError(Model& model, int input, double sd) : model_(model), input_(input), variance_(sd * sd) {
     Quantity const& measured = model.inputs[static_cast<std::size_t>(input)];
     name_ = fmt::format("error of {}", measured.name);
-    unit_ = unit_of_error(measured.unit);
+    if (measured.unit) unit_ = difference(*measured.unit);  // what lies between two temperatures has no zero point
     span_ = measured.span;
   }
 

@@ -117,15 +117,6 @@ std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& express
   return expression ? check_unit(*expression, diagnostics) : std::nullopt;
 }
 
-Unit difference(Unit unit) {
-  if (unit.offset == 0) return unit;
-  unit.offset = 0;
-  unit.text = "delta_" + unit.text;
-  if (!unit_atom(unit.text)) unit.text = unit.scale == 1 ? "K" : "delta_degF";
-  if (auto const named = unit_atom(unit.text); !named || named->scale != unit.scale) unit.text.clear();
-  return unit;
-}
-
 std::optional<Diagnostic> refuse_number(Span span, errors::Subject const& what, Unit const& given, Unit const& wanted) {
   if (given.dimension != wanted.dimension || zero_against_difference(given, wanted))
     return errors::number_of_other_kind(span, what, given, wanted);

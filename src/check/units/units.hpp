@@ -13,8 +13,6 @@ namespace sysid {
 /// non-constant exponent.
 std::optional<Unit> check_unit(ast::UnitExpression const& expression, Diagnostics& diagnostics);
 std::optional<Unit> check_unit(std::optional<ast::UnitExpression> const& expression, Diagnostics& diagnostics);
-/// The unit of what lies between two quantities in `unit`: without a zero point, [delta_degC] for [degC].
-Unit difference(Unit unit);
 /// What forbids a number in unit `given` where one in `wanted` is meant: another kind of quantity, a temperature for a difference
 /// of two, cycles for radians. what: errors::named("rate").
 std::optional<Diagnostic> refuse_number(Span span, errors::Subject const& what, Unit const& given, Unit const& wanted);

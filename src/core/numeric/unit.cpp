@@ -326,9 +326,20 @@ bool cycles_against_radians(Unit const& a, Unit const& b) {
   return a.dimension == b.dimension && std::fabs(ratio - elementary::log(2 * std::numbers::pi)) < 1e-9;
 }
 
+Unit difference(Unit unit) {
+  if (unit.offset == 0) return unit;
+  unit.offset = 0;
+  unit.text = "delta_" + unit.text;
+  if (!unit_atom(unit.text)) unit.text = unit.scale == 1 ? "K" : "delta_degF";
+  if (auto const named = unit_atom(unit.text); !named || named->scale != unit.scale) unit.text.clear();
+  return unit;
+}
+
+bool is_named_difference(Unit const& unit) { return unit.text.starts_with("delta_"); }
+
 bool zero_against_difference(Unit const& a, Unit const& b) {
   auto const measures_differences = [](Unit const& unit) {
-    return unit.offset == 0 && (unit.text.empty() || unit.text.starts_with("delta_"));
+    return unit.offset == 0 && (unit.text.empty() || is_named_difference(unit));
   };
   return a.dimension == b.dimension && ((a.offset != 0 && measures_differences(b)) || (b.offset != 0 && measures_differences(a)));
 }

@@ -60,6 +60,11 @@ double convert(double value, Unit const& from, Unit const& to);
 /// where the user means 2 pi; or [rpm] and [1/min], where it has 2 pi and the user means 1. Such a conversion must be refused.
 bool cycles_against_radians(Unit const& a, Unit const& b);
 
+/// The unit of what lies between two quantities in `unit`: without a zero point, [delta_degC] for [degC].
+Unit difference(Unit unit);
+/// Whether it is called so: the only mark that such a unit has, as its dimension and scale are those of the other.
+bool is_named_difference(Unit const& unit);
+
 /// Whether one has a zero point and the other measures differences of temperature ([delta_degC], or a product): neither converts to
 /// the other. [K] measures both.
 bool zero_against_difference(Unit const& a, Unit const& b);

@@ -58,7 +58,7 @@ WholeChannel whole_channel(Model const& model, std::string const& element) {
 /// An offset of a temperature is an interval.
 std::string unit_of_offset(Channel const& channel) {
   if (!channel.unit || channel.unit_text().empty()) return {};
-  return (channel.unit->offset != 0 ? "delta_" : "") + channel.unit_text();
+  return difference(*channel.unit).text;
 }
 
 std::string cure_of_held(Parameter const& held, bool several) {
