@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/text/words.hpp"
+
 namespace sysid::words {
 namespace {
 
@@ -88,8 +90,6 @@ constexpr ForeignWord for_input_rules[] = {
     {"fourier", "band_limited"},
 };
 
-char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 }  // namespace
 
 std::span<ForeignWord const> foreign_model_statements() { return for_model_statements; }
@@ -101,7 +101,7 @@ std::span<ForeignWord const> foreign_input_rules() { return for_input_rules; }
 std::string_view translated(std::span<ForeignWord const> table, std::string_view word) {
   for (ForeignWord const& each : table)
     if (std::equal(word.begin(), word.end(), each.foreign.begin(), each.foreign.end(),
-                   [](char written, char known) { return small(written) == known; }))
+                   [](char written, char known) { return in_small_letters(written) == known; }))
       return each.ours;
   return {};
 }

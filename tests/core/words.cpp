@@ -46,3 +46,9 @@ TEST_CASE("blanks at both ends go, those inside stay") {
   CHECK(trimmed(" a b\n") == "a b");
   CHECK(trimmed(" a\n", " ") == "a\n");
 }
+
+TEST_CASE("small letters are those of ASCII") {
+  CHECK(in_small_letters("Kraft [N] ÄÖ 3") == "kraft [n] ÄÖ 3");
+  CHECK(in_small_letters('Z') == 'z');
+  CHECK(in_small_letters('[') == '[');
+}

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/text/words.hpp"
+
 namespace sysid::errors {
 
 Diagnostic error(std::string code, Span span, std::string message, std::string help, std::string label) {
@@ -69,9 +71,8 @@ std::string primed(ast::Reference const& reference) { return primed(reference.na
 namespace {
 
 // Our word for a foreign one, if it is among the known; whatever the capitals.
-std::string synonym(std::span<Synonym const> table, std::string text, Names const& known) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+std::string synonym(std::span<Synonym const> table, std::string_view written, Names const& known) {
+  std::string const text = in_small_letters(written);
   for (Synonym const& each : table)
     if (each.foreign == text && std::find(known.begin(), known.end(), each.ours) != known.end())
       return fmt::format("did you mean `{}`?", each.ours);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "check/message/error_words.hpp"
+#include "core/text/words.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid::errors {
@@ -121,12 +122,6 @@ std::string with_arguments(ast::Call const& call, std::vector<std::size_t> const
   return text + ")";
 }
 
-std::string lower_case(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
-
 constexpr std::array<std::string_view, 6> start_words{"start", "init", "initval", "initial", "testval", "value"};
 constexpr std::array<std::string_view, 6> truncations{"truncated", "truncate",        "trunc",
                                                       "truncnorm", "truncatednormal", "truncated_normal"};
@@ -134,7 +129,7 @@ constexpr std::array<std::string_view, 6> truncations{"truncated", "truncate",  
 }  // namespace
 
 Diagnostic unknown_distribution(ast::Name const& name, Names const& known, LogNormalOfOthers const& written) {
-  std::string const small = lower_case(name.text);
+  std::string const small = in_small_letters(name.text);
   if (!written.of_logarithm.empty())
     return about({name.text},
                  error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text), written_here(written)),

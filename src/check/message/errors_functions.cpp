@@ -5,6 +5,7 @@
 #include <array>
 
 #include "check/message/error_words.hpp"
+#include "core/text/words.hpp"
 #include "distribution/distribution.hpp"
 #include "syntax/unparse.hpp"
 
@@ -68,12 +69,6 @@ constexpr Synonym degree_functions[] = {{"sind", "sin"},   {"cosd", "cos"},   {"
                                         {"cosdeg", "cos"}, {"tandeg", "tan"}};
 constexpr std::string_view to_radians[] = {"deg2rad", "radians", "d2r", "torad", "degtorad"};
 constexpr std::string_view to_degrees[] = {"rad2deg", "degrees", "r2d", "todeg", "radtodeg"};
-
-std::string in_small_letters(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
 
 bool is_bare_number(ast::Expression const& tree) {
   if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node))

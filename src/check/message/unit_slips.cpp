@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numeric/unit.hpp"
+#include "core/text/words.hpp"
 
 namespace sysid {
 namespace {
@@ -22,18 +23,11 @@ bool is_common(std::string_view word) {
   return std::find(common_unit_names().begin(), common_unit_names().end(), word) != common_unit_names().end();
 }
 
-std::string lower(std::string_view word) {
-  std::string text(word);
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
-
 // The one common unit that differs in capitals alone.
 std::optional<std::string> in_other_capitals(std::string_view word) {
   std::vector<std::string> found;
   for (std::string const& name : common_unit_names())
-    if (lower(name) == lower(word)) found.push_back(name);
+    if (in_small_letters(name) == in_small_letters(word)) found.push_back(name);
   return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
 }
 

@@ -4,20 +4,9 @@
 #include <algorithm>
 
 #include "core/text/diagnostic.hpp"
+#include "core/text/words.hpp"
 
 namespace sysid {
-
-namespace {
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = lower(c);
-  return out;
-}
-
-}  // namespace
 
 int edit_distance(std::string_view a, std::string_view b) {
   std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -35,14 +24,14 @@ int edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::vector<std::string> nearest(std::string_view text, std::vector<std::string> const& known) {
-  std::string const lower_text = lower(text);
+  std::string const lower_text = in_small_letters(text);
   std::vector<std::pair<int, std::string>> near;
   for (std::string const& name : known) {
     if (name.empty() || name == text) continue;
     std::size_t const longer = std::max(text.size(), name.size());
     // A one-letter name resembles every other: only its capital is near.
     int const cutoff = longer < 2 ? 0 : longer < 5 ? 1 : longer < 9 ? 2 : 3;
-    std::string const lower_name = lower(name);
+    std::string const lower_name = in_small_letters(name);
     // Differences in capitals cost nothing unless everything else is equal.
     std::size_t const surplus = longer - std::min(text.size(), name.size());  // as many edits at least
     int const distance = surplus > static_cast<std::size_t>(cutoff) ? cutoff + 1 : edit_distance(lower_text, lower_name);

@@ -29,6 +29,12 @@ std::string first_listed(std::vector<std::string> const& names, std::size_t most
   return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
 }
 
+std::string in_small_letters(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = in_small_letters(c);
+  return out;
+}
+
 std::string_view trimmed(std::string_view text, std::string_view blanks) {
   std::size_t const begin = text.find_first_not_of(blanks);
   if (begin == std::string_view::npos) return {};

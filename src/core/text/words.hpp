@@ -26,6 +26,10 @@ std::string counted(Count count, std::string_view noun) {
   return std::to_string(count) + " " + plural(noun, count);
 }
 
+/// Capitals of ASCII as small letters; all else stays.
+constexpr char in_small_letters(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+std::string in_small_letters(std::string_view text);
+
 /// Without the blanks at both ends. blanks: which characters count as such.
 std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r\n");
 

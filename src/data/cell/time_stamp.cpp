@@ -10,8 +10,6 @@
 namespace sysid {
 namespace {
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 /// Days since 1970-01-01 of a date of the Gregorian calendar (H. Hinnant, chrono-compatible low-level date algorithms).
 std::int64_t days_from_civil(std::int64_t year, int month, int day) {
   year -= month <= 2;
@@ -138,16 +136,16 @@ struct StampPattern::Reader {
   bool name_of_month() {
     std::string word;
     std::size_t end = at;
-    while (end < cell.size() && (lower(cell[end]) >= 'a' || static_cast<unsigned char>(cell[end]) >= 0x80U))
-      word += lower(cell[end++]);
+    while (end < cell.size() && (in_small_letters(cell[end]) >= 'a' || static_cast<unsigned char>(cell[end]) >= 0x80U))
+      word += in_small_letters(cell[end++]);
     month = month_of(word);
     at = end;
     return month > 0;
   }
   bool half_of_day() {
     blanks();
-    if (at + 1 >= cell.size() || lower(cell[at + 1]) != 'm') return false;
-    char const half = lower(cell[at]);
+    if (at + 1 >= cell.size() || in_small_letters(cell[at + 1]) != 'm') return false;
+    char const half = in_small_letters(cell[at]);
     if (half != 'a' && half != 'p') return false;
     afternoon = half == 'p';
     at += 2;
@@ -290,13 +288,13 @@ bool is_time_stamp(std::string_view cell) {
   bool named = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     char const c = text[i];
-    if (lower(c) >= 'a' && lower(c) <= 'z') {
+    if (in_small_letters(c) >= 'a' && in_small_letters(c) <= 'z') {
       ++letters;
       plain += '-';
-      if (i > 0 && lower(text[i - 1]) >= 'a' && lower(text[i - 1]) <= 'z') continue;  // within a word
+      if (i > 0 && in_small_letters(text[i - 1]) >= 'a' && in_small_letters(text[i - 1]) <= 'z') continue;  // within a word
       for (MonthName const& each : month_names) {
         std::string three;
-        for (char const letter : text.substr(i, 3)) three += lower(letter);
+        for (char const letter : text.substr(i, 3)) three += in_small_letters(letter);
         named = named || three == each.name;
       }
     } else {

@@ -34,13 +34,6 @@ constexpr Spelling of_temperatures[] = {{"C", "degC"}, {"F", "degF"}};
 constexpr Spelling unit_signs[] = {{"µ", "u"},   {"μ", "u"},   {"²", "^2"},    {"³", "^3"},  {"·", " "},  {"⋅", " "},
                                    {"Ω", "ohm"}, {"Ω", "ohm"}, {"°C", "degC"}, {"°", "deg"}, {"**", "^"}, {"%", "percent"}};
 
-std::string in_small_letters(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
 /// A product of powers, `N m/s^2`, `kg/(m s)`, `m s-1`, left to right; a second `/` divides again.
 class UnitReader {
  public:

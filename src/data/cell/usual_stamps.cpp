@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/text/words.hpp"
 #include "data/cell/cells.hpp"
 #include "data/cell/time_stamp.hpp"
 
@@ -29,8 +30,7 @@ bool fit(std::string const& text, std::vector<std::string> const& cells) {
 
 /// What a name says that two numbers with a colon between them are: `mm:ss` of `Zeit [min:s]`; empty: it does not.
 std::string two_numbers_in(std::string_view name) {
-  std::string small;
-  for (char const c : name) small += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::string const small = in_small_letters(name);
   struct Words {
     std::string_view words, pattern;
   };

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "data/cell/unit_text.hpp"
 #include "data/table/reading_rules.hpp"
 
@@ -20,7 +21,7 @@ std::string name_for(std::string const& column, std::set<std::string>& taken) {
   std::string name;
   for (char const c : split ? split->name : column) {
     if (is_part_of_a_name(c))
-      name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      name += in_small_letters(c);
     else if (!name.empty() && name.back() != '_')
       name += '_';
   }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/system/interrupt.hpp"
+#include "core/text/words.hpp"
 #include "data/cell/cells.hpp"
 #include "data/cell/number_notation.hpp"
 #include "data/cell/time_stamp.hpp"
@@ -304,9 +305,7 @@ CellLook look_of(std::string_view cell) {
       "nan",     "-nan",   "+nan",    "na",    "n/a",    "#n/a",    "#nv",     "null", "none", "nil",  "-",     "--",
       "---",     "inf",    "-inf",    "+inf",  "bad",    "err",     "error",   "ovf",  "ovl",  "over", "under", "invalid",
       "1.#qnan", "1.#ind", "-1.#ind", "#ref!", "#wert!", "#value!", "#div/0!", "∞",    "-∞",   "+∞",   "?",     "*"};
-  std::string small(cell);
-  for (char& c : small)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  std::string const small = in_small_letters(cell);
   return std::find(std::begin(gaps), std::end(gaps), small) == std::end(gaps) ? CellLook::text : CellLook::gap;
 }
 
