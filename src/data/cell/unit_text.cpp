@@ -124,12 +124,17 @@ std::string in_language(std::string_view text) {
   return out;
 }
 
-}  // namespace
-
-std::optional<Unit> unit_of_text(std::string_view text) {
+std::string_view without_brackets(std::string_view text) {
   text = trimmed(text);
   for (std::string_view const pair : {"[]", "()", "<>", "{}"})
     if (text.size() > 2 && text.front() == pair[0] && text.back() == pair[1]) text = trimmed(text.substr(1, text.size() - 2));
+  return text;
+}
+
+}  // namespace
+
+std::optional<Unit> unit_of_text(std::string_view text) {
+  text = without_brackets(text);
   if (text.empty() || text.size() > longest_unit ||
       std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }) > 4)
     return std::nullopt;
@@ -154,9 +159,7 @@ std::optional<Unit> unit_of_text(std::string_view text) {
 std::optional<Unit> unit_of_text(std::string_view text, Unit const& wanted) {
   auto unit = unit_of_text(text);
   if (unit && unit->dimension == wanted.dimension) return unit;
-  std::string_view bare = trimmed(text);
-  for (std::string_view const pair : {"[]", "()", "<>", "{}"})
-    if (bare.size() > 2 && bare.front() == pair[0] && bare.back() == pair[1]) bare = trimmed(bare.substr(1, bare.size() - 2));
+  std::string_view const bare = without_brackets(text);
   auto const take = [&](std::span<Spelling const> spellings) {
     for (Spelling const& each : spellings) {
       std::optional<Unit> const meant = bare == each.written ? unit_atom(each.meant) : std::nullopt;
