@@ -27,17 +27,22 @@ bool is_logarithm(ast::Expression const& value) {
   return call != nullptr && ((*call)->function.text == "log" || (*call)->function.text == "ln");
 }
 
+struct PlaceOfLogarithm {
+  std::string text;
+  bool median = false;
+};
+
 /// `log_mean = 3`; of `log(x)` it is `median = x`, for what has a unit has no logarithm. Where `log(x/K)` is of a pure number and
 /// the quantity is not, it is `log_mean = log(x/K)`.
-std::string mean_of_logarithm(Scope& scope, ast::Expression const& value, Quantity const& variate) {
-  std::string const whole = "log_mean = " + unparse(value);
+PlaceOfLogarithm mean_of_logarithm(Scope& scope, ast::Expression const& value, Quantity const& variate) {
+  PlaceOfLogarithm const whole{"log_mean = " + unparse(value)};
   auto const* call = std::get_if<ast::Box<ast::Call>>(&value.node);
   if (!is_logarithm(value) || (*call)->arguments.size() != 1) return whole;
   ast::Expression const& inside = (*call)->arguments.front().value;
   Diagnostics unsaid;
   auto const typed = scope.with(unsaid).expression(inside);
   bool const pure = typed && typed->kind == Typed::Kind::known && typed->unit.dimensionless();
-  return pure && variate.unit && !variate.unit->dimensionless() ? whole : "median = " + unparse(inside);
+  return pure && variate.unit && !variate.unit->dimensionless() ? whole : PlaceOfLogarithm{"median = " + unparse(inside), true};
 }
 
 /// `lognormal(log(x), sigma)` of Stan, R, NumPy and PyMC, where both arguments are of the logarithm: how it is written here. Empty
@@ -51,8 +56,7 @@ errors::LogNormalOfOthers log_normal_of_others(Scope& scope, ast::Call const& ca
   if (call.arguments.size() != 2) return {};
   ast::Argument const &place = call.arguments[0], &width = call.arguments[1];
   if ((place.name && !is_one_of(place, means)) || (width.name && !is_one_of(width, widths))) return {};
-  std::string const location = mean_of_logarithm(scope, place.value, variate);
-  bool const as_median = location.starts_with("median");
+  auto const [location, as_median] = mean_of_logarithm(scope, place.value, variate);
   std::string const of_logarithm =
       fmt::format("log_normal({}, {} = {})", location, as_median ? "sd" : "log_sd", unparse(width.value));
   auto const* number = std::get_if<ast::Number>(&place.value.node);
@@ -164,7 +168,8 @@ class DistributionChecker {
     std::span<Spelling const> const spellings = row_.arguments[position].spellings;
     bool const in_doubt = std::any_of(spellings.begin(), spellings.end(), [](Spelling const& each) { return each.logarithm; }) &&
                           is_logarithm(argument.value);
-    if (in_doubt) return fail(errors::logarithm_or_number(argument, mean_of_logarithm(scope_, argument.value, variate_), name_));
+    if (in_doubt)
+      return fail(errors::logarithm_or_number(argument, mean_of_logarithm(scope_, argument.value, variate_).text, name_));
     if (spellings.size() > 1 && !row_.arguments[position].by_position)
       return fail(errors::must_be_named(call_, argument, spelling_names(row_.arguments[position]), other_meaning_of_first()));
     take(given_[position], &spellings.front(), argument, std::string(spellings.front().name));

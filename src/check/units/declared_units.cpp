@@ -187,11 +187,11 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
                                   may_differ ? coefficient->name : "", other);
     }
   }
-  std::string cure = factor_cure(wanted, odd != nullptr, but);
+  auto const by_factor = [&](std::string_view what) { return factor_cure(what, wanted, odd != nullptr, but); };
   if (odd != nullptr && !pure)
     if (auto const declared = declared_otherwise(*odd, missing, is_term)) {
       std::string const other = errors::declare_in(declared->name, words(declared->unit));
-      return is_term && is_power_of_moving(*odd, missing) ? errors::or_else(other, cure) : other;
+      return is_term && is_power_of_moving(*odd, missing) ? other + ", or " + by_factor("this term") : other;
     }
   // `x + 9.81*m`: the number is a quantity.
   if (ast::Expression const* number = odd == nullptr || pure ? nullptr : bare_factor(*odd);
@@ -200,7 +200,7 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
     unit.dimension = missing;
     return errors::tag_the_number(unparse(*number), words(unit));
   }
-  return cure;
+  return by_factor("this");
 }
 
 // `c/k` of a rate k, `c*tau` of a time: on the other side of the fraction line the coefficient would fit.
@@ -219,16 +219,18 @@ std::string DeclaredUnits::by_inverse(ast::Expression const& odd, Dimension cons
 }
 
 // The term as it is declared, with another factor.
-std::string DeclaredUnits::factor_cure(Wanted const& wanted, bool in_text, std::vector<std::string> const& but) const {
+std::string DeclaredUnits::factor_cure(std::string_view what, Wanted const& wanted, bool in_text,
+                                       std::vector<std::string> const& but) const {
   Dimension const& missing = wanted.missing;
   if (std::string const names = named(missing, but); !names.empty())
-    return errors::multiply_by(kind_words(missing, names_in_use_), names);
+    return errors::multiply_by(what, kind_words(missing, names_in_use_), names);
   if (std::string const names = named(inverse(missing), but); !names.empty())
-    return errors::divide_by(kind_words(inverse(missing), names_in_use_), names);
-  if (wanted.of_a_number && in_text) return errors::multiply_by(kind_words(missing, names_in_use_), "`1 [" + wanted.unit + "]`");
-  if (is_plain_kind(missing)) return errors::multiply_by(kind_words(missing, names_in_use_), "");
-  if (is_plain_kind(inverse(missing))) return errors::divide_by(kind_words(inverse(missing), names_in_use_), "");
-  return errors::should_be_in(wanted.unit);
+    return errors::divide_by(what, kind_words(inverse(missing), names_in_use_), names);
+  if (wanted.of_a_number && in_text)
+    return errors::multiply_by(what, kind_words(missing, names_in_use_), "`1 [" + wanted.unit + "]`");
+  if (is_plain_kind(missing)) return errors::multiply_by(what, kind_words(missing, names_in_use_), "");
+  if (is_plain_kind(inverse(missing))) return errors::divide_by(what, kind_words(inverse(missing), names_in_use_), "");
+  return errors::should_be_in(what, wanted.unit);
 }
 
 bool DeclaredUnits::is_power_of_moving(ast::Expression const& odd, Dimension const& missing) const {

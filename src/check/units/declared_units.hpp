@@ -65,7 +65,8 @@ class DeclaredUnits {
  private:
   std::string by_inverse(ast::Expression const& odd, Dimension const& missing) const;
   // The term as it is declared, with another factor; in_text: it is an expression, no declaration; but: names that it must not be.
-  std::string factor_cure(Wanted const& wanted, bool in_text, std::vector<std::string> const& but) const;
+  /// what: is to be changed, "this" or "this term".
+  std::string factor_cure(std::string_view what, Wanted const& wanted, bool in_text, std::vector<std::string> const& but) const;
   // The one coefficient of a term, in the unit that it should have been declared in; nothing where something else is likelier.
   std::optional<DeclaredUnit> declared_otherwise(ast::Expression const& odd, Dimension const& missing, bool is_term) const;
   // Whether one power of something that moves in a term is what it lacks, or has too much.

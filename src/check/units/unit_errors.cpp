@@ -183,21 +183,17 @@ void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function
   diagnostic.primary = Label{call, "called here"};
 }
 
-std::string multiply_by(std::string const& kind, std::string const& names) {
-  return with_names(fmt::format("multiply this by {}", kind), names);
+std::string multiply_by(std::string_view what, std::string const& kind, std::string const& names) {
+  return with_names(fmt::format("multiply {} by {}", what, kind), names);
 }
-std::string divide_by(std::string const& kind, std::string const& names) {
-  return with_names(fmt::format("divide this by {}", kind), names);
-}
-std::string or_else(std::string const& declaration, std::string const& factor) {
-  std::size_t const at = factor.find(" this ");
-  return declaration + ", or " + (at == std::string::npos ? factor : factor.substr(0, at) + " this term " + factor.substr(at + 6));
+std::string divide_by(std::string_view what, std::string const& kind, std::string const& names) {
+  return with_names(fmt::format("divide {} by {}", what, kind), names);
 }
 std::string declare_in(std::string const& name, std::string const& unit) {
   return fmt::format("declare `{}` in [{}]", without_index(name), unit);
 }
-std::string should_be_in(std::string const& unit) {
-  return unit == "-" ? "make this a pure number" : fmt::format("make this a quantity in [{}]", unit);
+std::string should_be_in(std::string_view what, std::string const& unit) {
+  return unit == "-" ? fmt::format("make {} a pure number", what) : fmt::format("make {} a quantity in [{}]", what, unit);
 }
 std::string tag_the_number(std::string const& number, std::string const& unit) {
   return fmt::format("a number as a factor has no unit: write `{} [{}]`", number, unit);

@@ -62,13 +62,12 @@ Diagnostic letter_taken_for_temperature(Diagnostic conflict, Span written, Lette
 void move_to_call(Diagnostic& diagnostic, Span call, std::string const& function);
 
 // What to do, for `help`. names: declared quantities that would do ("`y` or `l`"), or empty.
-std::string multiply_by(std::string const& kind, std::string const& names);
-std::string divide_by(std::string const& kind, std::string const& names);
-/// Two cures; `factor` begins with what to do with the term.
-std::string or_else(std::string const& declaration, std::string const& factor);
+// what: "this", "this term".
+std::string multiply_by(std::string_view what, std::string const& kind, std::string const& names);
+std::string divide_by(std::string_view what, std::string const& kind, std::string const& names);
 /// Elements of a vector share a declaration: `k[2]` is declared as `k`.
 std::string declare_in(std::string const& name, std::string const& unit);
-std::string should_be_in(std::string const& unit);
+std::string should_be_in(std::string_view what, std::string const& unit);
 std::string tag_the_number(std::string const& number, std::string const& unit);
 /// multiplies: as the text has it; unit: the one that it should have been declared in otherwise.
 std::string inverse_meant(std::string const& name, bool multiplies, std::string const& unit);
