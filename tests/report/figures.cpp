@@ -15,6 +15,7 @@
 #include "diagnostics/residuals/residual_tests.hpp"
 #include "example.hpp"
 #include "report/figure/gnuplot.hpp"
+#include "report/figure/svg.hpp"
 
 using namespace sysid;
 

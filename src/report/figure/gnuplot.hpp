@@ -17,8 +17,4 @@ std::optional<std::string> draw(plot::Figure const& figure, FigureFormat format 
 /// The same bytes of all as SVG, by one process: gnuplot takes longer to start than to draw.
 std::vector<std::optional<std::string>> draw_all(std::vector<plot::Figure> const& figures);
 
-/// A standalone SVG as a part of a page: no prologue, no background, colours by the page's variables (`--fig-ink`, ...), so that it
-/// follows light and dark, no wider than lets its text be as large as the page's, and no narrower than lets it be read.
-std::string embedded(std::string const& svg, plot::Figure const& figure);
-
 }  // namespace sysid

@@ -11,7 +11,7 @@
 #include "core/text/number.hpp"
 #include "core/text/utf8.hpp"
 #include "core/text/xml.hpp"
-#include "report/figure/gnuplot.hpp"
+#include "report/figure/svg.hpp"
 #include "report/text/report_text.hpp"
 
 namespace sysid {
