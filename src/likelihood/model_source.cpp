@@ -119,8 +119,7 @@ NodeId Folded::operator()(NodeId root) {
       return graph.leaf(LeafKind::state, state + static_cast<int>(model_.memories.size()));
     if (node.leaf_kind != LeafKind::parameter || static_cast<std::size_t>(node.index) >= model_.parameters.size())
       return std::nullopt;
-    Parameter const& parameter = model_.parameters[static_cast<std::size_t>(node.index)];
-    return parameter.per_experiment ? std::nullopt : parameter.value;
+    return model_.parameters[static_cast<std::size_t>(node.index)].value_of_all();
   });
   return result;
 }

@@ -45,7 +45,7 @@ bool violated_at_start(Model const& model, Invariant const& constraint, std::spa
     std::vector<double> const values = graph.evaluate(roots, [&](NodeId leaf) {
       int const index = graph[leaf].index;
       Parameter const& parameter = model.parameters[static_cast<std::size_t>(index)];
-      auto const fixed = parameter.per_experiment ? std::nullopt : parameter.value;
+      auto const fixed = parameter.value_of_all();
       return fixed ? graph.evaluate(*fixed, [](NodeId) { return 0.0; }) : value_at(index, point);
     });
     if (!std::isfinite(values[0]) || !std::isfinite(values[1])) continue;

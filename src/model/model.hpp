@@ -42,6 +42,9 @@ struct Parameter : Quantity {
   std::optional<Distribution> prior;  // arguments and bounds are SI expressions of constants and other parameters
   std::optional<NodeId> value;        // a constant expression
   bool coefficient = false;           // of an expansion
+
+  /// The value that it has in all experiments, where it is fixed.
+  std::optional<NodeId> value_of_all() const { return per_experiment ? std::nullopt : value; }
 };
 
 /// What is measured: leaf measured(i) is its sample.

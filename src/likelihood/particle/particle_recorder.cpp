@@ -74,7 +74,7 @@ double ParticleTrajectory::Recorder::value(NodeId id) const {
     if (node.leaf_kind != LeafKind::parameter) return not_a_number;
     auto const& parameters = of_.written_.parameters;
     auto const p = static_cast<std::size_t>(node.index);
-    if (!parameters[p].per_experiment && parameters[p].value) return value(*parameters[p].value);
+    if (auto const fixed = parameters[p].value_of_all()) return value(*fixed);
     return parameters_(node.index, 0);
   });
 }

@@ -46,8 +46,7 @@ struct ProcessForecast::FreeRun {
       return graph.substitute(root, [&](NodeId leaf) -> std::optional<NodeId> {
         Node const node = graph[leaf];
         if (node.leaf_kind != LeafKind::parameter) return std::nullopt;
-        Parameter const& parameter = model.parameters[static_cast<std::size_t>(node.index)];
-        return parameter.per_experiment ? std::nullopt : parameter.value;
+        return model.parameters[static_cast<std::size_t>(node.index)].value_of_all();
       });
     };
     std::vector<NodeId> starts, places, results;

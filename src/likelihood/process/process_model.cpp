@@ -198,8 +198,7 @@ void ProcessModel::compile_covariance_parameters(Writing& writing) {
   // Parameters that are fixed for all experiments need no rows of their own.
   for (NodeId& output : writing.outputs)
     output = graph.substitute(output, [&](NodeId leaf) -> std::optional<NodeId> {
-      Parameter const& parameter = model_.parameters[static_cast<std::size_t>(graph[leaf].index)];
-      return parameter.per_experiment ? std::nullopt : parameter.value;
+      return model_.parameters[static_cast<std::size_t>(graph[leaf].index)].value_of_all();
     });
   covariance_parameters_ = compile_kernel(graph, leaves, writing.outputs);
 }
