@@ -51,6 +51,18 @@ bool holds_own_result(Session const& session, Task const& task) {
   }
 }
 
+/// Those of the other tasks: what the task itself has left before may be of another text.
+void hand_over_draws(TaskResults const& results, std::string const& name, Session& session) {
+  std::vector<Task> const& tasks = session.file.tasks;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (tasks[i].name == name) continue;
+    if (auto const known = results.fitted.find(tasks[i].name); known != results.fitted.end())
+      session.fitted[static_cast<int>(i)] = known->second;
+    if (auto const known = results.selected.find(tasks[i].name); known != results.selected.end())
+      session.selected[static_cast<int>(i)] = known->second;
+  }
+}
+
 }  // namespace
 
 std::string with_seed(Context const& context, std::string const& text) {
@@ -98,13 +110,7 @@ bool run_task(Context& context, std::string const& name, std::shared_ptr<Checked
   Session session(checked->source, checked->file, options, context.progress, answers, notices);
   // Where a run was stopped before it left anything, the result of an earlier text is nothing to go on from.
   if (resume && sysid::complete(session.result_folder(*place)) && !holds_own_result(session, *place)) options.resume = false;
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (tasks[i].name == name) continue;  // what it has left before may be of another text
-    if (auto const known = context.results.fitted.find(tasks[i].name); known != context.results.fitted.end())
-      session.fitted[static_cast<int>(i)] = known->second;
-    if (auto const known = context.results.selected.find(tasks[i].name); known != context.results.selected.end())
-      session.selected[static_cast<int>(i)] = known->second;
-  }
+  hand_over_draws(context.results, name, session);
   for (int const earlier : task_row(*place).needs(*place)) {
     Task const& needed = tasks[static_cast<std::size_t>(earlier)];
     bool const there = session.fitted.contains(earlier) || session.selected.contains(earlier);

@@ -125,6 +125,46 @@ ReportTable channel_table(ValidationReport const& validation, ValidatedStructure
   return table;
 }
 
+Json structure_json(ValidatedStructure const& each) {
+  Json structure = {{"terms", each.terms}, {"rank_by_regression", each.of_regression}};
+  if (!each.failure.empty()) {
+    structure["failure"] = each.failure;
+    return structure;
+  }
+  Json coefficients = Json::array(), channels = Json::array();
+  for (ValidatedCoefficient const& one : each.coefficients)
+    coefficients.push_back({{"target", one.target},
+                            {"term", one.term},
+                            {"name", one.name},
+                            {"unit", one.unit},
+                            {"value", one.value},
+                            {"sd", number_or_null(one.sd)},
+                            {"regression", number_or_null(one.regression)},
+                            {"regression_sd", number_or_null(one.regression_sd)},
+                            {"inside_terms", one.inside}});
+  for (ValidatedChannel const& one : each.channels)
+    channels.push_back({{"channel", one.channel},
+                        {"unit", one.unit},
+                        {"sd", one.sd},
+                        {"residual", one.residual},
+                        {"noise", one.noise},
+                        {"noise_grows_beyond", one.growth > 0 ? Json(one.growth) : Json()},
+                        {"one_step", number_or_null(one.one_step)},
+                        {"horizon", number_or_null(one.horizon)},
+                        {"free_run", number_or_null(one.free_run)}});
+  structure.update({{"equations", each.equations},
+                    {"log_evidence", each.log_evidence},
+                    {"log_prior", each.log_prior},
+                    {"probability", each.probability},
+                    {"residual_over_noise", each.residual_over_noise},
+                    {"draws", each.draws},
+                    {"draws_bounded", each.bounded},
+                    {"follows_for", each.follows},
+                    {"coefficients", std::move(coefficients)},
+                    {"channels", std::move(channels)}});
+  return structure;
+}
+
 }  // namespace
 
 std::vector<ReportTable> validation_tables(ValidationReport const& validation) {
@@ -151,46 +191,7 @@ nlohmann::ordered_json validation_json(ValidationReport const& validation) {
               {"horizon_rows", validation.horizon_rows},
               {"start_rows", validation.window_rows},
               {"structures", Json::array()}};
-  for (ValidatedStructure const& each : validation.structures) {
-    Json structure = {{"terms", each.terms}, {"rank_by_regression", each.of_regression}};
-    if (!each.failure.empty()) {
-      structure["failure"] = each.failure;
-      out["structures"].push_back(std::move(structure));
-      continue;
-    }
-    Json coefficients = Json::array(), channels = Json::array();
-    for (ValidatedCoefficient const& one : each.coefficients)
-      coefficients.push_back({{"target", one.target},
-                              {"term", one.term},
-                              {"name", one.name},
-                              {"unit", one.unit},
-                              {"value", one.value},
-                              {"sd", number_or_null(one.sd)},
-                              {"regression", number_or_null(one.regression)},
-                              {"regression_sd", number_or_null(one.regression_sd)},
-                              {"inside_terms", one.inside}});
-    for (ValidatedChannel const& one : each.channels)
-      channels.push_back({{"channel", one.channel},
-                          {"unit", one.unit},
-                          {"sd", one.sd},
-                          {"residual", one.residual},
-                          {"noise", one.noise},
-                          {"noise_grows_beyond", one.growth > 0 ? Json(one.growth) : Json()},
-                          {"one_step", number_or_null(one.one_step)},
-                          {"horizon", number_or_null(one.horizon)},
-                          {"free_run", number_or_null(one.free_run)}});
-    structure.update({{"equations", each.equations},
-                      {"log_evidence", each.log_evidence},
-                      {"log_prior", each.log_prior},
-                      {"probability", each.probability},
-                      {"residual_over_noise", each.residual_over_noise},
-                      {"draws", each.draws},
-                      {"draws_bounded", each.bounded},
-                      {"follows_for", each.follows},
-                      {"coefficients", std::move(coefficients)},
-                      {"channels", std::move(channels)}});
-    out["structures"].push_back(std::move(structure));
-  }
+  for (ValidatedStructure const& each : validation.structures) out["structures"].push_back(structure_json(each));
   if (auto const& outside = validation.outside)
     out["other_terms"] = {{"equation", outside->text},
                           {"log_odds", outside->log_odds},

@@ -260,6 +260,43 @@ Json checks(std::vector<CheckRecord> const& records) {
   return out;
 }
 
+Json findings_json(Findings const& all) {
+  Json out = Json::array();
+  for (Finding const& finding : all)
+    out.push_back({{"severity", severity_word(finding.severity)},
+                   {"code", word(finding.code)},
+                   {"names", finding.names},
+                   {"message", finding.message},
+                   {"help", finding.help}});
+  return out;
+}
+
+Json modes_json(Report const& report) {
+  Json out = Json::array();
+  for (Mode const& mode : report.modes)
+    out.push_back({{"log_density", mode.log_density},
+                   {"log_mass", mode.log_mass},
+                   {"share", mode.share},
+                   {"values", named_values(mode.declared, report.sampled_names)},
+                   {"sd", named_values(mode.sd, report.sampled_names)}});
+  return out;
+}
+
+Json data_json(std::vector<DataInfo> const& all) {
+  Json out = Json::array();
+  for (DataInfo const& each : all)
+    out.push_back({{"name", each.name},
+                   {"file", each.file},
+                   {"sha256", each.sha256},
+                   {"rows", each.rows},
+                   {"scored", each.scored},
+                   {"scored_rows", each.scored_rows},
+                   {"samples_sha256", each.samples_sha256},
+                   {"inputs_sha256", each.inputs_sha256},
+                   {"notes", each.notes}});
+  return out;
+}
+
 /// The user's text may hold any bytes: what is not UTF-8 is replaced, never thrown.
 std::string dump(Json const& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
@@ -285,22 +322,10 @@ std::string summary_json(Report const& report, FileDigests const& files) {
   if (report.average) out["average"] = average(*report.average);
   if (report.calibration) out["calibration"] = calibration_json(*report.calibration);
   if (has_verdict(report)) out["verdict"] = {{"pass", grade(report) != Severity::error}, {"text", verdict_headline(report)}};
-  out["findings"] = Json::array();
-  for (Finding const& finding : report.findings)
-    out["findings"].push_back({{"severity", severity_word(finding.severity)},
-                               {"code", word(finding.code)},
-                               {"names", finding.names},
-                               {"message", finding.message},
-                               {"help", finding.help}});
+  out["findings"] = findings_json(report.findings);
   if (!report.checks.empty()) out["checks"] = checks(report.checks);
   out["fit"] = fit(report);
-  out["modes"] = Json::array();
-  for (Mode const& mode : report.modes)
-    out["modes"].push_back({{"log_density", mode.log_density},
-                            {"log_mass", mode.log_mass},
-                            {"share", mode.share},
-                            {"values", named_values(mode.declared, report.sampled_names)},
-                            {"sd", named_values(mode.sd, report.sampled_names)}});
+  out["modes"] = modes_json(report);
   if (report.evidence) {
     out["evidence"] = evidence(*report.evidence);
     if (!report.prior_widths.empty()) out["evidence"]["prior_widths"] = prior_widths(report.prior_widths);
@@ -316,17 +341,7 @@ std::string summary_json(Report const& report, FileDigests const& files) {
   out["versions"]["form"] = stored_form;
   out["versions"]["files"] = files;
   out["versions"]["summary_sha256"] = unsealed();
-  out["data"] = Json::array();
-  for (DataInfo const& data : report.data)
-    out["data"].push_back({{"name", data.name},
-                           {"file", data.file},
-                           {"sha256", data.sha256},
-                           {"rows", data.rows},
-                           {"scored", data.scored},
-                           {"scored_rows", data.scored_rows},
-                           {"samples_sha256", data.samples_sha256},
-                           {"inputs_sha256", data.inputs_sha256},
-                           {"notes", data.notes}});
+  out["data"] = data_json(report.data);
   out["settings"] = facts(report.settings);
   return sealed_summary(dump(out));
 }
