@@ -50,6 +50,19 @@ TEST_CASE("a simulation needs the values of the parameters that it uses, not of 
   CHECK(shown.find("error[E6011]: a simulation needs a value for `s`") != std::string::npos);
 }
 
+TEST_CASE("a record is made under the name of a table") {
+  auto const said = [](std::string const& name) {
+    return refused("simulate m with values(k = 2, s = 3), input x = constant(value = 1), samples = 10, step = 1, file = \"" + name +
+                   "\"");
+  };
+  for (char const* name : {"", "..", "a/b.csv", "summary.json", "report.html"}) {
+    CHECK(errors_in(said(name)) == 1);
+    CHECK(said(name).find("error[E6004]: `file` must be the name of a text table") != std::string::npos);
+  }
+  CHECK(errors_in(said("truth.txt")) == 0);
+  CHECK(errors_in(said(".hidden.csv")) == 0);
+}
+
 TEST_CASE("settings of a back end are its defaults where they are not given") {
   FitTask const task = fit("mh(samples = 1e4, proposal = spherical), seed = 7, substeps = 3");
   CHECK(task.backend == "mh");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "check/data/data.hpp"
 #include "check/message/errors.hpp"
@@ -19,6 +20,13 @@ namespace {
 
 /// Of a function drawn from its prior: the factor of so many samples takes some seconds.
 constexpr int most_drawn = 5000;
+
+/// Of a file in the folder of the results: none of those that results have beside their tables.
+bool names_a_table(std::string const& name) {
+  if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos) return false;
+  constexpr char const* endings[] = {".json", ".html", ".cbor", ".sysid"};
+  return std::none_of(std::begin(endings), std::end(endings), [&](char const* each) { return name.ends_with(each); });
+}
 
 }  // namespace
 
@@ -140,11 +148,12 @@ void TaskChecker::simulate_seed(TaskChecker& checker, ast::Option const& option,
 }
 
 void TaskChecker::simulate_file(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
-  if (auto const* text = std::get_if<ast::Text>(&option.value.node); text != nullptr && text->value.find('/') == std::string::npos)
+  auto const* text = std::get_if<ast::Text>(&option.value.node);
+  if (text != nullptr && names_a_table(text->value))
     options.task.file = text->value;
   else
-    checker.diagnostics_.add(
-        errors::option_kind(option.value.span, key_of(option), {"a file name in quotes, without folders"}, "file = \"truth.csv\""));
+    checker.diagnostics_.add(errors::option_kind(option.value.span, key_of(option),
+                                                 {"the name of a text table in quotes, without folders"}, "file = \"truth.csv\""));
 }
 
 void TaskChecker::check_exact_inputs(SimulateOptions const& options) {
