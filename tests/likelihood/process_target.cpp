@@ -237,6 +237,13 @@ model edge {
   CHECK(std::isfinite(value));
   CHECK(at_edge.solves() == 7);
   CHECK(at_edge.failed() == 1);
+  // From the other side: the step is about 1e-5 of the prior's width.
+  LaneArray beyond = theta;
+  beyond(0, 0) += 1e-5;
+  double there = 0;
+  Ledger one;
+  c.target->log_likelihood(beyond, {&there, 1}, one);
+  CHECK(gradient(0, 0) == doctest::Approx((there - value) / 1e-5).epsilon(0.2));
   theta(0, 0) = -1;
   Ledger outside;
   c.target->log_likelihood_gradient(theta, {&value, 1}, gradient, outside);

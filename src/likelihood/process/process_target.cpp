@@ -205,19 +205,21 @@ double ProcessTarget::gradient_at(ConstLanes theta, Lanes gradient, Ledger& ledg
     }
     total += result.log_likelihood;
     for (int p = 0; p < dimension && !stopped(); ++p) {
-      auto const ahead = regression(batch, c, 2 * p + 1, true), behind = regression(batch, c, 2 * p + 2, true);
-      if (!ahead || !behind) continue;  // at the edge of what can be computed: the coordinate is left alone
+      auto const up = regression(batch, c, 2 * p + 1, true), down = regression(batch, c, 2 * p + 2, true);
+      if (!up && !down) continue;
+      // At the edge of what can be computed from the one side alone.
+      Regression const &ahead = up ? *up : *centre, &behind = down ? *down : *centre;
       bool const inputs_move =
-          ahead->observations.inputs != behind->observations.inputs || ahead->observations.columns != behind->observations.columns;
-      double const apart = 2 * steps[static_cast<std::size_t>(p)];
+          ahead.observations.inputs != behind.observations.inputs || ahead.observations.columns != behind.observations.columns;
+      double const apart = (up && down ? 2 : 1) * steps[static_cast<std::size_t>(p)];
       double slope = 0;
       if (inputs_move) {
-        slope = (marginal(*ahead, c, false).log_likelihood - marginal(*behind, c, false).log_likelihood) / apart;
+        slope = (marginal(ahead, c, false).log_likelihood - marginal(behind, c, false).log_likelihood) / apart;
       } else {
         for (std::size_t k = 0; k < centre->parameters.size(); ++k)
           slope += result.gradient[static_cast<Eigen::Index>(k)] *
-                   (elementary::log(ahead->parameters[k]) - elementary::log(behind->parameters[k])) / apart;
-        slope += result.values_gradient.dot(ahead->observations.values - behind->observations.values) / apart;
+                   (elementary::log(ahead.parameters[k]) - elementary::log(behind.parameters[k])) / apart;
+        slope += result.values_gradient.dot(ahead.observations.values - behind.observations.values) / apart;
       }
       if (std::isfinite(slope)) gradient(p, 0) += slope;
     }
