@@ -179,6 +179,75 @@ TEST_CASE("a folder that has the name of a file is found before anything is repl
   CHECK(all_files(folder.path()) == earlier_result);
 }
 
+TEST_CASE("folders with names of result files are the user's: they stay, are no result, and stop nothing") {
+  TemporaryFolder const folder;
+  for (char const* name : {"draws_backup.csv", "track.csv", "report.html.partial", "figures/old.png", "figures/old.svg.partial"})
+    make_folder(folder.path() / name);
+  CHECK_FALSE(holds_result(folder.path()));
+  NewFiles files(folder.path());
+  files.write("summary.json", "new");
+  files.replace();
+  come_next(folder.path());
+  for (char const* name : {"draws_backup.csv", "track.csv", "report.html.partial", "figures/old.png", "figures/old.svg.partial"})
+    CHECK(fs::is_directory(folder.path() / name));
+  remove_result(folder.path());
+  CHECK_FALSE(holds_result(folder.path()));
+  // In the place of a file that is to get its name one stops a killed run's completion before the earlier result is touched.
+  write_file(folder.path() / "summary.json", "old");
+  stage_file(folder.path() / "summary.json", "new");
+  write_file(folder.path() / "track.csv.partial", "new");
+  write_file(folder.path() / staged_list, "summary.json\ntrack.csv\n");
+  CHECK(summary_stands(folder.path()));
+  CHECK_THROWS_AS(complete_replacement(folder.path()), IoError);
+  CHECK(read_file(folder.path() / "summary.json") == "old");
+}
+
+TEST_CASE("pictures that cannot be removed are found before anything is replaced") {
+  constexpr uid_t nobody = 65534;
+  TemporaryFolder const folder;
+  write_all(folder.path(), earlier_result);
+  fs::permissions(folder.path() / "figures", fs::perms::owner_read | fs::perms::owner_exec);
+  bool const root = geteuid() == 0;  // to whom permissions are nothing
+  if (root)
+    for (char const* name : {"", "figures"}) REQUIRE(::chown((folder.path() / name).c_str(), nobody, static_cast<gid_t>(-1)) == 0);
+  if (root) REQUIRE(::seteuid(nobody) == 0);
+  bool failed = false;
+  try {
+    NewFiles files(folder.path());
+    files.write("summary.json", "new");
+    files.replace();
+  } catch (IoError const&) {
+    failed = true;
+  }
+  if (root) REQUIRE(::seteuid(0) == 0);
+  fs::permissions(folder.path() / "figures", fs::perms::owner_all);
+  CHECK(failed);
+  CHECK(all_files(folder.path()) == earlier_result);
+}
+
+TEST_CASE("the table of a track goes with its result, and stays where it is of the new one") {
+  for (bool const tracks : {false, true}) {
+    TemporaryFolder const folder;
+    write_all(folder.path(), {{"summary.json", "old"}, {"track.csv", "rows"}});
+    NewFiles files(folder.path());
+    if (tracks) files.take(tracked_rows);  // as it followed it has its name
+    files.write("summary.json", "new");
+    files.replace();
+    CHECK(fs::exists(folder.path() / "track.csv") == tracks);
+  }
+}
+
+TEST_CASE("a name that whoever completes a replacement would not know is refused when it is written") {
+  TemporaryFolder const folder;
+  NewFiles files(folder.path());
+  for (char const* name : {"notes.txt", "figures/a/b.svg", "../draws_1.csv", "figures/sketch.odg"}) {
+    CHECK_THROWS_AS(files.write(name, "new"), InternalError);
+    CHECK_THROWS_AS(files.take(name), InternalError);
+  }
+  files.write("draws_1.csv", "new");
+  CHECK_THROWS_AS(files.replace(), InternalError);  // a result has a summary
+}
+
 TEST_CASE("a link to a folder is followed, one to a file is replaced, and permissions are kept") {
   TemporaryFolder const folder;
   write_all(folder.path() / "real", earlier_result);
@@ -207,7 +276,7 @@ TEST_CASE("while a run has the lock its renames are left to it") {
   CHECK(all_files(folder.path()) == FilesByName{{"summary.json", "new"}});
 }
 
-TEST_CASE("reading a folder whose figures are a link removes nothing behind it; a run does as without a link") {
+TEST_CASE("what a folder from elsewhere asks for removes nothing behind a link to figures; a new result does") {
   TemporaryFolder const folder;
   fs::path const results = folder.path() / "results";
   make_folder(results);
@@ -219,6 +288,12 @@ TEST_CASE("reading a folder whose figures are a link removes nothing behind it; 
   CHECK(fs::exists(folder.path() / "mine.svg"));
   complete_replacement(results);
   CHECK(summary_stands(results));
+  CHECK(read_file(results / "summary.json") == "new");
+  CHECK(fs::exists(folder.path() / "mine.svg"));
+  NewFiles files(results);  // of a run that was told to replace what is there
+  files.write("summary.json", "newer");
+  files.replace();
+  CHECK_FALSE(fs::exists(folder.path() / "mine.svg"));
 }
 
 TEST_CASE("a list that is none of ours moves and removes nothing") {

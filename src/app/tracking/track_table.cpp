@@ -115,7 +115,7 @@ void TrackTable::finish() {
 
 std::vector<std::string> TrackTable::taken_over() {
   kept_ = true;
-  return follows_ ? std::vector<std::string>() : std::vector<std::string>{tracked_rows};
+  return {tracked_rows};
 }
 
 void TrackTable::fail() const { throw IoError(fmt::format("cannot write `{}`: {}", written_.string(), std::strerror(errno))); }

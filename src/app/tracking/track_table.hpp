@@ -31,7 +31,7 @@ class TrackTable {
   void add(TrackedRow const& row);
   /// All rows are there.
   void finish();
-  /// The files that stand ready for the result, which whoever asks takes over: none of a table that has its name already.
+  /// The files that stand ready for the result, or have their names already, which whoever asks takes over.
   std::vector<std::string> taken_over();
 
  private:

@@ -190,12 +190,20 @@ void write_file(std::filesystem::path const& path, std::string_view bytes) {
   flush_folder(target.parent_path());
 }
 
+void require_no_folder(std::filesystem::path const& path) {
+  if (struct stat facts = {}; ::stat(path.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode)) fail("write", path, EISDIR);
+}
+
+void require_removable(std::filesystem::path const& path) {
+  std::filesystem::path const folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail("remove", path, errno);
+}
+
 void stage_file(std::filesystem::path const& path, std::string_view bytes) {
   if (left) return;
   struct stat facts = {};
-  bool const there = ::stat(path.c_str(), &facts) == 0;
-  if (there && S_ISDIR(facts.st_mode)) fail("write", path, EISDIR);
-  bool const regular = there && S_ISREG(facts.st_mode);
+  require_no_folder(path);
+  bool const regular = ::stat(path.c_str(), &facts) == 0 && S_ISREG(facts.st_mode);
   if (int const error = write_partial(partial_path(path), bytes, regular ? std::optional(facts.st_mode) : std::nullopt))
     fail("write", path, error);
 }

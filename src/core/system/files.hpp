@@ -46,6 +46,12 @@ void stage_file(std::filesystem::path const& path, std::string_view bytes);
 /// been done. To be made durable by `flush_folder`.
 void rename_staged(std::filesystem::path const& path);
 
+/// IoError where a folder has the name of a file that is to be written.
+void require_no_folder(std::filesystem::path const& path);
+
+/// IoError where the permissions are not such that the file could be removed.
+void require_removable(std::filesystem::path const& path);
+
 /// Makes renames and removals in a folder durable. Some file systems cannot; the files are whole in any case.
 void flush_folder(std::filesystem::path const& folder);
 

@@ -9,9 +9,9 @@
 // that comes to the folder, a run or a reader, does what is left of 3.
 #pragma once
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace sysid {
 
@@ -27,23 +27,26 @@ class NewFiles {
 
   /// name: in the folder, "draws_1.csv", or "figures/pairs.svg". IoError where it cannot be written.
   void write(std::string const& name, std::string_view bytes);
-  /// One that has been written under `partial_path` already, and flushed.
-  void take(std::string const& name) { names_.push_back(name); }
-  /// Steps 2 to 4. There is a summary among them. IoError names what failed; after step 2 the next that comes tries again.
+  /// One that has been written under `partial_path` already, and flushed, or has its name. InternalError for a name that is none of
+  /// a result: whoever completes this would not know it.
+  void take(std::string const& name);
+  /// Steps 2 to 4. There is a summary among them. IoError names what failed; what can be foreseen fails before step 2, and after it
+  /// the next that comes tries again.
   void replace();
 
  private:
   std::filesystem::path folder_;
-  std::vector<std::string> names_;
+  std::set<std::string> names_;
   std::filesystem::path made_;  // the folder of figures, if there was none
   bool decided_ = false;
 };
 
-/// Steps 3 and 4, where a killed run has come to 2. To be called by whoever holds the folder's lock.
+/// Steps 3 and 4, where a killed run has come to 2; pictures of before behind a figures/ that is a link stay. To be called by
+/// whoever holds the folder's lock.
 void complete_replacement(std::filesystem::path const& folder);
 
-/// Whether a summary stands there, and so a whole result; `complete_replacement` comes first, unless a run is just doing so, the
-/// folder cannot be written, or its figures/ is a link: then it is left to the next run.
+/// Whether a summary stands there, and so a whole result; `complete_replacement` comes first, unless a run is just doing so, its
+/// figures/ is a link, or it fails: then it is left to the next run. Throws nothing of the files.
 bool summary_stands(std::filesystem::path const& folder);
 
 }  // namespace sysid

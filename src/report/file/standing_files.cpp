@@ -19,6 +19,12 @@ bool is_result_file(std::string const& name, std::string const& task) {
   return result_file_row(name) != nullptr || is_exported_file(name, task);
 }
 
+/// A folder of such a name is the user's; a link to one is removed as a file is.
+bool is_folder(fs::directory_entry const& entry) {
+  std::error_code ignored;
+  return fs::is_directory(entry.symlink_status(ignored));
+}
+
 std::string task_of(fs::path const& folder) { return (folder / "").lexically_normal().parent_path().filename(); }
 
 }  // namespace
@@ -32,13 +38,21 @@ std::vector<std::string> files_of_result(fs::path const& folder) {
   std::vector<std::string> out;
   std::error_code ignored;
   for (fs::directory_entry const& entry : fs::directory_iterator(folder, ignored))
-    if (std::string const name = entry.path().filename(); is_result_file(name, task_of(folder))) out.push_back(name);
+    if (std::string const name = entry.path().filename(); is_result_file(name, task_of(folder)) && !is_folder(entry))
+      out.push_back(name);
   for (fs::directory_entry const& entry : fs::directory_iterator(folder / "figures", ignored))
-    if (std::string const name = entry.path().filename(); is_figure_file(name)) out.push_back("figures/" + name);
+    if (std::string const name = entry.path().filename(); is_figure_file(name) && !is_folder(entry))
+      out.push_back("figures/" + name);
   return out;
 }
 
-bool holds_result(fs::path const& folder) { return !files_of_result(folder).empty() || fs::exists(folder / tracked_rows); }
+bool holds_track(fs::path const& folder) {
+  std::error_code ignored;
+  fs::directory_entry const table(folder / tracked_rows, ignored);
+  return fs::exists(table.symlink_status(ignored)) && !is_folder(table);
+}
+
+bool holds_result(fs::path const& folder) { return !files_of_result(folder).empty() || holds_track(folder); }
 
 void require_no_result(fs::path const& folder) {
   if (!holds_result(folder)) return;
@@ -54,7 +68,7 @@ UserError no_complete_result(fs::path const& folder, Help help) {
 void remove_result(fs::path const& folder, fs::path const& but) {
   // The summary first: where it stands, the result is whole.
   std::vector<std::string> names = files_of_result(folder);
-  names.emplace_back(tracked_rows);
+  if (holds_track(folder)) names.emplace_back(tracked_rows);
   std::partition(names.begin(), names.end(), [](std::string const& name) { return name == "summary.json"; });
   for (std::string const& name : names)
     if (folder / name != but) remove_file(folder / name);
@@ -66,7 +80,8 @@ void remove_partial(fs::path const& folder) {
   auto const look = [&](fs::path const& where, auto const& written) {
     for (fs::directory_entry const& entry : fs::directory_iterator(where, ignored)) {
       fs::path const whole = entry.path().parent_path() / entry.path().stem();
-      if (entry.path() == partial_path(whole) && written(whole.filename().string())) left.push_back(entry.path());
+      if (entry.path() == partial_path(whole) && written(whole.filename().string()) && !is_folder(entry))
+        left.push_back(entry.path());
     }
   };
   look(folder, [&](std::string const& name) {

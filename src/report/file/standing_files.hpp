@@ -15,8 +15,11 @@ inline constexpr char const* tracked_rows = "track.csv";
 bool is_figure_file(std::string const& name);
 
 /// The names of those that go with a result, exported ones and those in its figures/ included: "draws_1.csv", "figures/pairs.svg".
-/// Without the table of `track`.
+/// Without the table of `track`, and without folders, which are the user's whatever their names.
 std::vector<std::string> files_of_result(std::filesystem::path const& folder);
+
+/// Whether the table of `track` is there.
+bool holds_track(std::filesystem::path const& folder);
 
 /// True when the folder holds files of a result of before, whole or not. A checkpoint is none.
 bool holds_result(std::filesystem::path const& folder);
