@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -84,6 +85,27 @@ TEST_CASE("noise in proportion to the signal grows with it, and is not taken for
     CHECK(law.grows(limit_of_one_channel));
     CHECK(law.growth > 2);
   }
+}
+
+TEST_CASE("in units of a size that grows with the prediction large samples are as the others, and a bad one stays far off") {
+  Residuals made = white(1, 3000, 0);
+  auto const size = [&](std::size_t i) { return std::sqrt(0.04 + 4 * made.predicted[i] * made.predicted[i]); };
+  std::vector<double> const stated = made.values;
+  for (std::size_t i = 0; i < made.values.size(); ++i) made.values[i] *= size(i);
+  std::size_t const bad[] = {0, 1000};  // where the prediction is 0, and somewhere
+  for (std::size_t const place : bad) made.values[place] = 10;
+  made.values[7] = std::nan("");
+  std::vector<double> const units = in_growing_units(made.values, made.predicted, bad);
+  CHECK(std::isnan(units[7]));
+  double largest = 0;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (i == 7 || i == bad[0] || i == bad[1]) continue;
+    largest = std::max(largest, std::fabs(units[i]));
+    // No larger than in units of its own size, but for the error of the two mean squares, and smaller where the prediction is.
+    CHECK(std::fabs(units[i]) < 1.2 * std::fabs(stated[i]) + 1e-12);
+  }
+  CHECK(largest > 3);
+  for (std::size_t const place : bad) CHECK(units[place] > 4);
 }
 
 TEST_CASE("residuals that are missing, or too few, tell nothing") {

@@ -92,4 +92,28 @@ ResidualLaw residual_law(std::span<double const> residuals, std::span<double con
   return law;
 }
 
+std::vector<double> in_growing_units(std::span<double const> residuals, std::span<double const> predicted,
+                                     std::span<std::size_t const> far) {
+  std::vector<double> values, along;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!std::isfinite(residuals[i]) || !std::isfinite(predicted[i]) || std::ranges::binary_search(far, i)) continue;
+    values.push_back(residuals[i]);
+    along.push_back(std::fabs(predicted[i]));
+  }
+  std::vector<double> out(residuals.begin(), residuals.end());
+  std::vector<double> const rank = ranks_of(along);
+  double const n = static_cast<double>(values.size());
+  auto const mean_square = [&](std::vector<double> const& of, double from, double to) {
+    double const rms = rms_between(of, rank, from, to);
+    return rms * rms;
+  };
+  double const small = mean_square(values, 0, n / 3), large = mean_square(values, n - n / 3, n);
+  double const begin = mean_square(along, 0, n / 3), end = mean_square(along, n - n / 3, n);
+  if (!(small > 0 && end > begin)) return out;
+  double const slope = (large - small) / (end - begin);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] /= std::sqrt(std::max(small, small + slope * (predicted[i] * predicted[i] - begin)));
+  return out;
+}
+
 }  // namespace sysid

@@ -1,6 +1,8 @@
 // Whether white residuals have the law of normal noise of one size: their tails, and their size along the prediction.
 #pragma once
+#include <cstddef>
 #include <span>
+#include <vector>
 
 namespace sysid {
 
@@ -25,5 +27,11 @@ double kurtosis_p(double b2, double n);
 /// Growth: Spearman's rank correlation of the absolute values, times sqrt(n - 1), one-sided; it holds for any law of the residuals.
 /// p is 1 where neighbours are positively correlated by more than 2/sqrt(n).
 ResidualLaw residual_law(std::span<double const> residuals, std::span<double const> predicted);
+
+/// The residuals in units of a size that grows with the prediction: its square is a + b predicted^2, as of noise that is in part
+/// proportional to the signal, with the mean squares of the thirds with the smallest and the largest |prediction|, and nowhere
+/// below that of the first. far: places that are not counted there, which rise.
+std::vector<double> in_growing_units(std::span<double const> residuals, std::span<double const> predicted,
+                                     std::span<std::size_t const> far);
 
 }  // namespace sysid

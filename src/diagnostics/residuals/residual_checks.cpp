@@ -16,6 +16,7 @@
 #include "diagnostics/law/residual_law.hpp"
 #include "diagnostics/residuals/channel_residuals.hpp"
 #include "diagnostics/residuals/explained.hpp"
+#include "diagnostics/residuals/outliers.hpp"
 #include "diagnostics/residuals/residual_line.hpp"
 #include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
@@ -62,8 +63,16 @@ void check_share(ChannelResiduals const& of, ChannelTests const& tested, char co
                         look});
 }
 
+// Samples far off, by their places along the experiment, and how far.
+struct FarOff {
+  std::vector<std::size_t> places;
+  std::vector<double> sds;  // of all samples
+  char const* others = "all others";
+};
+
 // Rows as the file counts them, with how far they lie off.
-void check_outliers(ChannelResiduals const& of, std::vector<std::size_t> const& places, UserText const& text, Findings& findings) {
+void check_outliers(ChannelResiduals const& of, FarOff const& far, UserText const& text, Findings& findings) {
+  std::vector<std::size_t> const& places = far.places;
   if (places.empty()) return;
   std::string help = "check these rows: empty the cells that are not measurements";
   if (of.model().filtered())
@@ -74,12 +83,11 @@ void check_outliers(ChannelResiduals const& of, std::vector<std::size_t> const& 
   std::vector<std::string> named;
   for (std::size_t const place : places)
     if (named.size() < most_named)
-      named.push_back(
-          fmt::format("row {}, {:.0f} sds", of.data().first_row + static_cast<int>(place), std::fabs(of.sized.values[place])));
+      named.push_back(fmt::format("row {}, {:.0f} sds", of.data().first_row + static_cast<int>(place), std::fabs(far.sds[place])));
   if (places.size() > most_named) named.push_back("...");
   findings.push_back({FindingCode::samples_far_off, Severity::warning, of.names(),
-                      fmt::format("{} of {} {} much farther from the fit than all others ({})", counted(places.size(), "sample"),
-                                  of.name(), places.size() == 1 ? "lies" : "lie", fmt::join(named, "; ")),
+                      fmt::format("{} of {} {} much farther from the fit than {} ({})", counted(places.size(), "sample"), of.name(),
+                                  places.size() == 1 ? "lies" : "lie", far.others, fmt::join(named, "; ")),
                       help});
 }
 
@@ -161,9 +169,18 @@ void check_memory(ChannelResiduals const& of, ChannelTests const& tested, Limits
   }
 }
 
+// Those of the places that the growth of the noise does not explain.
+FarOff far_off_in_growing_noise(ChannelResiduals const& of, std::vector<std::size_t> const& far) {
+  std::vector<double> predicted(of.sized.values.size(), std::nan(""));
+  for (std::size_t i = 0; i < of.places.size(); ++i) predicted[of.places[i]] = of.predicted[i];
+  FarOff still{far, in_growing_units(of.sized.values, predicted, far), "noise that grows with the prediction explains"};
+  std::erase_if(still.places, [&](std::size_t place) { return !(std::fabs(still.sds[place]) > far_off_sds); });
+  return still;
+}
+
 // Of residuals that the other tests take for noise, but for single samples: whether it has the law and the one size that the model
 // has. Noise that grows with the signal has such samples where the signal is large; heavy tails are another cure for them.
-void check_law(ChannelResiduals const& of, int together, UserText const& text, Findings& findings) {
+void check_law(ChannelResiduals const& of, ChannelTests const& tested, int together, UserText const& text, Findings& findings) {
   Channel const& channel = of.described();
   bool const heavy_tails = channel.noise.row->name == "student_t";
   if (!(channel.noise.row->gaussian || heavy_tails) || channel.noise.lower || channel.noise.upper) return;
@@ -183,7 +200,10 @@ void check_law(ChannelResiduals const& of, int together, UserText const& text, F
                          bool const interval = channel.unit && channel.unit->offset != 0;  // 0 degC is no zero
                          return text.proportional && !interval ? text.proportional(channel, relative) : std::nullopt;
                        }};
-  if (auto finding = noise_law(law, rare / (2 * together), words)) findings = {std::move(*finding)};
+  auto finding = noise_law(law, rare / (2 * together), words);
+  if (!finding) return;
+  findings = {std::move(*finding)};
+  if (!tested.far.empty()) check_outliers(of, far_off_in_growing_noise(of, tested.far), text, findings);
 }
 
 FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, UserText const& text,
@@ -193,14 +213,14 @@ FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Li
   Findings shape;
   check_line(of, tested, text, shape);
   check_size(of, tested, limits, text, line, shape);
-  check_outliers(of, tested.far, text, shape);
+  check_outliers(of, {tested.far, of.sized.values}, text, shape);
   if (tested.white) check_memory(of, tested, limits, line, shape);
   // Deviances of small counts are neither centred nor alike.
   bool const ordered = tested.white && !of.described().noise.row->discrete;
   bool const coloured = ordered && tested.white->fires(limits.white);
   bool const drifts = ordered && tested.unexplained > less_than_half && trend_p_value(of.residuals) < rare / limits.channels;
   check_share(of, tested, coloured ? "are correlated in time" : drifts ? "have a trend in time" : nullptr, findings);
-  check_law(of, limits.channels, text, shape);
+  check_law(of, tested, limits.channels, text, shape);
   findings.insert(findings.end(), shape.begin(), shape.end());
   return line;
 }

@@ -119,7 +119,7 @@ TEST_CASE("one spike neither hides what a fit misses nor is taken for it") {
 TEST_CASE("noise that grows with the signal is named as such, not by its largest samples, under heavy tails, too") {
   auto const record = [](int row, Stream& stream) {
     double const signal = 2 * std::exp(-0.004 * (row - 101));
-    return signal * (1 + (row == 110 ? 1.2 : 0.1 * stream.normal())) + 0.001 * stream.normal();
+    return signal * (1 + (row == 110 ? 0.45 : 0.1 * stream.normal())) + 0.001 * stream.normal();
   };
   std::string heavy = decay;
   std::string const normal = "normal(y, sd = s)";
@@ -132,6 +132,15 @@ TEST_CASE("noise that grows with the signal is named as such, not by its largest
     CHECK(found->at("message").get<std::string>().find("grow with the prediction") != std::string::npos);
     CHECK(find(findings, "samples_far_off") == nullptr);
   }
+  // A bad row is named besides.
+  json const bad =
+      findings_of_late_rows(decay, [&](int row, Stream& stream) { return record(row, stream) + (row == 250 ? 1.6 : 0); });
+  CHECK(find(bad, "noise_law") != nullptr);
+  json const* const far = find(bad, "samples_far_off");
+  REQUIRE_MESSAGE(far != nullptr, bad.dump());
+  std::string const message = far->at("message");
+  CHECK(message.starts_with(
+      "1 sample of z lies much farther from the fit than noise that grows with the prediction explains (row 250"));
   // A sample far off in noise of one size stays one.
   json const plain = findings_of_late_rows(decay, [](int row, Stream& stream) {
     return 2 * std::exp(-0.004 * (row - 101)) + (row == 110 ? 1.5 : 0.05 * stream.normal());
