@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "app/preflight/rows_ahead.hpp"
 #include "app/preflight/time_scales.hpp"
 #include "app/session/fit_target.hpp"
 #include "experiment/sticking.hpp"
@@ -15,21 +16,6 @@ namespace {
 constexpr std::size_t most_steps = 1U << 20;  // of one trajectory
 constexpr int enough_candidates = 12;         // fewer than that cost more than a refinement less
 constexpr double most_work = 1.2e9;           // operations of the equations at the steps of all trajectories: about a second
-
-// The experiment up to its so many scored samples: enough to look ahead, and done in a second. A sensor may be switched on late,
-// and where samples are few the rows behind the first one end it too.
-Experiment shortened_to_scored(Experiment const& experiment) {
-  constexpr std::size_t most_rows = 10 * Preflight::most_scored;
-  std::size_t rows = 0, counted = 0, since_first = 0;
-  while (rows < experiment.time.size() && counted < Preflight::most_scored && since_first < most_rows) {
-    bool any = false;
-    for (std::size_t c = 0; c < experiment.measured.size(); ++c) any = any || experiment.is_scored(c, rows);
-    counted += any ? 1 : 0;
-    since_first += counted > 0 ? 1 : 0;
-    ++rows;
-  }
-  return slice(experiment, 0, static_cast<int>(rows));
-}
 
 // Whether states switch an equation from one branch to another that does not begin where the first ends. A fixed step that passes
 // the place makes no difference between a little earlier and a little later: the response is constant in what moves the place, but
@@ -86,7 +72,7 @@ Preflight::Preflight(Session& session, FitTask const& stated, std::vector<Experi
   std::size_t longest = 0;
   for (ExperimentData const& each : data) {
     exact_steps = exact_steps && allows_exact_steps(each.experiment, model());
-    experiments.push_back(shortened_to_scored(each.experiment));
+    experiments.push_back(slice(each.experiment, 0, rows_ahead(each.experiment, most_scored)));
     longest = std::max(longest, experiments.back().time.size());
     shortened = shortened || experiments.back().time.size() < each.experiment.time.size();
   }

@@ -38,12 +38,12 @@ class Preflight {
   std::string sticking;           // what to do about dry friction, in place of advice on solvers; empty without
   std::vector<Experiment> experiments;
   bool exact_steps = true;  // suit all experiments, whole
-  bool shortened = false;   // to about their first `most_scored` rows with a sample
+  bool shortened = false;   // to their `rows_ahead`
   Effort effort;
   double step_work = 0;                 // operations of the equations at the steps of one trajectory, with the stated solver
   std::vector<SolverSettings> solvers;  // as stated, then ever finer
 
-  static constexpr std::size_t most_scored = 10000;  // rows of an experiment with a sample that are looked at
+  static constexpr std::size_t most_scored = 10000;  // rows with a sample of an experiment that are looked at, about
   static constexpr double smooth_enough = 1e-8;      // tolerance of adaptive steps under differences
 
   /// By one of the solvers; the rows of finer and finer ones take long to tabulate, so each is made when it is first asked for.
