@@ -19,7 +19,6 @@ namespace {
 
 constexpr double clearly_better = 10;    // nats
 constexpr double rounding_alone = 1e-8;  // of the known side
-constexpr double most_numbers = 2e7;     // rows times columns
 constexpr double same_column = 1e-6;     // squared sine of the angle to a term of the dictionary
 
 /// A sample that terms read, and what it is called.
@@ -72,15 +71,17 @@ class OutsideTerms {
   std::vector<Term> terms_;
 };
 
-std::vector<Term> offered_terms(Dictionary& wider, Equation const& stated, FoundEquation const& found, double rows) {
+/// As many as `most` columns: of single samples, and of pairs of those that the chosen terms read, if all of these fit.
+std::vector<Term> offered_terms(Dictionary& wider, Equation const& stated, FoundEquation const& found, double most) {
   std::vector<NodeId> all, kept;
   for (Term const& term : stated.terms) all.push_back(term.expression);
   for (int const j : found.chosen.terms) kept.push_back(stated.terms[static_cast<std::size_t>(j)].expression);
   OutsideTerms outside(wider.graph);
   for (Sample const& each : samples_read(wider, stated, all)) outside.of_one(each);
   std::vector<Sample> const chosen = samples_read(wider, stated, kept);
-  std::size_t const pairs = chosen.size() * (chosen.size() - 1) / 2;
-  if (chosen.size() > 1 && rows * static_cast<double>(8 * pairs) < most_numbers)
+  double const ones = static_cast<double>(outside.terms().size()), read = static_cast<double>(chosen.size());
+  if (ones > most) return {};
+  if (ones + 8 * read * (read - 1) / 2 <= most)
     for (std::size_t a = 0; a < chosen.size(); ++a)
       for (std::size_t b = a + 1; b < chosen.size(); ++b) outside.of_two(chosen[a], chosen[b]);
   return outside.terms();
@@ -95,13 +96,13 @@ double gain_of(Eigen::VectorXd const& rest, Eigen::VectorXd const& column) {
 }  // namespace
 
 std::optional<Concern> outside_term(Dictionary const& dictionary, std::span<Experiment const> experiments, Method const& method,
-                                    int equation, FoundEquation const& found) {
+                                    int equation, FoundEquation const& found, double most_numbers) {
   Equation const& stated = dictionary.equations[static_cast<std::size_t>(equation)];
   if (found.chosen.terms.empty()) return std::nullopt;
+  auto const interrupted = [&] { return method.interrupted && method.interrupted(); };
   Dictionary wider = dictionary;
-  std::vector<Term> const outside = offered_terms(wider, stated, found, found.rows);
   Equation offered{stated.name, stated.known, {}};
-  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(stated.terms.size() + outside.size()));
+  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(stated.terms.size()));
   for (std::size_t k = 0; k < found.chosen.terms.size(); ++k) {
     offered.terms.push_back(stated.terms[static_cast<std::size_t>(found.chosen.terms[k])]);
     coefficients(static_cast<Eigen::Index>(k)) = found.chosen.coefficient(static_cast<Eigen::Index>(k));
@@ -110,19 +111,22 @@ std::optional<Concern> outside_term(Dictionary const& dictionary, std::span<Expe
   for (std::size_t j = 0; j < stated.terms.size(); ++j)
     if (!found.terms[j].kept && !found.terms[j].excluded) offered.terms.push_back(stated.terms[j]);
   auto const inside = static_cast<Eigen::Index>(offered.terms.size());
+  double const most = most_numbers / std::max(1.0, static_cast<double>(found.rows)) - static_cast<double>(inside);
+  std::vector<Term> const outside = offered_terms(wider, stated, found, most);
+  if (outside.empty()) return std::nullopt;
   offered.terms.insert(offered.terms.end(), outside.begin(), outside.end());
-  if (static_cast<double>(found.rows) * static_cast<double>(offered.terms.size()) > most_numbers) return std::nullopt;
-  coefficients.conservativeResize(static_cast<Eigen::Index>(offered.terms.size()));
+  coefficients.conservativeResizeLike(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(offered.terms.size())));
   wider.equations = {offered};
   std::unique_ptr<Projection> const projection = method.form->project(wider, experiments, method.form_settings);
   NoiseOfEquation const* const noise = projection->noise_of_equation();
-  if (noise == nullptr || any_fatal(projection->concerns(0))) return std::nullopt;
+  if (noise == nullptr || any_fatal(projection->concerns(0)) || interrupted()) return std::nullopt;
   Columns const rows = noise->whitened(0, coefficients, static_cast<int>(found.moving_average.size()));
   Eigen::Index const left = rows.known.size() - kept;
-  if (left < 4 * kept || !rows.terms.leftCols(kept).allFinite()) return std::nullopt;
+  if (left < 4 * kept || !rows.terms.leftCols(kept).allFinite() || interrupted()) return std::nullopt;
   OrthogonalTriangular const decomposed(rows.terms.leftCols(kept));
   Eigen::VectorXd const rest = decomposed.turned(rows.known).bottomRows(left);
-  Eigen::MatrixXd const others = decomposed.turned(rows.terms.rightCols(rows.terms.cols() - kept)).bottomRows(left);
+  Eigen::MatrixXd const turned = decomposed.turned(rows.terms);
+  auto const others = turned.bottomRightCorner(left, rows.terms.cols() - kept);  // a view: there are many numbers
   if (!(rest.norm() > rounding_alone * rows.known.norm())) return std::nullopt;
 
   auto const explained = [&](Eigen::Index j) {  // by the kept terms: nothing but rounding would be left of the column

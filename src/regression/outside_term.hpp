@@ -15,8 +15,9 @@ namespace sysid::regression {
 ///
 /// and by ten more than any term of the dictionary that was not chosen. An input that is white leaves residuals that are white and
 /// correlated with no sample, whatever function of it is missing: neither whiteness nor correlations show it. found: equation
-/// `equation` of the dictionary, in discrete time. Nothing where the equation leaves only rounding.
+/// `equation` of the dictionary, in discrete time. most_numbers: rows times columns; where there would be more no products are
+/// tried, or nothing. Nothing where the equation leaves only rounding, or the method was interrupted.
 std::optional<Concern> outside_term(Dictionary const& dictionary, std::span<Experiment const> experiments, Method const& method,
-                                    int equation, FoundEquation const& found);
+                                    int equation, FoundEquation const& found, double most_numbers = 2e7);
 
 }  // namespace sysid::regression
