@@ -142,6 +142,16 @@ bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches) {
   return hits < 2 || (w > usual && w * (w + 1) > tolerable * n * (n - 1));
 }
 
+std::size_t next_finalists(Objective const& objective, std::vector<Mode> const& modes, std::vector<Climber> ends,
+                           std::size_t finalists, std::size_t starts) {
+  if (modes.empty()) return finalists;
+  auto const high = [&](auto const& each) { return each.log_density > modes.front().log_density - nearly_as_high; };
+  // Ends that the ellipsoids leave apart may be of one mode, and modes may be of earlier passes: both must be as many.
+  auto const known = static_cast<std::size_t>(std::ranges::count_if(modes, high));
+  auto const met = static_cast<std::size_t>(std::ranges::count_if(distinct(objective, std::move(ends)), high));
+  return std::min(known, met) < finalists ? finalists : std::min(2 * finalists, starts);
+}
+
 void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes) {
   // What is asked for is the highest point, except by chains; how much lies around it is another question.
   auto const height = [&](Mode const& m) { return objective_kind == ObjectiveKind::posterior ? m.log_mass : m.log_density; };

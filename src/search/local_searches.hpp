@@ -50,6 +50,12 @@ void settle_all(Objective const& objective, std::vector<Climber>& climbers,
 /// (Boender and Rinnooy Kan 1987).
 bool may_be_missed(std::vector<Mode> const& modes, std::size_t searches);
 
+/// How many searches of the next pass go on to their ends, after one of `finalists` that ended in `ends`: where each of these has a
+/// mode of its own that is nearly as high as the best, others that were left are a little lower, and twice as many go on, but no
+/// more than there are `starts`. modes: of all passes.
+std::size_t next_finalists(Objective const& objective, std::vector<Mode> const& modes, std::vector<Climber> ends,
+                           std::size_t finalists, std::size_t starts);
+
 /// By falling mass for a posterior, else by falling density, with their shares of it.
 void rank(ObjectiveKind objective_kind, std::vector<Mode>& modes);
 

@@ -64,6 +64,31 @@ TEST_CASE("a mode met once may have a neighbour that was missed, whatever was me
   CHECK_FALSE(may_be_missed(many, 200));
 }
 
+TEST_CASE(
+    "more searches go on to their ends after a pass that had a high mode for each, not where the passes together have as many") {
+  TestTarget const target = two_peaks();
+  Objective const objective = make_objective(target, ObjectiveKind::posterior, 1, 0);
+  std::vector<Mode> modes;
+  std::vector<Climber> ends;
+  for (int k = 0; k < 8; ++k) {
+    double const height = k < 6 ? 0 : -10;  // the last two of eight are of little mass
+    modes.push_back({});
+    modes.back().log_density = height;
+    ends.push_back(climber_at(Eigen::VectorXd::Constant(1, k), height));
+    ends.back().curvature = Eigen::MatrixXd::Identity(1, 1);
+  }
+  auto const pass = [&](int from, int count) { return std::vector<Climber>(ends.begin() + from, ends.begin() + from + count); };
+  CHECK(next_finalists(objective, modes, pass(0, 4), 4, 100) == 8);
+  CHECK(next_finalists(objective, modes, pass(0, 4), 4, 6) == 6);
+  CHECK(next_finalists(objective, modes, pass(0, 3), 4, 100) == 4);  // fewer starts than that could be solved
+  CHECK(next_finalists(objective, modes, pass(4, 4), 4, 100) == 4);  // half of them low
+  std::vector<Climber> met = pass(0, 4);
+  met[3] = met[0];
+  CHECK(next_finalists(objective, modes, met, 4, 100) == 4);  // two in one place, though six high modes are known
+  CHECK(next_finalists(objective, {modes.begin(), modes.begin() + 3}, pass(0, 4), 4, 100) == 4);  // the ends are of three modes
+  CHECK(next_finalists(objective, {}, {}, 4, 100) == 4);
+}
+
 TEST_CASE("nineteen modes of one height are all found, with equal shares") {
   TestTarget const target({"f"}, {{Prior::uniform, 2.5, 97.5}}, 1, 0, [](std::vector<double> const& x, std::vector<double>& rows) {
     rows[0] = std::sin(std::numbers::pi * x[0] / 5) / 0.1;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -103,16 +102,12 @@ SearchResult search_whole(Target const& target, ObjectiveKind objective_kind, Ru
     int const rounds = objective_kind == ObjectiveKind::posterior ? most_rounds_inside : breadth.rounds;
     work.part(last.size() * usual_rounds * round, 0);
     finish(*objective, last, rounds, context.ledger, stop, context.journal);
-    ended.insert(ended.end(), std::make_move_iterator(last.begin()), std::make_move_iterator(last.end()));
+    ended.insert(ended.end(), last.begin(), last.end());
     if (stop()) break;
     if (!ended.empty()) modes = modes_of(*objective, ended, context.ledger, stop, context.journal);
     // One end is of one start, the only draw of the pass that could be solved: more passes would hardly have others.
     if (!modes.empty() && (ended.size() == 1 || !may_be_missed(modes, ended.size()))) break;
-    // As many as were followed to their ends: those a little lower have not been.
-    auto const high =
-        std::ranges::count_if(modes, [&](Mode const& each) { return each.log_density > modes.front().log_density - 5; });
-    if (static_cast<std::size_t>(high) >= finalists)
-      finalists = std::min<std::size_t>(2 * finalists, breadth.likeliest + breadth.others);
+    finalists = next_finalists(*objective, modes, std::move(last), finalists, breadth.likeliest + breadth.others);
     if (pass + 1 < passes)
       work.next(fmt::format("searching the prior, pass {} of at most {}", pass + 2, passes), of_draws, early + last_part());
   }
