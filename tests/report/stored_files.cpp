@@ -54,6 +54,7 @@ TEST_CASE("a result with a file missing, cut short, changed or too many is refus
   write_file(folder.path() / "draws_5.csv", content);
   CHECK(refusal(folder.path()) == "`draws_5.csv` does not belong to the result in its folder");
   remove_file(folder.path() / "draws_5.csv");
+  make_folder(folder.path() / "draws_of_before.csv");  // the user's
   CHECK(refusal(folder.path()) == "");
 
   fs::path const summary = folder.path() / "summary.json";

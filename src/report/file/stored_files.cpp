@@ -31,7 +31,8 @@ void require_files(fs::path const& folder, std::string const& summary) {
       throw unusable_result(fmt::format("`{}` has been changed since it was written", (folder / name).string()));
   }
   for (fs::directory_entry const& entry : fs::directory_iterator(folder))
-    if (std::string const name = entry.path().filename(); is_stored_table(name) && !files.contains(name))
+    if (std::string const name = entry.path().filename();
+        is_stored_table(name) && !files.contains(name) && !fs::is_directory(entry.symlink_status()))
       throw unusable_result(fmt::format("`{}` does not belong to the result in its folder", entry.path().string()));
 }
 
