@@ -19,9 +19,9 @@ Diagnostic comma_missing(Token const& before, Token const& behind);
 Diagnostic two_tasks_on_a_line(Token const& behind);
 /// E1102: a bracket never closed; `noticed` is where it had to be closed at the latest.
 Diagnostic unclosed(Token const& opener, Span noticed);
-/// E1103
 /// Help where a block stands inside another one.
 std::string no_block_inside(Token const& block);
+/// E1103
 Diagnostic unclosed_text(Span text);
 /// E1104: `(a]`.
 Diagnostic mismatched(Token const& opener, Token const& closer);
@@ -40,11 +40,11 @@ Diagnostic number_out_of_range(Span number, std::string_view text);
 Diagnostic unknown_statement(Token const& word, std::string_view place, std::span<std::string_view const> known);
 /// E1109: `equation m*y'' = x`.
 Diagnostic equation_with_keyword(Token const& word);
-/// E1110: neither an item nor a task begins so.
 /// Help about a word in a data block that begins a statement of a model; with_tilde: its line has a `~`. Empty for other words.
 std::string place_of_statement(std::string_view word, bool with_tilde);
 /// Help about a word that other languages compute or show results with; empty for other words.
 std::string place_of_output(std::string_view word);
+/// E1110: neither an item nor a task begins so.
 Diagnostic unknown_item(Token const& word);
 /// E1111: `posterior = fitt duffing`.
 Diagnostic unknown_verb(Token const& word);
