@@ -250,7 +250,8 @@ void Evaluator::refuse_unknown(ast::Reference const& reference, Span span) {
   std::vector<std::string> names = known_names();
   for (CommandRow const& row : commands()) names.emplace_back(row.name);  // a command misspelt reads like a quantity
   std::string near = did_you_mean(path, names);
-  if (std::string ours = instead_of_command(path); !ours.empty()) near = std::move(ours);
+  if (std::string const ours = instead_of_command(path); !ours.empty())
+    near = nearest(path, known_names()).empty() ? ours : fmt::format("{} for the command: {}", near, ours);
   if (find(series_functions(), path) != nullptr) near = fmt::format("write `{}(CHANNEL)`", path);
   auto const* text = reference.index.size() == 1 ? std::get_if<ast::Text>(&reference.index.front().node) : nullptr;
   if (text != nullptr) near = fmt::format("write `{}.{}`", reference.name.text, text->value);

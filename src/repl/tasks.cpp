@@ -48,6 +48,8 @@ bool holds_own_result(Session const& session, Task const& task) {
     return !stored_otherwise(session, task, stated_seed(task));
   } catch (UserError const&) {
     return false;
+  } catch (IoError const&) {  // what cannot be read is nothing to go on from
+    return false;
   }
 }
 

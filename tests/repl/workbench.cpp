@@ -2,6 +2,7 @@
 #include "repl/workbench.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -390,6 +391,23 @@ TEST_CASE("a fit that is stopped before its first draw leaves none of an earlier
   CHECK(d.enter("mean(k3)"));
 }
 
+TEST_CASE("a fit that is stopped where a file of an earlier result cannot be read goes on all the same") {
+  Dialogue d;
+  d.begin();
+  std::string const fit = "post = fit oscillator to bench.train with map";
+  REQUIRE_MESSAGE(d.enter(fit), d.messages());
+  REQUIRE_MESSAGE(d.enter("parameter k3 [N/m^3] ~ log_uniform(1e7, 1e11); 1 [kg]*y'' + c*y' + k*y + k3*y^3 = x"), d.messages());
+  std::filesystem::path const table = d.folder() / "results/post/predict.csv";
+  REQUIRE(std::filesystem::remove(table));
+  REQUIRE(::mkfifo(table.c_str(), 0600) == 0);
+  d.workbench().interrupt_after(1);
+  REQUIRE_MESSAGE(d.enter(fit), d.messages());
+  CHECK_FALSE(d.enter("count(k)"));
+  REQUIRE_MESSAGE(d.enter("resume post"), d.messages());
+  CHECK(d.enter("mean(k3)"));
+  CHECK(std::filesystem::is_regular_file(table));
+}
+
 TEST_CASE("what a task has left is forgotten as a whole") {
   repl::TaskResults results;
   for (char const* name : {"first", "second"}) {
@@ -478,6 +496,12 @@ TEST_CASE("a command misspelt is told from a quantity, before any run and after 
   REQUIRE(d.enter("first = fit oscillator to bench.train with map"));
   CHECK_FALSE(d.enter("chek"));
   CHECK(has(d.messages(), "did you mean `check`?"));
+  // A command of other prompts may be a quantity misspelt.
+  CHECK_FALSE(d.enter("cd"));
+  CHECK(has(d.messages(), "did you mean `c`? for the command: paths are relative"));
+  CHECK_FALSE(d.enter("who"));
+  CHECK(has(d.messages(), "write `list`"));
+  CHECK_FALSE(has(d.messages(), "did you mean"));
 }
 
 TEST_CASE("a damaged table of draws is named, not read as numbers that are missing") {
