@@ -9,6 +9,7 @@
 #include "python/density.hpp"
 #include "python/interrupts.hpp"
 #include "python/language.hpp"
+#include "python/shown.hpp"
 #include "python/tasks.hpp"
 
 namespace sysid::python {
@@ -53,7 +54,7 @@ void translate(std::exception_ptr thrown) {
     if (thrown) std::rethrow_exception(thrown);
   } catch (Raised const& raised) {
     py::object const error = py::module_::import("sysid._error").attr("Error");
-    PyErr_SetObject(error.ptr(), error(raised.what(), raised.json()).ptr());
+    PyErr_SetObject(error.ptr(), error(shown(raised.what()), shown(raised.json())).ptr());
   } catch (Interrupted const&) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
   }
@@ -69,9 +70,10 @@ PYBIND11_MODULE(_engine, module) {
   py::class_<OpenFile, std::shared_ptr<OpenFile>>(module, "File")
       .def(py::init(&open), py::arg("path"), py::arg("text"), py::arg("records"), py::arg("awaits_records") = false,
            py::call_guard<py::gil_scoped_release>())
-      .def_property_readonly("warnings", &OpenFile::warnings)
+      .def_property_readonly("warnings", [](OpenFile const& file) { return shown(file.warnings()); })
       .def_property_readonly("path", [](OpenFile const& file) { return file.source().name(0); })
-      .def_property_readonly("text", [](OpenFile const& file) { return std::string(file.source().text(0)); })
+      .def_property_readonly("text", [](OpenFile const& file) { return shown(file.source().text(0)); })
+      .def_property_readonly("content", [](OpenFile const& file) { return py::bytes(file.source().text(0)); })
       .def_property_readonly("tasks", &tasks)
       .def_property_readonly("data", &data)
       .def_property_readonly("models", &typeset_models);

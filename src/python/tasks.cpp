@@ -14,6 +14,7 @@
 #include "exchange/export_netcdf.hpp"
 #include "python/arrays.hpp"
 #include "python/interrupts.hpp"
+#include "python/shown.hpp"
 #include "report/page/check_page.hpp"
 #include "report/page/comparison.hpp"
 
@@ -92,7 +93,7 @@ py::tuple run(OpenFile const& file, std::vector<std::string> const& names, Asked
     });
     requested = interrupts.requested();
   }
-  return py::make_tuple(static_cast<int>(exit), out.str(), notices.str(), requested);
+  return py::make_tuple(static_cast<int>(exit), shown(out.str()), shown(notices.str()), requested);
 }
 
 /// The page as text, and as JSON with the messages about the text.
@@ -109,7 +110,7 @@ py::tuple check(OpenFile const& file, Asked const& asked) {
     return std::pair(check_text(result.page), check_json(result.page, render_json(result.diagnostics, file.source())));
   });
   py::gil_scoped_acquire const locked;
-  return py::make_tuple(text, json);
+  return py::make_tuple(shown(text), shown(json));
 }
 
 py::dict attributes_of(Attributes const& attributes) {

@@ -465,6 +465,45 @@ posterior = fit decay to bench with mh, seed = 1
             np.testing.assert_array_equal(pickle.loads(files).log_density(theta), expected_of_files)
             os.chdir(before)
 
+    def test_another_working_directory_leads_to_no_other_record(self):
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        theta = np.ones(2)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, scale in (("a", 1.0), ("b", 2.0)):
+                os.mkdir(os.path.join(folder, name))
+                rows = "".join(f"{u!r},{scale * d!r}\n" for u, d in zip(U.tolist(), D.tolist()))
+                pathlib.Path(folder, name, "nowhere.csv").write_text("u,d\n" + rows)
+            os.chdir(os.path.join(folder, "a"))
+            pathlib.Path("line.sysid").write_text(LINE)
+            expected = sysid.load("line.sysid").log_density(theta)
+            models = [sysid.load("line.sysid"), sysid.loads(LINE), sysid.loads(LINE, data={"u": U, "d": D})]
+            self.assertEqual(models[0].path, "line.sysid")
+            for other in ("../b", ".."):
+                os.chdir(other)
+                for model in models:
+                    self.assertEqual(model.log_density(theta), expected)
+                    self.assertEqual(pickle.loads(pickle.dumps(model)).log_density(theta), expected)
+            self.assertEqual(models[0].path, os.path.join(os.path.realpath(folder), "a", "line.sysid"))
+            os.chdir(before)
+
+    def test_a_comment_in_another_encoding(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "line.sysid")
+            path.write_bytes(LINE.encode() + b"# in \xb5m\n")
+            model = sysid.load(path, data={"u": U, "d": D})
+            self.assertTrue(model.text.endswith("# in \N{REPLACEMENT CHARACTER}m\n"))
+            again = pickle.loads(pickle.dumps(model))
+            self.assertEqual(again.log_density(np.ones(2)), model.log_density(np.ones(2)))
+            path.write_bytes(LINE.encode().replace(b"slope*u, sd = sd)", b"slop*u, sd = sd)  # \xb5"))
+            with self.assertRaises(sysid.Error) as caught:
+                sysid.load(path)
+            self.assertEqual(caught.exception.code, "E2001")
+            self.assertEqual(caught.exception.diagnostics[0]["code"], "E2001")
+            path.write_bytes(LINE.encode().replace(b"slope*u", b"slope*u\xb5"))
+            with self.assertRaisesRegex(sysid.Error, "the byte 0xb5 is not valid UTF-8"):
+                sysid.load(path)
+
     def test_what_is_wrong_with_data(self):
         with self.assertRaisesRegex(sysid.Error, "no column `d`.*\n.*reads `u`, `d`; there are `u`"):
             sysid.loads(LINE, data={"u": U})

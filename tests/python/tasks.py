@@ -203,6 +203,38 @@ class Results(Desk):
         os.remove("decay.sysid")
         np.testing.assert_allclose(pickle.loads(kept).observed_data.d, D[:30])
 
+    def test_a_pickle_has_the_files_of_tasks_alone(self):
+        model = sysid.load("decay.sysid")
+        fit = model.fit(output=".")
+        expected = files_of(fit.folder)
+        os.mkdir("photographs")
+        pathlib.Path("photographs/large.bin").write_bytes(b"sysid" * 10**5)
+        kept = pickle.dumps(fit)
+        self.assertLess(len(kept), sum(map(len, expected.values())) + 10**5)
+        again = pickle.loads(kept)
+        self.assertEqual(files_of(again.folder.parent), {f"posterior/{name}": content for name, content in expected.items()})
+        self.assertTrue(again.posterior.equals(fit.posterior))
+        shutil.rmtree("posterior")
+        with self.assertRaisesRegex(FileNotFoundError, "the files of `posterior` are no longer in posterior"):
+            pickle.dumps(fit)
+
+    def test_results_stay_where_they_are(self):
+        model = sysid.load("decay.sysid")
+        fit = model.fit(output="results")
+        expected, rate = files_of(fit.folder), fit.parameters["rate"]["mean"]
+        os.mkdir("inner")
+        os.chdir("inner")
+        self.addCleanup(os.chdir, self.folder.name)
+        self.assertEqual(fit.parameters["rate"]["mean"], rate)
+        self.assertEqual(files_of(fit.folder), expected)
+        again = pickle.loads(pickle.dumps(fit))
+        self.assertEqual(files_of(again.folder), expected)
+        self.assertIn("log_likelihood", fit.groups())
+        # A task that replaces them is told so wherever it is called.
+        model.fit(output="../results", force=True, seed=8)
+        self.assertEqual(files_of(fit.folder), expected)
+        self.assertNotEqual(files_of("../results/posterior"), expected)
+
     def test_check_and_compare(self):
         model = sysid.load("decay.sysid")
         check = model.check(seed=1)

@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from . import _display, _engine, _progress, _records
 from ._error import Error, ModelWarning
 from ._numbers import whole
-from ._results import Check, Folder, Result, keep_apart, placed, stamp, take_along
+from ._opened import Opened, placed
+from ._results import Check, Folder, Result, keep_apart, stamp, take_along
 from ._words import in_python
 
 Array = NDArray[np.float64]
@@ -142,22 +143,26 @@ class Model:
         threads: int = 0,
     ) -> None:
         threads = whole(threads, "threads", 4096)
-        self._state = {"path": os.fspath(path), "task": task, "threads": threads, "from": os.getcwd()}
+        self._task, self._threads = task, threads
         self._prepared: Optional[int] = None
         self._folder: Optional[Folder] = None
-        self._begin(_engine.File(self.path, text, {}, data is not None), {})
+        self._begin(Opened(os.fspath(path), text, {}, data is not None))
         if data is not None:
             self._folder = Folder()
             records = _records.write(data, self._file.data, str(self._folder.path))  # blocks need no `file` line
-            self._begin(_engine.File(self.path, self.text, records), records)
+            self._begin(Opened(self.path, self._file.content, records))
         if self._file.warnings:
             warnings.warn(in_python(self._file.warnings), ModelWarning, stacklevel=3)
 
-    def _begin(self, file: _engine.File, records: dict[str, str]) -> None:
-        self._file, self._records, self._process = file, records, os.getpid()
+    def _begin(self, opened: Opened) -> None:
+        self._opened, self._process = opened, os.getpid()
         self._made: Optional[_engine.Density] = None
         self._results: dict[str, Result] = {}
         self._runs: dict[str, Folder] = {}  # where each task ran last, though there may be no result
+
+    @property
+    def _file(self) -> _engine.File:
+        return self._opened.file
 
     @property
     def _density(self) -> _engine.Density:
@@ -167,7 +172,7 @@ class Model:
             self._made = None
         if self._made is None:
             self._process = os.getpid()
-            made = _engine.Density(self._file, self._state["task"] or "", self._state["threads"])
+            made = _engine.Density(self._file, self._task or "", self._threads)
             if self._prepared is not None:
                 made.prepare(self._prepared)
             self._made = made
@@ -176,29 +181,29 @@ class Model:
     def __getstate__(self) -> dict:
         # What it was made of, whatever has become of the file and of the arrays.
         return {
-            "state": self._state,
-            "text": self.text,
-            "records": _records.contents(self._records),
+            **self._opened.stored(),
+            "task": self._task,
+            "threads": self._threads,
+            "records": _records.contents(self._opened.records),
             "prepared": self._prepared,
         }
 
     def __setstate__(self, stored: dict) -> None:
-        self._state = {**stored["state"], "path": placed(stored["state"]["path"], stored["state"]["from"]), "from": os.getcwd()}
-        self._prepared = stored["prepared"]
+        self._task, self._threads, self._prepared = stored["task"], stored["threads"], stored["prepared"]
         self._folder = Folder() if stored["records"] else None
         records = _records.write_contents(stored["records"], self._folder.path) if self._folder else {}
-        self._begin(_engine.File(self.path, stored["text"], records), records)
+        self._begin(Opened(placed(stored["path"], stored["from"]), stored["text"], records))
 
     # ---- what it is
 
     @property
     def path(self) -> str:
-        """The path of the file."""
-        return self._state["path"]
+        """The path of the file; absolute once the working directory has changed."""
+        return self._file.path
 
     @property
     def text(self) -> str:
-        """The text of the file."""
+        """The text of the file; what is not UTF-8 in its comments is shown as U+FFFD."""
         return self._file.text
 
     @property
@@ -361,7 +366,7 @@ class Model:
     def check(self, seed: Optional[int] = None) -> Check:
         """Reports what the data can determine, before any sampling, as ``sysid check`` does. seed: of the draws of the prior."""
         seed = None if seed is None else _seed(seed)
-        return Check(*_engine.check(self._file, _engine.Asked(output="results", seed=seed, threads=self._state["threads"])))
+        return Check(*_engine.check(self._file, _engine.Asked(output="results", seed=seed, threads=self._threads)))
 
     def fit(self, task: Optional[str] = None, **options: Any) -> Result:
         """Runs a fit of the file: by default the one whose density this is.
@@ -379,7 +384,7 @@ class Model:
         uninterrupted fit. Raises KeyboardInterrupt where there are no draws yet, and where it was pressed too late to stop the
         fit, whose result then is in `results`.
         """
-        return self._run("fit", task or self._state["task"], **options)
+        return self._run("fit", task or self._task, **options)
 
     def predict(self, task: Optional[str] = None, **options: Any) -> Result:
         """Runs a prediction of the file, the first by default, from the draws of the fit before it. Options as in `fit`; with
@@ -427,7 +432,7 @@ class Model:
             output=str(run.path),
             temporary=run.temporary,
             seed=seed,
-            threads=self._state["threads"],
+            threads=self._threads,
             force=force,
             resume=resume,
             figures=figures,
@@ -438,7 +443,7 @@ class Model:
         self._runs[name] = run
         if exit == 75 and stamp(run.path / name) in (None, before):
             raise KeyboardInterrupt
-        result = Result(self._file, self._records, self._folder, run, name, exit, text, in_python(notices), self._state["from"])
+        result = Result(self._opened, self._folder, run, name, exit, text, in_python(notices))
         self._results[name] = result
         if requested and exit != 75:
             raise KeyboardInterrupt(f"`{name}` ended before the interruption took effect: its result is in model.results[{name!r}]")
@@ -465,7 +470,7 @@ class Model:
         return "\n".join([f"sysid.Model of {self.path}", *rows])
 
     def _repr_html_(self) -> str:
-        data = [(name, "arrays" if name in self._records else path, columns) for name, path, columns in self._file.data]
+        data = [(name, "arrays" if name in self._opened.records else path, columns) for name, path, columns in self._file.data]
         return _display.model(self.path, self._file.models, data, self.tasks)
 
     def _repr_latex_(self) -> str:

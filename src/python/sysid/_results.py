@@ -16,6 +16,7 @@ import numpy as np
 from . import _display, _engine, _records
 from ._error import Error
 from ._numbers import whole
+from ._opened import Opened, placed, working_directory
 from ._words import diagnostic_in_python, in_python
 
 if TYPE_CHECKING:
@@ -28,9 +29,14 @@ class Folder:
 
     def __init__(self, path: Optional[Union[str, os.PathLike]] = None) -> None:
         self.temporary = path is None
-        self.path = pathlib.Path(path if path is not None else tempfile.mkdtemp(prefix="sysid-"))
+        self._given, self._from = os.fspath(path) if path is not None else tempfile.mkdtemp(prefix="sysid-"), working_directory()
         if path is None:
-            weakref.finalize(self, _remove, str(self.path), os.getpid())
+            weakref.finalize(self, _remove, self._given, os.getpid())
+
+    @property
+    def path(self) -> pathlib.Path:
+        """As it was given, but absolute once the working directory is another."""
+        return pathlib.Path(placed(self._given, self._from))
 
 
 def _remove(path: str, process: int) -> None:
@@ -59,19 +65,6 @@ def stamp(folder: pathlib.Path) -> Optional[tuple]:
     return about.st_ino, about.st_mtime_ns, about.st_size
 
 
-def _made_from(folder: pathlib.Path) -> str:
-    """The task that a result was made from; "": none, or it is no result."""
-    try:
-        return json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("versions", {}).get("made_from", "")
-    except (OSError, ValueError, AttributeError):
-        return ""
-
-
-def placed(path: str, folder: str) -> str:
-    """A path that was relative to a working directory, as it is to be written now."""
-    return path if folder == os.getcwd() else os.path.join(folder, path)
-
-
 class Result:
     """What a task has left. Files lie in `folder`, as the command line writes them.
 
@@ -82,13 +75,9 @@ class Result:
     groups, but tables. A result stays what it is when tasks are run again, and can be pickled, with its files.
     """
 
-    def __init__(
-        self, file: _engine.File, records: dict[str, str], kept: Any, run: Folder, task: str, exit: int, text: str, notices: str, origin: str
-    ) -> None:
-        """records: tables in the place of those that the file names, which exist as long as `kept` does. origin: the working
-        directory that the file's path is relative to."""
-        self._origin = origin
-        self._file, self._records, self._kept, self._run = file, records, kept, run
+    def __init__(self, opened: Opened, kept: Any, run: Folder, task: str, exit: int, text: str, notices: str) -> None:
+        """The tables of `opened` that stand in for those of the file exist as long as `kept` does."""
+        self._opened, self._kept, self._run = opened, kept, run
         self.task = task  #: its name
         if not run.temporary:
             _alive.add(self)
@@ -181,7 +170,7 @@ class Result:
                 f"help: its tables are {', '.join(name for name in self.files if name.endswith('.csv'))}"
             )
         asked = _engine.Asked(output=str(run.path))
-        return _engine.inference_data(self._file, str(run.path / task), asked, 0 if self.interrupted else draws)
+        return _engine.inference_data(self._opened.file, str(run.path / task), asked, 0 if self.interrupted else draws)
 
     def groups(self, draws: int = 200) -> dict[str, "xarray.Dataset"]:
         """All groups by their names; of a prediction of a fit ``predictions`` and ``predictions_constant_data``. draws: how
@@ -232,34 +221,32 @@ class Result:
     def _repr_html_(self) -> str:
         return _display.result(self.summary, self.text, self.interrupted)
 
-    def _belonging(self) -> list[pathlib.Path]:
-        """The folders that its groups are read from: its own, that of what it was made from, those of predictions from it."""
-        source = _made_from(self.folder)
-        beside = [each for each in self._run.path.iterdir() if each.is_dir() and _made_from(each) == self.task]
-        return [self.folder, *([self._run.path / source] if source else []), *beside]
-
     def __getstate__(self) -> dict:
-        # A folder of results may be any: with all that a user has in it.
-        files = [path for folder in self._belonging() for path in folder.rglob("*") if path.is_file()]
-        results = {str(path.relative_to(self._run.path)): path.read_bytes() for path in files}
+        if not self.folder.is_dir():
+            raise FileNotFoundError(f"the files of `{self.task}` are no longer in {self.folder}")
         return {
-            "path": self._file.path,
-            "text": self._file.text,
-            "from": self._origin,
-            "records": _records.contents(self._records),
-            "results": results,
+            **self._opened.stored(),
+            "records": _records.contents(self._opened.records),
+            "results": self._files_of_tasks(),
             "shown": {name: getattr(self, name) for name in ("task", "text", "notices", "interrupted")},
         }
+
+    def _files_of_tasks(self) -> dict[str, bytes]:
+        """Its own, and those of the other tasks of the file, on which its groups draw: fits of their predictions, and predictions of
+        a fit. What else lies in a folder of the user's is none of its."""
+        run = self._run.path
+        names = [name for name, _ in self._opened.file.tasks]
+        paths = [path for name in names for path in (run / name).rglob("*") if path.is_file()]
+        return {str(path.relative_to(run)): path.read_bytes() for path in paths}
 
     def __setstate__(self, stored: dict) -> None:
         self._groups, self._run, self._kept = {}, Folder(), Folder()
         for name, content in stored["results"].items():
             (self._run.path / name).parent.mkdir(parents=True, exist_ok=True)
             (self._run.path / name).write_bytes(content)
-        self._records = _records.write_contents(stored["records"], self._kept.path)
+        records = _records.write_contents(stored["records"], self._kept.path)
         self.__dict__.update(stored["shown"])
-        self._file = _engine.File(placed(stored["path"], stored["from"]), stored["text"], self._records)
-        self._origin = os.getcwd()
+        self._opened = Opened(placed(stored["path"], stored["from"]), stored["text"], records)
 
     def _keep(self) -> None:
         """Copies its files, which are about to be replaced."""
