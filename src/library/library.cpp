@@ -90,11 +90,11 @@ sysid_model* opened(char const* path, char const* text, char const* task, int th
   return model.release();
 }
 
-FitDensity::Simulated simulated(sysid_model const* model, std::size_t experiment, ConstLanes values) {
+/// To be asked before the arrays: of an experiment that is not there they have no elements, and may be NULL for that.
+void require_experiment(sysid_model const* model, std::size_t experiment) {
   int const known = model->density.density().experiments();
   if (experiment >= static_cast<std::size_t>(known))
     refuse("there is no experiment " + std::to_string(experiment), "the fit has " + std::to_string(known) + ", counted from 0");
-  return model->density.density().simulate(static_cast<int>(experiment), values, 0);
 }
 
 /// Adds what failed to the model's ledger.
@@ -196,8 +196,8 @@ size_t sysid_rows(sysid_model const* model, size_t experiment) {
 
 int sysid_time(sysid_model const* model, size_t experiment, double* time) {
   return kept(model, [&] {
+    require_experiment(model, experiment);
     require(time, "time");
-    if (experiment >= sysid_experiments(model)) refuse("there is no experiment " + std::to_string(experiment), "count them from 0");
     std::vector<double> const& rows = model->density.density().time(static_cast<int>(experiment));
     std::copy(rows.begin(), rows.end(), time);
   });
@@ -206,10 +206,12 @@ int sysid_time(sysid_model const* model, size_t experiment, double* time) {
 int sysid_simulate(sysid_model const* model, size_t experiment, char const* quantity, size_t count, double const* values,
                    double* out) {
   return counted(model, count, [&](Ledger&) {
+    require_experiment(model, experiment);
     require(quantity, "quantity");
     require(values, "values");
     require(out, "out");
-    FitDensity::Simulated const made = simulated(model, experiment, lanes_of(model, count, values));
+    FitDensity::Simulated const made =
+        model->density.density().simulate(static_cast<int>(experiment), lanes_of(model, count, values), 0);
     std::string known;
     for (std::size_t q = 0; q < made.quantities.size(); ++q) {
       known += (known.empty() ? "" : ", ") + made.quantities[q].name;

@@ -15,6 +15,16 @@ void require(bool holds, char const* what) {
   std::exit(1);
 }
 
+template <class Call>
+void refused(Call&& call, char const* message) {
+  try {
+    call();
+  } catch (sysid::Error const& error) {
+    return require(std::string(error.what()).find(message) != std::string::npos, error.what());
+  }
+  require(false, message);
+}
+
 }  // namespace
 
 int main(int, char** argv) {
@@ -29,18 +39,10 @@ int main(int, char** argv) {
   require(model.constrain(model.sample_prior(3)).size() == 15, "the prior");
   require(model.simulate("y", values).size() == 2 * model.time().size(), "the simulation");
   sysid::Model moved = std::move(model);
-  try {
-    moved.log_density({1.0, 2.0});
-    require(false, "a vector of another length");
-  } catch (sysid::Error const& error) {
-    require(std::string(error.what()) == "expected vectors of 5 numbers", error.what());
-  }
-  try {
-    sysid::Model nowhere("nowhere.sysid");
-    require(false, "no file");
-  } catch (sysid::Error const& error) {
-    require(std::string(error.what()).find("cannot read") != std::string::npos, error.what());
-  }
+  refused([&] { moved.log_density({1.0, 2.0}); }, "expected vectors of 5 numbers");
+  refused([&] { sysid::Model nowhere("nowhere.sysid"); }, "cannot read");
+  refused([&] { moved.simulate("y", values, 7); }, "there is no experiment 7");
+  refused([&] { moved.time(7); }, "there is no experiment 7");
   // Long enough for machine code to pay: its compiler is found from where the library lies.
   for (unsigned seed = 0; seed < 5; ++seed) moved.log_density(moved.sample_prior(20000, seed));
   std::ifstream maps("/proc/self/maps");
