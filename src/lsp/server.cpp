@@ -71,15 +71,25 @@ Json Server::answer(std::string const& method, Json const& params) {
   throw RequestError(method_not_found, "there is no method `" + method + "`");
 }
 
+namespace {
+
+/// That of a client which counts: until version 3.15 of the protocol it may be null.
+std::int64_t version_of(Json const& document, std::int64_t otherwise) {
+  auto const given = document.find("version");
+  return given != document.end() && given->is_number_integer() ? given->get<std::int64_t>() : otherwise;
+}
+
+}  // namespace
+
 std::vector<Json> Server::notified(std::string const& method, Json const& params) {
   if (method == "exit") exit_code_ = state_ == State::shut_down ? 0 : 1;
   if (state_ != State::running) return {};
   if (method == "textDocument/didOpen") {
     Json const& document = params.at("textDocument");
-    documents_.open(document.at("uri").get<std::string>(), document.at("text").get<std::string>(), document.value("version", 0));
+    documents_.open(document.at("uri").get<std::string>(), document.at("text").get<std::string>(), version_of(document, 0));
   } else if (method == "textDocument/didChange") {
     Document& document = document_of(documents_, params);
-    documents_.change(document, params.at("contentChanges"), params.at("textDocument").value("version", document.version + 1));
+    documents_.change(document, params.at("contentChanges"), version_of(params.at("textDocument"), document.version + 1));
   } else if (method == "textDocument/didClose") {
     std::string const uri = document_of(documents_, params).uri;
     documents_.close(uri);

@@ -218,6 +218,23 @@ TEST_CASE("a name of a module beside the file is renamed in all files that use i
   CHECK(!client.diagnostics.empty());
 }
 
+TEST_CASE("texts of a client that counts no versions are read") {
+  std::string const right = "model a {\n  state y\n  initial y = 1\n  y' = -y\n  observe c ~ normal(y, sd = 1)\n}\n";
+  std::string const wrong = "model a {\n  state y\n}\n";
+  for (Json const& version : {Json(nullptr), Json("first")}) {
+    Client client;
+    client.uri = lsp::uri_of("uncounted.sysid");
+    client.notify("textDocument/didOpen",
+                  {{"textDocument", {{"uri", client.uri}, {"languageId", "sysid"}, {"version", version}, {"text", right}}}});
+    client.settle();
+    CHECK(client.diagnostics.empty());
+    client.notify("textDocument/didChange",
+                  {{"textDocument", {{"uri", client.uri}, {"version", version}}}, {"contentChanges", {{{"text", wrong}}}}});
+    client.settle();
+    CHECK(!client.diagnostics.empty());
+  }
+}
+
 TEST_CASE("what a module says counts for the files that use it when it is opened, changed and closed") {
   TemporaryFolder folder;
   auto const model = [](std::string const& name) {
