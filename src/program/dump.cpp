@@ -124,7 +124,7 @@ class Dump {
         return "position";
       case Control::step:
         return "step";
-      case Control::objective_kind:
+      case Control::aim:
         return "aim";
       case Control::hunts:
         return "hunts";

@@ -39,12 +39,12 @@ class Writer {
 
   Attempt write(EmbeddedMethod const& method) {
     NodeId const zero = number(0), one = number(1);
-    NodeId const position = control(Control::position), step = control(Control::step),
-                 objective_kind = control(Control::objective_kind), hunts = control(Control::hunts);
+    NodeId const position = control(Control::position), step = control(Control::step), aim = control(Control::aim),
+                 hunts = control(Control::hunts);
     NodeId const active = less(position, one);
     NodeId const length = data(IntervalData::length);
     NodeId const left = graph_.subtract(one, position);
-    NodeId const part = graph_.divide(graph_.binary(Operation::minimum, step, objective_kind), length);
+    NodeId const part = graph_.divide(graph_.binary(Operation::minimum, step, aim), length);
     NodeId const last = graph_.binary(Operation::less_equal, left, part);
     NodeId const taken = graph_.select(last, left, part);  // as a part of the interval
     NodeId const h = graph_.multiply(taken, length);
@@ -90,7 +90,7 @@ class Writer {
     NodeId const aimed = graph_.multiply(graph_.multiply(crossing.place, number(1 + near_an_end / 2)), h);
     result.control = {graph_.select(accepted, arrived, position),
                       graph_.select(active, graph_.select(accepted, kept, retried), step),
-                      graph_.select(hunting, aimed, graph_.select(accepted, number(no_aim), objective_kind))};
+                      graph_.select(hunting, aimed, graph_.select(accepted, number(no_aim), aim))};
     NodeId const same = graph_.select(accepted, zero, hunts), more = graph_.add(hunts, one);
     result.control.push_back(graph_.select(graph_.binary(Operation::disjunction, hunting, turning), more, same));
     for (std::size_t i = 0; i < states_.size(); ++i) {

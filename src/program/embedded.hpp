@@ -17,7 +17,7 @@ constexpr int most_surfaces = 16;
 
 /// Registers of step control, one value per lane: leaves of kind `control`. `rest` begins the largest magnitudes that the states
 /// have reached, one each, then the sides of the switching surfaces.
-enum class Control { position, step, objective_kind, hunts, rest };
+enum class Control { position, step, aim, hunts, rest };
 /// What a lane's attempts read of the data, the same for all lanes: leaves of kind `interval`.
 enum class IntervalData { begin, length, relative, absolute };
 

@@ -50,7 +50,7 @@ class AdaptiveLanes : public Stepper {
       bool finite = true;
       for (int i = 0; i < states.rows(); ++i) finite = finite && std::isfinite(states(i, w));
       position[w] = finite ? 0 : 1;  // nothing is tried with a dead lane
-      row(Control::objective_kind)[w] = std::numeric_limits<double>::max();
+      row(Control::aim)[w] = std::numeric_limits<double>::max();
       row(Control::hunts)[w] = 0;
     }
     attempt_steps(sample);
