@@ -63,6 +63,8 @@ TEST_CASE("each statement of the language and each expression is what it is in a
   CHECK(kinds("measure d = y [mm]; split train = rows 1..50") == std::vector{data_statement, data_statement});
   CHECK(kinds("input x = force [N] hold linear") == std::vector{data_statement});
   CHECK(kinds("input x [N]") == std::vector{model_statement});
+  CHECK(kinds("step 1 [ms]; step (1 [ms])") == std::vector{data_statement, data_statement});
+  CHECK(kinds("step(0); step(0.5)*2") == std::vector{expression, expression});
   CHECK(kinds("quantile(fn, 0.95)") == std::vector{expression});
   CHECK(kinds("first.k - second.k") == std::vector{expression});
   CHECK(kinds("# nothing").empty());

@@ -61,6 +61,13 @@ std::vector<std::string> first_words(std::string_view text) {
   return words;
 }
 
+/// `step(0)` is a value of the function, though a data block could have `step` with a number in parentheses.
+bool is_call(std::string const& text) {
+  auto const begin = std::find_if(text.begin(), text.end(), words::begins_name);
+  auto const end = std::find_if_not(begin, text.end(), words::continues_name);
+  return end != text.end() && *end == '(' && mistakes_as(text, Kind::expression).all().empty();
+}
+
 /// What a statement that parses as nothing was meant to be.
 Kind meant(std::string_view text) {
   auto const words = first_words(text);
@@ -123,6 +130,7 @@ std::vector<EntryPart> parts_of(std::string const& entry, Diagnostics& diagnosti
     std::optional<Kind> kind;
     for (Frame const& frame : frames)
       if (!kind && mistakes_as(text, frame.kind).all().empty()) kind = frame.kind;
+    if (kind == Kind::data_statement && is_call(text)) kind = Kind::expression;
     if (kind) {
       parts.push_back({*kind, span});
       continue;
