@@ -126,6 +126,7 @@ std::string behind_declared(Gap const& gap) {
   if (gap.find("=") < gap.at || gap.find("~") < gap.at) return {};
   std::string_view const name = declared_name(gap), rest = gap.rest();
   std::string const number = number_in_rest(gap);
+  if (state && gap.found->is("initial") && gap.next() != nullptr) return "begin a new line before `initial`, or write `;`";
   bool const starts = gap.found->is("=") || gap.found->is("(") || words::contains(start_words, gap.found->text);
   if (state && starts && !number.empty())
     return fmt::format("an initial value is a statement of its own: remove `{}` and write `initial {} = {}`", rest, name, number);
