@@ -1,6 +1,7 @@
 // Candidate models: what a set expands to, what its probabilities are, and what a selection works from.
 #include "check/expression/non_negative.hpp"
 #include "checking.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -158,7 +159,7 @@ TEST_CASE("a distance of absolute temperatures means the same whatever their zer
     });
   };
   CHECK(distance(0, 20, 15) == near(0.0625));
-  CHECK(distance(1, 293.15, 288.15) == doctest::Approx(0.0625).epsilon(1e-9));
+  CHECK(distance(1, 293.15, 288.15) == relative(0.0625, 1e-9));
   CHECK(messages(text("delta_degC")).find("error[E6508]: `d` is not the same quantity in `a` and in `b`") != std::string::npos);
 }
 

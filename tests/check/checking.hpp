@@ -7,6 +7,7 @@
 #include <string>
 
 #include "load/load.hpp"
+#include "relative.hpp"
 
 namespace sysid::test {
 
@@ -29,8 +30,8 @@ inline CheckedFile checked(std::string const& text) {
 /// The only model of a file that holds these statements.
 inline Model model_of(std::string const& statements) { return checked("model m {\n" + statements + "\n}\n").models.at(0); }
 
-/// Values of leaves in SI by their names: states "y" and "y'", inputs "x", their rates "x'", parameters, white noise "noise(w)", time
-/// "t".
+/// Values of leaves in SI by their names: states "y" and "y'", inputs "x", their rates "x'", parameters, white noise "noise(w)",
+/// time "t".
 using Values = std::map<std::string, double>;
 
 inline double at(Model const& model, NodeId node, Values const& values) {
@@ -75,6 +76,6 @@ inline std::size_t errors_in(std::string const& shown) {
   return n;
 }
 
-inline doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-14); }
+inline doctest::Approx near(double value) { return relative(value, 1e-14); }
 
 }  // namespace sysid::test

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <vector>
 
+#include "relative.hpp"
+
 using namespace sysid;
 
 namespace {
@@ -33,8 +35,8 @@ double sum(Values const& values) { return std::accumulate(values.begin(), values
 
 void check_fit(Values const& x, double k, double sigma) {
   GeneralisedPareto const fit = fit_generalised_pareto(x);
-  CHECK(fit.k == doctest::Approx(k).epsilon(1e-12));
-  CHECK(fit.sigma == doctest::Approx(sigma).epsilon(1e-12));
+  CHECK(fit.k == relative(k, 1e-12));
+  CHECK(fit.sigma == relative(sigma, 1e-12));
 }
 
 }  // namespace
@@ -73,9 +75,9 @@ TEST_CASE("smoothed weights are those of R") {
     CAPTURE(each.size);
     CHECK(pareto_tail_length(1000, each.r_eff) == each.tail);
     SmoothedWeights const smoothed = smooth_weights(spread_ratios(1000, each.size), each.tail);
-    CHECK(smoothed.k == doctest::Approx(each.k).epsilon(1e-11));
+    CHECK(smoothed.k == relative(each.k, 1e-11));
     CHECK(sum(smoothed.log_weights) == doctest::Approx(each.sum_of_logs).epsilon(1e-11));
-    CHECK(smoothed.log_weights.front() == doctest::Approx(each.first).epsilon(1e-13));
+    CHECK(smoothed.log_weights.front() == relative(each.first, 1e-13));
     Values weights;
     for (double const w : smoothed.log_weights) weights.push_back(std::exp(w));
     CHECK(sum(weights) == doctest::Approx(each.sum_of_weights).epsilon(1e-11));

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <thread>
 
+#include "relative.hpp"
+
 using namespace sysid;
 
 namespace {
@@ -73,7 +75,7 @@ TEST_CASE("the units of mechanics and electricity have their SI dimensions and s
     CAPTURE(row.name);
     Unit const unit = atom(row.name);
     CHECK(unit.dimension == row.dimension);
-    CHECK(unit.scale == doctest::Approx(row.scale).epsilon(1e-14));
+    CHECK(unit.scale == relative(row.scale, 1e-14));
     CHECK(unit.offset == 0);
     CHECK(unit.text == row.name);
   }
@@ -87,9 +89,9 @@ TEST_CASE("dimensionless atoms are the dash, the one, the percent and the angles
   }
   CHECK(atom("%").scale == 0.01);
   CHECK(atom("percent").scale == 0.01);
-  CHECK(atom("ppm").scale == doctest::Approx(1e-6).epsilon(1e-14));
+  CHECK(atom("ppm").scale == relative(1e-6, 1e-14));
   CHECK(atom("microstrain").scale == 1e-6);
-  CHECK(atom("deg").scale == doctest::Approx(std::numbers::pi / 180).epsilon(1e-14));
+  CHECK(atom("deg").scale == relative(std::numbers::pi / 180, 1e-14));
   CHECK(atom("rev").scale == doctest::Approx(2 * std::numbers::pi).epsilon(1e-14));
   CHECK(atom("percent").dimensionless());
   CHECK(atom("deg").dimensionless());
@@ -127,11 +129,11 @@ TEST_CASE("products, quotients and powers combine dimension and scale") {
   CHECK(stiffness.text.empty());
   Unit const area = power(atom("mm"), {2, 1});
   CHECK(area.dimension == dimension(0, 2, 0));
-  CHECK(area.scale == doctest::Approx(1e-6).epsilon(1e-15));
+  CHECK(area.scale == relative(1e-6, 1e-15));
   Unit const root = power(area, {1, 2});
   CHECK(root.dimension == dimension(0, 1, 0));
-  CHECK(root.scale == doctest::Approx(1e-3).epsilon(1e-15));
-  CHECK(power(atom("km"), {-1, 1}).scale == doctest::Approx(1e-3).epsilon(1e-15));
+  CHECK(root.scale == relative(1e-3, 1e-15));
+  CHECK(power(atom("km"), {-1, 1}).scale == relative(1e-3, 1e-15));
   CHECK(power(atom("km"), {1, 3}).scale == doctest::Approx(10).epsilon(1e-14));
   CHECK(multiply(atom("N"), atom("m")).dimension == atom("J").dimension);
 }

@@ -8,6 +8,7 @@
 
 #include "data/table/table.hpp"
 #include "data/table_record.hpp"
+#include "relative.hpp"
 #include "temporary_file.hpp"
 
 using namespace sysid;
@@ -88,7 +89,7 @@ TEST_CASE("numbers are converted from the column's unit to the model's, then to 
     wanted.inputs = {InputRequest{column("a", row.unit, row.declared), InputRule::zero_order}};
     Record const record = loaded(wanted);
     CHECK(record.time[1] == 1);
-    CHECK(record.measured[0][0] == doctest::Approx(row.first).epsilon(1e-13));
+    CHECK(record.measured[0][0] == relative(row.first, 1e-13));
     CHECK(record.inputs[0].sample(0) == record.measured[0][0]);
   }
 }

@@ -12,6 +12,7 @@
 #include "app/search/solver_refinement.hpp"
 #include "core/numeric/random.hpp"
 #include "inference/targets.hpp"
+#include "relative.hpp"
 #include "search/global/search.hpp"
 #include "search/journal.hpp"
 #include "search/mode/at_bound.hpp"
@@ -139,7 +140,7 @@ TEST_CASE("the parameter that moves is named with its size, by weights or by its
       CHECK(check.outcome == (move < 5 ? SolverCheck::Outcome::mean_moves : SolverCheck::Outcome::mode_moves));
       REQUIRE(check.moved.size() == 1);
       CHECK(check.moved.front().parameter == "b");
-      CHECK(check.largest() == doctest::Approx(move).epsilon(0.2));
+      CHECK(check.largest() == relative(move, 0.2));
       Findings const findings = tolerance_findings(check, {}, false);
       REQUIRE(findings.size() == 1);
       CHECK(findings.front().names == std::vector<std::string>{"b"});
@@ -190,7 +191,7 @@ TEST_CASE("a curvature that is wrong makes no move where nothing is gained by it
   auto const fine = centred(0.0008);
   std::vector<Mode> const refined = refit(*fine, ObjectiveKind::posterior, modes, 1, bench.ledger, {}, &gains);
   sysid::Move const ill = largest_move(fine->parameters(), modes[0], refined[0], gains[0]);
-  CHECK(ill.size() == doctest::Approx(0.008).epsilon(1e-3));
+  CHECK(ill.size() == relative(0.008, 1e-3));
   modes.front().sd[0] *= 400;
   SolverCheck const moved = check_modes(*centred(0.32), ObjectiveKind::posterior, modes, 1, bench.ledger);
   CHECK(moved.outcome == SolverCheck::Outcome::mode_moves);

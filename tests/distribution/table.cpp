@@ -9,6 +9,7 @@
 
 #include "cases.hpp"
 #include "core/text/diagnostic.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using test::all_cases;
@@ -97,8 +98,8 @@ TEST_CASE("the derivative of the distribution function is the density and of the
       double const density = std::exp(evaluated.at(evaluated.density, x));
       CAPTURE(describe(given));
       CAPTURE(p);
-      CHECK(slope([&](double y) { return evaluated.cumulative(y); }) == doctest::Approx(density).epsilon(1e-7));
-      CHECK(-slope([&](double y) { return evaluated.survival(y); }) == doctest::Approx(density).epsilon(1e-7));
+      CHECK(slope([&](double y) { return evaluated.cumulative(y); }) == relative(density, 1e-7));
+      CHECK(-slope([&](double y) { return evaluated.survival(y); }) == relative(density, 1e-7));
     }
   }
 }
@@ -174,7 +175,7 @@ TEST_CASE("the sampler's coordinate and the declared value invert each other") {
       double const x = draw(given.row(), given.arguments, given.lower, given.upper, stream);
       double const again = evaluated.at(evaluated.coordinate.value, evaluated.at(back, x));
       CAPTURE(describe(given));
-      CHECK(again == doctest::Approx(x).epsilon(1e-12));
+      CHECK(again == relative(x, 1e-12));
     }
   }
 }
@@ -239,7 +240,7 @@ TEST_CASE("a noise is densest where its location is, and the saturated density i
     NodeId const saturated = row.saturated(graph, evaluated.leaf, evaluated.use.arguments);
     double const centre = *graph.constant_value(row.centre(graph, evaluated.use.arguments));
     CAPTURE(describe(given));
-    CHECK(evaluated.at(saturated, centre) == doctest::Approx(evaluated.at(evaluated.density, centre)).epsilon(1e-14));
+    CHECK(evaluated.at(saturated, centre) == relative(evaluated.at(evaluated.density, centre), 1e-14));
     for (double const p : {0.001, 0.2, 0.6, 0.97}) {
       double const x = row.quantile(p, Tail::lower, given.arguments);
       CHECK(evaluated.at(saturated, x) > evaluated.at(evaluated.density, x));
@@ -261,7 +262,7 @@ TEST_CASE("a distribution twice as wide is twice as wide, about the same middle 
     }
     std::vector<double> back = wider;
     row.widen(0.5, back);
-    for (std::size_t i = 0; i < back.size(); ++i) CHECK(back[i] == doctest::Approx(given.arguments[i]).epsilon(1e-12));
+    for (std::size_t i = 0; i < back.size(); ++i) CHECK(back[i] == relative(given.arguments[i], 1e-12));
     bool const of_logarithm = row.name == "log_uniform" || row.name == "log_normal";
     auto const spread = [&](std::vector<double> const& arguments) {
       double const low = row.quantile(0.25, Tail::lower, arguments), high = row.quantile(0.25, Tail::upper, arguments);
@@ -269,7 +270,7 @@ TEST_CASE("a distribution twice as wide is twice as wide, about the same middle 
     };
     // Of shapes the sd doubles, or nearly so, and quantiles by other factors.
     bool const of_shape = row.name == "gamma" || row.name == "inverse_gamma" || row.name == "beta";
-    if (!of_shape) CHECK(spread(wider) == doctest::Approx(2 * spread(given.arguments)).epsilon(1e-9));
+    if (!of_shape) CHECK(spread(wider) == relative(2 * spread(given.arguments), 1e-9));
     if (row.name == "gamma") {
       CHECK(wider[0] * wider[1] == doctest::Approx(given.arguments[0] * given.arguments[1]));
       CHECK(wider[1] * std::sqrt(wider[0]) == doctest::Approx(2 * given.arguments[1] * std::sqrt(given.arguments[0])));

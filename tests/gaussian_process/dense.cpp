@@ -14,6 +14,7 @@
 #include "gaussian_process/made.hpp"
 #include "gaussian_process/textbook.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using namespace sysid::gaussian_process;
@@ -78,7 +79,7 @@ TEST_CASE("likelihood, gradient and posterior equal the textbook's in extended p
         double const up = textbook::log_marginal_likelihood(covariance, moved, parameters);
         moved.values[i] -= 2e-3;
         double const down = textbook::log_marginal_likelihood(covariance, moved, parameters);
-        CHECK(found.values_gradient[i] == doctest::Approx((up - down) / 2e-3).epsilon(1e-8));
+        CHECK(found.values_gradient[i] == relative((up - down) / 2e-3, 1e-8));
       }
 
       Places const places = places_of(o);
@@ -88,8 +89,8 @@ TEST_CASE("likelihood, gradient and posterior equal the textbook's in extended p
       Eigen::MatrixXd const joint = posterior.covariance(places);
       for (std::size_t i = 0; i < 7; ++i) {
         auto const row = static_cast<Eigen::Index>(i);
-        CHECK(prediction.mean[row] == doctest::Approx(static_cast<double>(book.mean[i][0])).epsilon(1e-10));
-        CHECK(prediction.variance[row] == doctest::Approx(static_cast<double>(book.covariance[i][i])).epsilon(1e-10));
+        CHECK(prediction.mean[row] == relative(static_cast<double>(book.mean[i][0]), 1e-10));
+        CHECK(prediction.variance[row] == relative(static_cast<double>(book.covariance[i][i]), 1e-10));
         for (std::size_t j = 0; j < 7; ++j)
           CHECK(std::fabs(joint(row, static_cast<Eigen::Index>(j)) - static_cast<double>(book.covariance[i][j])) < 1e-10);
       }
@@ -218,12 +219,12 @@ TEST_CASE("figures of scikit-learn 1.2.1 are reproduced") {
     CHECK(found.log_likelihood == doctest::Approx(recorded.log_likelihood).epsilon(1e-12));
     for (auto const& [j, expected] : recorded.gradient) {
       bool const squared = j == 0 || j == static_cast<int>(recorded.parameters.size()) - 1;
-      CHECK(found.gradient[j] * (squared ? 0.5 : 1.0) == doctest::Approx(expected).epsilon(1e-10));
+      CHECK(found.gradient[j] * (squared ? 0.5 : 1.0) == relative(expected, 1e-10));
     }
     DensePosterior const posterior(recorded.covariance, o, recorded.parameters);
     Prediction const prediction = posterior.predict(places);
     for (int i = 0; i < 3; ++i) {
-      CHECK(prediction.mean[i] == doctest::Approx(recorded.mean[i]).epsilon(1e-11));
+      CHECK(prediction.mean[i] == relative(recorded.mean[i], 1e-11));
       CHECK(prediction.variance[i] + 0.49 == doctest::Approx(recorded.observation_variance[i]).epsilon(1e-11));
     }
     CHECK(std::fabs(posterior.covariance(places)(0, 1) - recorded.covariance01) < 1e-12);
@@ -273,7 +274,7 @@ TEST_CASE("a gradient with jitter is that of the likelihood with jitter") {
   std::vector<double> const exact = {1, 0.5, 1e-12};
   Marginal const found = dense_marginal(smooth, o, exact, true, coarse);
   REQUIRE(found.outcome == Outcome::fine);
-  REQUIRE(found.jitter == doctest::Approx(1e-4));
+  REQUIRE(found.jitter == relative(1e-4, 1e-12));
   Eigen::VectorXd const expected =
       differences([&](Numbers p) { return dense_marginal(smooth, o, p, false, coarse).log_likelihood; }, exact);
   CHECK((found.gradient - expected).norm() < 1e-7 * expected.norm());
@@ -325,7 +326,7 @@ TEST_CASE("places are predicted in blocks, and none at all") {
   for (Eigen::Index i : {0, 511, 512, 1029}) {
     Prediction const one = posterior.predict({places.inputs.row(i), places.columns.row(i)});
     CHECK(one.mean[0] == doctest::Approx(all.mean[i]).epsilon(1e-12));
-    CHECK(one.variance[0] == doctest::Approx(all.variance[i]).epsilon(1e-10));
+    CHECK(one.variance[0] == relative(all.variance[i], 1e-10));
   }
   CHECK(posterior.predict({Eigen::MatrixXd(0, 2), Eigen::MatrixXd(0, 3)}).mean.size() == 0);
 }

@@ -6,6 +6,7 @@
 
 #include "gaussian_process/made.hpp"
 #include "linear_algebra/lapack.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using namespace sysid::gaussian_process;
@@ -97,7 +98,7 @@ TEST_CASE("state-space forms give the kernel's values and exact derivatives") {
       CHECK((transition(parameters, 0) - Matrix::Identity(d, d)).norm() < 1e-15);
       for (double const step : {0.03, 0.4, 2.5}) {
         Matrix const a = transition(parameters, step);
-        CHECK((a * p)(0, 0) == doctest::Approx(value(row, parameters, step, 0)).epsilon(1e-12));
+        CHECK((a * p)(0, 0) == relative(value(row, parameters, step, 0), 1e-12));
         CHECK((transition(parameters, 0.3 * step) * transition(parameters, 0.7 * step) - a).norm() < 1e-13 * (1 + a.norm()));
         Matrix changes;
         transition(parameters, step, &changes);
@@ -135,7 +136,7 @@ TEST_CASE("spectral densities are the Fourier transforms of their kernels") {
       std::vector<NodeId> constants;
       for (double const parameter : parameters) constants.push_back(graph.constant(parameter));
       double const root = graph.constant_value(row.spectral_root(graph, constants, Numbers(&frequency, 1))).value();
-      CHECK(root * root == doctest::Approx(expected).epsilon(1e-9));
+      CHECK(root * root == relative(expected, 1e-9));
     }
   }
 }
@@ -164,7 +165,7 @@ TEST_CASE("the oscillator's covariance is the integral of its impulse response a
         sum += weight * 2 * u * impulse(u * u) * impulse(u * u + lag);
       }
       double const parameters[] = {mass, damping, stiffness, intensity};
-      CHECK(value(*find_kernel("oscillator"), parameters, 3 - lag, 3) == doctest::Approx(intensity * sum * step / 3).epsilon(2e-7));
+      CHECK(value(*find_kernel("oscillator"), parameters, 3 - lag, 3) == relative(intensity * sum * step / 3, 2e-7));
     }
   }
 }

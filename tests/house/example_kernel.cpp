@@ -6,6 +6,7 @@
 
 #include "core/numeric/elementary.hpp"
 #include "gaussian_process/rows.hpp"
+#include "relative.hpp"
 
 namespace sysid::gaussian_process {
 namespace rational_quadratic_parts {
@@ -64,6 +65,7 @@ KernelRow rational_quadratic_kernel() {
 }  // namespace sysid::gaussian_process
 
 using namespace sysid::gaussian_process;
+using sysid::relative;
 
 TEST_CASE("the example kernel has the gradient and the derivatives of its values") {
   KernelRow const row = rational_quadratic_kernel();
@@ -83,13 +85,13 @@ TEST_CASE("the example kernel has the gradient and the derivatives of its values
     std::vector<double> above = parameters, below = parameters;
     above[i] *= std::exp(1e-4);
     below[i] *= std::exp(-1e-4);
-    CHECK(gradient[i] == doctest::Approx((value(above) - value(below)) / 2e-4).epsilon(1e-6));
+    CHECK(gradient[i] == relative((value(above) - value(below)) / 2e-4, 1e-6));
     // The same from numbers that carry their derivatives.
     std::vector<Jet> jets(parameters.begin(), parameters.end());
     jets[i] = Jet(parameters[i], Jet::parameter, parameters[i]);
     Jet const points[] = {first, second}, others[] = {right[0], right[1]};
     Jet const result = row.jet(std::span(points), std::span(others), jets);
     CHECK(result.value() == doctest::Approx(k).epsilon(1e-13));
-    CHECK(result.part[Jet::parameter] == doctest::Approx(gradient[i]).epsilon(1e-12));
+    CHECK(result.part[Jet::parameter] == relative(gradient[i], 1e-12));
   }
 }

@@ -15,6 +15,7 @@
 #include "inference/jump/tally.hpp"
 #include "inference/targets.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "relative.hpp"
 #include "replications.hpp"
 
 using namespace sysid;
@@ -176,7 +177,7 @@ TEST_CASE("mean chances give the distribution that jumps leave unchanged, and th
   for (int k = 0; k < 3; ++k) CHECK(logs[static_cast<std::size_t>(k)] == doctest::Approx(std::log(share[k])).epsilon(1e-12));
   jump::Estimate const even = jump::estimate(tally, {0, 0, 0}, {0.2, 0.3, 0.5});
   for (std::size_t k = 0; k < 3; ++k) {
-    CHECK(even.probability[k] == doctest::Approx(share[k]).epsilon(1e-12));
+    CHECK(even.probability[k] == relative(share[k], 1e-12));
     CHECK(even.factor[k] == doctest::Approx(0).epsilon(1e-12));  // the priors are the shares
     CHECK(even.error[k] < 1e-12);
   }
@@ -217,7 +218,7 @@ TEST_CASE("jumps between polynomials agree with evidences in closed form within 
   WeightedSummary const& slope = result.models[0].summaries[0];
   auto const n = static_cast<double>(result.models[0].weight.size());
   CHECK(std::fabs(slope.mean - mean) < 4 / std::sqrt(precision * n / 3));  // a third of the draws are new
-  CHECK(slope.sd == doctest::Approx(1 / std::sqrt(precision)).epsilon(0.1));
+  CHECK(slope.sd == relative(1 / std::sqrt(precision), 0.1));
 }
 
 TEST_CASE("standard errors are as large as the scatter over seeds") {

@@ -5,6 +5,7 @@
 
 #include "inference/chain/adaptation.hpp"
 #include "inference/targets.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using namespace sysid::testing;
@@ -38,9 +39,9 @@ TEST_CASE("a flat density accepts every move, so states spread as the proposal s
     accepted += info[static_cast<std::size_t>(w)].accepted;
   }
   CHECK(accepted == chains);
-  CHECK(aa == doctest::Approx(0.04).epsilon(0.04));  // standard error 1 %
-  CHECK(ab == doctest::Approx(0.02).epsilon(0.05));
-  CHECK(bb == doctest::Approx(0.0125).epsilon(0.04));
+  CHECK(aa == relative(0.04, 0.04));  // standard error 1 %
+  CHECK(ab == relative(0.02, 0.05));
+  CHECK(bb == relative(0.0125, 0.04));
 }
 
 TEST_CASE("one step leaves the target's distribution as it is") {
@@ -84,8 +85,8 @@ TEST_CASE("small moves come in their share and size") {
     ++small;
     square += state.theta(0, w) * state.theta(0, w);
   }
-  CHECK(small / chains == doctest::Approx(0.1).epsilon(0.08));
-  CHECK(square / small == doctest::Approx(0.04).epsilon(0.12));
+  CHECK(small / chains == relative(0.1, 0.08));
+  CHECK(square / small == relative(0.04, 0.12));
 }
 
 TEST_CASE("a move to a place that cannot be solved is rejected and marked") {
@@ -179,8 +180,8 @@ TEST_CASE("adaptation learns covariance and scale, and a failed move does not st
   }
   auto const& factor = adaptation.proposal().factor;
   CHECK(factor[0] == doctest::Approx(10).epsilon(0.15));
-  CHECK(std::hypot(factor[2], factor[3]) == doctest::Approx(0.1).epsilon(0.15));
-  CHECK(late == doctest::Approx(0.234).epsilon(0.1));
+  CHECK(std::hypot(factor[2], factor[3]) == relative(0.1, 0.15));
+  CHECK(late == relative(0.234, 0.1));
 
   double const scale = adaptation.proposal().scale;
   Info const failed(4, Move{.failed = true});

@@ -10,6 +10,7 @@
 #include "likelihood/model_target.hpp"
 #include "likelihood/output.hpp"
 #include "load/load.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -65,7 +66,7 @@ struct KindsCase {
   double at(std::vector<double> const& values) const { return all({values}).front(); }
 };
 
-doctest::Approx about(double value) { return doctest::Approx(value).epsilon(1e-12); }
+doctest::Approx about(double value) { return relative(value, 1e-12); }
 
 std::vector<double> wave(int rows, double turns, double size = 1) {
   std::vector<double> samples;

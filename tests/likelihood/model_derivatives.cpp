@@ -10,6 +10,7 @@
 #include "core/numeric/not_finite.hpp"
 #include "likelihood/model_target.hpp"
 #include "load/load.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -228,7 +229,7 @@ TEST_CASE("the gradient of the prior is exact, through populations and bounds th
   // Of what stands alone: a normal density.
   for (int p = 0; p < theta.rows(); ++p)
     if (target->parameters()[static_cast<std::size_t>(p)].name == "idle")
-      for (int w = 0; w < 4; ++w) CHECK(gradient(p, w) == doctest::Approx(-theta(p, w)).epsilon(1e-14));
+      for (int w = 0; w < 4; ++w) CHECK(gradient(p, w) == relative(-theta(p, w), 1e-14));
   LaneArray alone(theta.rows(), 1);
   target->log_prior_gradient(theta.view().columns(2, 1), {value.data(), 1}, alone);
   for (int p = 0; p < theta.rows(); ++p) CHECK(alone(p, 0) == gradient(p, 2));

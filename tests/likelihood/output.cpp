@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "load/load.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -57,9 +58,9 @@ TEST_CASE("the noise of a channel beside random states is the normal one that th
   REQUIRE(found.size() == 40);
   for (std::size_t r = 0; r < found.size(); ++r) {
     CAPTURE(r);
-    CHECK(found[r] == doctest::Approx(expected[r]).epsilon(1e-6));
+    CHECK(found[r] == relative(expected[r], 1e-6));
   }
   // Of the first sample, whose state is known, it is that of the sensor alone.
-  CHECK(found[0] == doctest::Approx(0.01 * std::sqrt(2)).epsilon(1e-3));
+  CHECK(found[0] == relative(0.01 * std::sqrt(2), 1e-3));
   CHECK(found[20] == doctest::Approx(3.2 * std::sqrt(std::exp(0.01) * std::expm1(0.01))).epsilon(1e-3));
 }

@@ -9,6 +9,7 @@
 
 #include "core/text/diagnostic.hpp"
 #include "load/load.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -113,7 +114,7 @@ TEST_CASE("draws from a hierarchical prior have the moments of the population") 
   }
   // Variances 0.25 within and 4 between; relative standard errors sqrt(2/n) and below 2 sqrt(2/n).
   CHECK(std::abs(mean - 1) < 4 * std::sqrt(4.25 / n));
-  CHECK(within == doctest::Approx(0.25).epsilon(4 * std::sqrt(2.0 / n)));
+  CHECK(within == relative(0.25, 4 * std::sqrt(2.0 / n)));
   CHECK(between == doctest::Approx(4).epsilon(8 * std::sqrt(2.0 / n)));
 }
 

@@ -12,6 +12,7 @@
 #include "core/numeric/random.hpp"
 #include "likelihood/segments/segment_starts.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "relative.hpp"
 #include "simulate/thread_pool.hpp"
 
 using namespace sysid;
@@ -152,11 +153,10 @@ TEST_CASE("a fit in segments is the dense least squares of the same problem, ove
     CHECK(fit.determined);
     // Ends within sqrt(2e-6) of a standard deviation.
     CHECK(std::abs(fit.point.coefficients(0) - dense.unknowns(0)) < 2e-3 * std::sqrt(dense.variance_of_rate));
-    CHECK(fit.squares[0] == doctest::Approx(dense.squares).epsilon(1e-6));
-    CHECK(fit.covariance(0, 0) == doctest::Approx(dense.variance_of_rate).epsilon(1e-3));
+    CHECK(fit.squares[0] == relative(dense.squares, 1e-6));
+    CHECK(fit.covariance(0, 0) == relative(dense.variance_of_rate, 1e-3));
     for (std::size_t s = 0; s < segments.size(); ++s)
-      CHECK(fit.point.starts(0, static_cast<Eigen::Index>(s)) ==
-            doctest::Approx(dense.unknowns(1 + static_cast<Eigen::Index>(s))).epsilon(1e-3));
+      CHECK(fit.point.starts(0, static_cast<Eigen::Index>(s)) == relative(dense.unknowns(1 + static_cast<Eigen::Index>(s)), 1e-3));
     double const n = dense.count, mean = dense.squares / n;
     CHECK(fit.log_likelihood == doctest::Approx(-n / 2 * (std::log(2 * M_PI * mean) + 1)).epsilon(1e-9));
   }
@@ -246,5 +246,5 @@ TEST_CASE("a chaotic record gives its coefficients from segments that grow") {
     CHECK(std::abs(fit.point.coefficients(k) - truth[k]) < 4 * sd);
     CHECK(sd < 1e-3 * truth[k]);
   }
-  CHECK(fit.noise_sd[0] == doctest::Approx(0.08).epsilon(0.08));  // 1500 samples: 1.8 %
+  CHECK(fit.noise_sd[0] == relative(0.08, 0.08));  // 1500 samples: 1.8 %
 }

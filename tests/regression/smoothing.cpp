@@ -8,6 +8,7 @@
 
 #include "core/numeric/random.hpp"
 #include "regression/column/signals.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using namespace sysid::regression;
@@ -26,7 +27,7 @@ TEST_CASE("Savitzky and Golay's weights are exact on polynomials of their degree
   }
   // Five points, quadratic: (-3, 12, 17, 12, -3)/35 (Savitzky and Golay 1964, table I).
   std::vector<double> const five = savitzky_golay_weights(2, 2, 0);
-  for (int k = 0; k < 5; ++k) CHECK(five[static_cast<std::size_t>(k)] == doctest::Approx((double[]){-3, 12, 17, 12, -3}[k] / 35));
+  for (int k = 0; k < 5; ++k) CHECK(five[static_cast<std::size_t>(k)] == relative((double[]){-3, 12, 17, 12, -3}[k] / 35, 1e-12));
 }
 
 TEST_CASE("a filter says nothing near ends and missing samples") {
@@ -59,28 +60,28 @@ TEST_CASE("the penalty for a noise leaves a residual of that noise") {
   std::vector<double> const smooth = SmoothingSpline(samples, penalty_for_noise(samples, 0.02)).derivative(0);
   double squares = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) squares += (samples[i] - smooth[i]) * (samples[i] - smooth[i]) / 400;
-  CHECK(std::sqrt(squares) == doctest::Approx(0.02).epsilon(1e-6));
+  CHECK(std::sqrt(squares) == relative(0.02, 1e-6));
 }
 
 TEST_CASE("noise that grows with a motion that dies away is estimated by its law, which the taper of the spectrum would miss") {
   constexpr int rows = 600;
-  std::vector<double> samples, dying, relative;
+  std::vector<double> samples, dying, shape;
   Stream noise({7, Purpose::test, 0, 0});
   for (int i = 0; i < rows; ++i) {
     dying.push_back(std::exp(-0.01 * i) * std::sin(2 * M_PI * i / 90));
-    relative.push_back(std::hypot(dying.back(), 0.05));
+    shape.push_back(std::hypot(dying.back(), 0.05));
   }
   double mean = 0;
-  for (double const each : relative) mean += each * each / rows;
-  for (double& each : relative) each /= std::sqrt(mean);
-  for (std::size_t i = 0; i < rows; ++i) samples.push_back(dying[i] + 0.01 * relative[i] * noise.normal());
-  std::vector<ChannelSamples> const alike = {{samples}}, growing = {{samples, relative}};
-  CHECK(estimated_noise(growing) == doctest::Approx(0.01).epsilon(0.15));
+  for (double const each : shape) mean += each * each / rows;
+  for (double& each : shape) each /= std::sqrt(mean);
+  for (std::size_t i = 0; i < rows; ++i) samples.push_back(dying[i] + 0.01 * shape[i] * noise.normal());
+  std::vector<ChannelSamples> const alike = {{samples}}, growing = {{samples, shape}};
+  CHECK(estimated_noise(growing) == relative(0.01, 0.15));
   CHECK(estimated_noise(alike) < 0.006);
   // Of noise that is alike in all samples both are the same.
   std::vector<double> const ones(rows, 1.0);
   std::vector<ChannelSamples> const stated = {{samples, ones}};
-  CHECK(estimated_noise(stated) == doctest::Approx(estimated_noise(alike)).epsilon(1e-12));
+  CHECK(estimated_noise(stated) == relative(estimated_noise(alike), 1e-12));
 }
 
 TEST_CASE("noise is estimated from differences, the fastest period from the spectrum") {
@@ -88,7 +89,7 @@ TEST_CASE("noise is estimated from differences, the fastest period from the spec
   std::vector<double> samples;
   for (int i = 0; i < 2000; ++i) samples.push_back(std::sin(2 * M_PI * i / 80) + 0.01 * noise.normal());
   // The estimate's own relative sd is about sqrt(1.8 / 2000) = 3 %: sixth differences of neighbours correlate.
-  CHECK(estimated_noise(samples) == doctest::Approx(0.01).epsilon(0.12));
+  CHECK(estimated_noise(samples) == relative(0.01, 0.12));
   // Of a sine all power lies at its frequency; the taper spreads it over the neighbouring lines of the spectrum, 2 in 25.
   double const period = fastest_period(samples, 0.5);
   CHECK(period <= 40);

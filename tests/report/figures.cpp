@@ -14,6 +14,7 @@
 #include "diagnostics/convergence.hpp"
 #include "diagnostics/residuals/residual_tests.hpp"
 #include "example.hpp"
+#include "relative.hpp"
 #include "report/figure/gnuplot.hpp"
 #include "report/figure/svg.hpp"
 
@@ -479,8 +480,8 @@ TEST_CASE("the autocorrelation in the figure, and its band, are those of the tes
   REQUIRE(bars.size() == test.correlation.size());
   REQUIRE(limits.size() == bars.size() + 2);
   for (std::size_t i = 0; i < bars.size(); ++i) {
-    CHECK(bars[i][1] == doctest::Approx(test.correlation[i]).epsilon(1e-5));
-    CHECK(limits[i + 1][2] == doctest::Approx(test.bound[i]).epsilon(1e-5));
+    CHECK(bars[i][1] == relative(test.correlation[i], 1e-5));
+    CHECK(limits[i + 1][2] == relative(test.bound[i], 1e-5));
   }
   CHECK(figure.caption.find("99 %") != std::string::npos);
 }
@@ -535,7 +536,7 @@ TEST_CASE("a function that was found shows where the record reads it") {
   auto const strip = block(figure.script, "visits0");
   REQUIRE(strip.size() == 8);
   double const low = strip[0][1];
-  CHECK(strip[2][0] == doctest::Approx(0.25));
+  CHECK(strip[2][0] == relative(0.25, 1e-12));
   CHECK(strip[2][1] - low == doctest::Approx(2 * (strip[6][1] - low)));
   CHECK(figure.caption.find("how many of the fitted rows") != std::string::npos);
   function.visits[0].assign(4, 0);

@@ -10,6 +10,7 @@
 
 #include "core/numeric/not_finite.hpp"
 #include "core/numeric/random.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -38,7 +39,7 @@ TEST_CASE("the kernel density of normal draws is theirs, to its own bias and err
   REQUIRE(density.size() == 201);
   CHECK(integral(density, -5, 5) == doctest::Approx(1).epsilon(0.002));
   double const h = kernel_width(draws, n);
-  CHECK(h == doctest::Approx(0.9 * std::pow(n, -0.2)).epsilon(0.05));
+  CHECK(h == relative(0.9 * std::pow(n, -0.2), 0.05));
   for (int k = 0; k < 201; ++k) {
     double const x = -5 + k * 0.05, exact = std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi);
     // Silverman 1986, eqs. 3.13 and 3.14: bias h^2 f''/2, variance f/(2 sqrt(pi) n h).

@@ -10,6 +10,7 @@
 #include "core/numeric/random.hpp"
 #include "core/text/diagnostic.hpp"
 #include "program/tangents.hpp"
+#include "relative.hpp"
 #include "simulate/experiments.hpp"
 #include "simulate/simulator.hpp"
 #include "simulate/systems.hpp"
@@ -178,7 +179,7 @@ TEST_CASE("lengths of steps are told apart beyond rounding, the most frequent fi
   for (int i = 0; i < 40; ++i) time.push_back(time.back() + (i % 4 == 3 ? 0.7 : 0.1));
   StepLengths const two = step_lengths(time);
   REQUIRE(two.count() == 2);
-  CHECK(two.values[0] == doctest::Approx(0.1).epsilon(1e-8));
+  CHECK(two.values[0] == relative(0.1, 1e-8));
   CHECK(two.values[1] == doctest::Approx(0.7).epsilon(1e-8));
   CHECK(two.of[2] == 0);
   CHECK(two.of[3] == 1);
@@ -212,8 +213,7 @@ TEST_CASE("a gain on the way from one state to another does not count for the re
     Run const run = simulated(source, record(30, 0.2, &one), {0.5, 2}),
               plain = simulated(two_lags(), record(30, 0.2, &one), {0.5, 2});
     REQUIRE(run.ok);
-    for (std::size_t i = 1; i < plain.values.size(); i += 2)
-      CHECK(run.values[i] / gain == doctest::Approx(plain.values[i]).epsilon(1e-13));
+    for (std::size_t i = 1; i < plain.values.size(); i += 2) CHECK(run.values[i] / gain == relative(plain.values[i], 1e-13));
   }
 }
 
@@ -224,7 +224,7 @@ TEST_CASE("a matrix beyond the reach of the series fails, and never gives a wron
     Run const lag = simulated(two_lags(), record(3, 1, &one), {1 / rate, 0.5});
     Run const free = simulated(oscillator(), record(3, 1, &none), {1, 0, rate * rate, 1, 0});
     (lag.ok ? right : failed) += 1;
-    if (lag.ok) CHECK(lag.values[2] == doctest::Approx(-std::expm1(-rate)).epsilon(1e-9));
+    if (lag.ok) CHECK(lag.values[2] == relative(-std::expm1(-rate), 1e-9));
     // cos: of a phase that is known to its rounding.
     if (free.ok) CHECK(std::abs(free.values[2] - std::cos(rate)) < 1e-13 + 3e-15 * rate);
     // 2^29 by sampling step.
@@ -333,7 +333,7 @@ TEST_CASE("tangents of an exact step are what differences tend to") {
     };
     double const h = 1e-3, near = (at(h) - at(-h)) / (2 * h), far = (at(2 * h) - at(-2 * h)) / (4 * h);
     double const expected = (4 * near - far) / 3 / centre[static_cast<std::size_t>(p)];
-    CHECK(derivatives[static_cast<std::size_t>(1 + p)] == doctest::Approx(expected).epsilon(1e-7));
+    CHECK(derivatives[static_cast<std::size_t>(1 + p)] == relative(expected, 1e-7));
   }
 }
 
@@ -347,7 +347,7 @@ TEST_CASE("records of different steps share a program, and a remembered sample s
     for (int p = 0; p < 5; ++p) parameters(p, 0) = values[p];
     Outcome outcome;
     simulator.records(parameters, 19, 20, out, {&outcome, 1});
-    CHECK(out(0, 0) == doctest::Approx((1 - std::cos(2 * 19 * step)) / 4).epsilon(1e-12));
+    CHECK(out(0, 0) == relative((1 - std::cos(2 * 19 * step)) / 4, 1e-12));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/text/diagnostic.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -93,9 +94,9 @@ TEST_CASE("a refined tolerance is the number that a person would write") {
   CHECK(loose.finer().finer().relative == 1e-9);
 }
 
-TEST_CASE("the error allowed near zero follows the size a state has reached, down to 1e-6 of its unit") {
+TEST_CASE("the error allowed near zero follows the size a state has reached, down to 1e-120 of its unit") {
   SolverSettings const solver{.relative = 1e-6};
-  CHECK(solver.near_zero(2.0) == doctest::Approx(2e-9));
-  CHECK(solver.near_zero(0.0) == doctest::Approx(1e-15));
+  CHECK(solver.near_zero(2.0) == relative(2e-9, 1e-14));
+  CHECK(solver.near_zero(0.0) == relative(1e-129, 1e-14));
   CHECK(SolverSettings{.relative = 1e-6, .absolute = 1e-3}.near_zero(2.0) == 1e-3);
 }

@@ -5,6 +5,7 @@
 
 #include "linear_algebra/decompositions.hpp"
 #include "made_oscillator.hpp"
+#include "relative.hpp"
 #include "tracking/tracking_steps.hpp"
 
 using namespace sysid;
@@ -73,7 +74,7 @@ model line {
   for (std::size_t j = 0; j < 2; ++j) {
     auto const at = static_cast<Eigen::Index>(j);
     CHECK(all.mean.back()[j] == doctest::Approx(mean(at)).epsilon(1e-10));
-    CHECK(all.sd.back()[j] == doctest::Approx(std::sqrt(covariance(at, at))).epsilon(1e-10));
+    CHECK(all.sd.back()[j] == relative(std::sqrt(covariance(at, at)), 1e-10));
   }
   CHECK(std::isnan(all.innovation[20]));
   CHECK(all.mean[20] == all.mean[19]);
@@ -163,7 +164,7 @@ TEST_CASE("rows of an unknown beginning tell of the states and leave the paramet
   StatePrior const rest{Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero(), false};
   StatePrior const anywhere = states_along(program, SolverSettings{}, ExecutionOptions{}, whole, rest, prior, false);
   CHECK(anywhere.settles);
-  CHECK(std::sqrt(anywhere.covariance(0, 0)) == doctest::Approx(0.22).epsilon(0.3));
+  CHECK(std::sqrt(anywhere.covariance(0, 0)) == relative(0.22, 0.3));
   TrackingOptions options;
   options.intensities.assign(3, 1e-10);
   options.scales.assign(3, 1.0);
@@ -190,5 +191,5 @@ TEST_CASE("the threshold keeps to the union bound") {
   ChangeDetector const detector(2, 3, 1e-5, 2048);
   int const pairs = 3 * most_candidates(2048);
   CHECK(pairs == 87);
-  CHECK(pairs * std::erfc(detector.threshold() / std::sqrt(2.0)) == doctest::Approx(1e-5).epsilon(1e-6));
+  CHECK(pairs * std::erfc(detector.threshold() / std::sqrt(2.0)) == relative(1e-5, 1e-6));
 }

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include "relative.hpp"
+
 using namespace sysid;
 
 namespace {
@@ -29,7 +31,7 @@ TEST_CASE("equal steps are found again behind the digits of the file") {
       REQUIRE(equal);
       double const unit = begin + length < 10 ? 1e-6 : begin + length < 100 ? 1e-5 : 1e-4;
       for (std::size_t i = 0; i < 150; ++i) CHECK(std::abs((*equal)[i] - begin - static_cast<double>(i) * step) < unit);
-      CHECK((*equal)[1] - (*equal)[0] == doctest::Approx(step).epsilon(unit / length));
+      CHECK((*equal)[1] - (*equal)[0] == relative(step, unit / length));
     }
 }
 
@@ -80,7 +82,7 @@ TEST_CASE("equal steps of many lengths, rounded to one unit in 20 to 1000 steps,
       for (int i = 0; i < 400; ++i) time.push_back(std::round((begin + i * step) * 1e3) / 1e3);
       auto const equal = equal_times_before_rounding(time);
       REQUIRE(equal);
-      CHECK(((*equal)[399] - (*equal)[0]) / 399 == doctest::Approx(step).epsilon(1e-3 / (399 * step)));
+      CHECK(((*equal)[399] - (*equal)[0]) / 399 == relative(step, 1e-3 / (399 * step)));
     }
 }
 
@@ -94,7 +96,7 @@ TEST_CASE("times of single precision were rounded, too, however they are written
   for (std::vector<double> const& time : {whole, nine}) {
     auto const equal = equal_times_before_rounding(time);
     REQUIRE(equal);
-    CHECK(((*equal)[799] - (*equal)[0]) / 799 == doctest::Approx(0.01).epsilon(1e-7));
+    CHECK(((*equal)[799] - (*equal)[0]) / 799 == relative(0.01, 1e-7));
   }
   whole[400] = static_cast<double>(static_cast<float>(whole[400] + 2e-6));  // four of its units
   CHECK_FALSE(equal_times_before_rounding(whole));
@@ -124,8 +126,8 @@ TEST_CASE("steps of few units show their rate where there are enough of them") {
         auto const found = rounded_steps(time, 1);
         REQUIRE(found);
         CHECK(found->rate == rate);
-        CHECK(found->unit == doctest::Approx(unit));
-        CHECK(found->lower == doctest::Approx(std::floor(1 / rate / unit) * unit));
+        CHECK(found->unit == relative(unit, 1e-12));
+        CHECK(found->lower == relative(std::floor(1 / rate / unit) * unit, 1e-12));
       }
   // Milliseconds that are written as such.
   std::vector<double> milliseconds;
@@ -133,7 +135,7 @@ TEST_CASE("steps of few units show their rate where there are enough of them") {
   auto const found = rounded_steps(milliseconds, 1e-3);
   REQUIRE(found);
   CHECK(found->rate == 256);
-  CHECK(found->unit == doctest::Approx(1e-3));
+  CHECK(found->unit == relative(1e-3, 1e-12));
 }
 
 TEST_CASE("clocks that vary, few steps and equal ones are no rounding") {

@@ -11,6 +11,7 @@
 #include "data/table/proposal.hpp"
 #include "data/table/table.hpp"
 #include "data/temporary_file.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -114,10 +115,10 @@ TEST_CASE("an acceleration in g is in units of the standard gravity, a mass in g
   for (char const* const written : {"mg", "[mG]", "milli-g"}) {
     CAPTURE(written);
     REQUIRE(unit_of_text(written, acceleration));
-    CHECK(unit_of_text(written, acceleration)->scale == doctest::Approx(9.80665e-3).epsilon(1e-15));
+    CHECK(unit_of_text(written, acceleration)->scale == relative(9.80665e-3, 1e-15));
     CHECK(unit_atom(unit_of_text(written, acceleration)->text)->scale == unit_of_text(written, acceleration)->scale);
   }
-  CHECK(unit_of_text("µg", acceleration)->scale == doctest::Approx(9.80665e-6).epsilon(1e-15));
+  CHECK(unit_of_text("µg", acceleration)->scale == relative(9.80665e-6, 1e-15));
   CHECK(unit_of_text("g", mass)->scale == 1e-3);
   CHECK(unit_of_text("mg", mass)->scale == 1e-6);
   CHECK(unit_of_text("mm/s²", acceleration)->scale == 1e-3);

@@ -10,6 +10,7 @@
 
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using nlohmann::json;
@@ -194,7 +195,7 @@ TEST_CASE("a drift of a sensor is named with lines that remove it") {
   std::string const message = found->at("message"), begin = "the residuals of z follow a line in time: a slope of ";
   CAPTURE(message);
   REQUIRE(message.starts_with(begin));
-  CHECK(std::stod(message.substr(begin.size())) == doctest::Approx(0.1).epsilon(0.05));
+  CHECK(std::stod(message.substr(begin.size())) == relative(0.1, 0.05));
   CHECK(message.find(" mm/s, ") != std::string::npos);
   CHECK(of_code(findings, "residual_offset") == nullptr);
   for (json const& each : findings) CHECK(each.at("help").get<std::string>().find("disturbance") == std::string::npos);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/numeric/random.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -48,7 +49,7 @@ TEST_CASE("white residuals pass the whiteness test as often as its level says") 
   }
   CHECK(fired <= 6);  // at n = 500 the level 0.1 % is 0.3 % in truth: 1.2 expected, P(more than 6) = 3e-4
   CHECK(small == doctest::Approx(20).epsilon(0.7));  // binomial, sd 4.4: within 3.2 sd
-  CHECK(static_cast<double>(outside) / lags == doctest::Approx(0.01).epsilon(0.3));
+  CHECK(static_cast<double>(outside) / lags == relative(0.01, 0.3));
 }
 
 TEST_CASE("coloured residuals and an offset fail the whiteness test, gaps or not") {
@@ -96,7 +97,7 @@ TEST_CASE("a trend of few samples is seen where their lags are too few") {
   std::vector<double> falling;
   for (int i = 0; i < 11; ++i) falling.push_back(5 - i);
   CHECK_FALSE(whiteness(falling).fires());
-  CHECK(trend_p_value(falling) == doctest::Approx(2.66e-5).epsilon(0.01));  // S = -55, z = 54/sqrt(165)
+  CHECK(trend_p_value(falling) == relative(2.6236149e-5, 1e-7));  // S = -55, z = 54/sqrt(165)
   falling[4] = missing;
   CHECK(trend_p_value(falling) < 1e-3);
   int fired = 0;

@@ -11,6 +11,7 @@
 #include "inference/evidence/laplace.hpp"
 #include "inference/optimum.hpp"
 #include "inference/targets.hpp"
+#include "relative.hpp"
 #include "search/global/search.hpp"
 
 using namespace sysid;
@@ -150,7 +151,7 @@ TEST_CASE("draws from a normal posterior confirm its evidence and widths exactly
   CHECK(draws.log_evidence == doctest::Approx(modes.front().log_mass).epsilon(1e-6));
   CHECK(draws.error < 1e-4);
   for (std::size_t p = 0; p < 2; ++p) {
-    CHECK(draws.sd[p] == doctest::Approx(modes.front().sd[p]).epsilon(1e-3));
+    CHECK(draws.sd[p] == relative(modes.front().sd[p], 1e-3));
     CHECK(std::fabs(draws.mean[p] - modes.front().declared[p]) < 1e-3 * modes.front().sd[p]);
   }
 }
@@ -198,7 +199,7 @@ TEST_CASE("a tail that weighted draws miss is found by walkers, and map fails") 
     // Of the larger noise the tail reaches the bound of the prior, ten sds away: too far to measure, but not to be missed.
     for (std::size_t p = 0; p < 2; ++p)
       if (size < 0.035)
-        CHECK(draws.sd[p] == doctest::Approx(truth[p]).epsilon(0.25));
+        CHECK(draws.sd[p] == relative(truth[p], 0.25));
       else
         CHECK(draws.sd[p] > 1.5 * fitted.modes.front().sd[p]);
   }
