@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "discovery/discovering.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -265,11 +266,11 @@ TEST_CASE("noise that is given takes the place of the estimate") {
   DiscoveryAnswer const estimated = run(file(oscillator));
   json const& of_record = estimated.summary.at("discovery").at("noise").at("displacement");
   CHECK(of_record.at("given") == false);
-  CHECK(of_record.at("sd").get<double>() == doctest::Approx(0.00175).epsilon(0.1));
+  CHECK(of_record.at("sd").get<double>() == relative(0.00175, 0.1));
   DiscoveryAnswer const given = run(file(oscillator, "noise(displacement = 0.5 [mm]), seed = 1"));
   json const& noise = given.summary.at("discovery").at("noise").at("displacement");
   CHECK(noise.at("given") == true);
-  CHECK(noise.at("sd").get<double>() == doctest::Approx(0.0005).epsilon(1e-14));
+  CHECK(noise.at("sd").get<double>() == relative(0.0005, 1e-14));
   // What is taken for less noise than there is leaves a residual of as many times the noise.
   double const ratio = given.summary.at("discovery").at("equations").at(0).at("noise_ratio");
   CHECK(ratio == doctest::Approx(3.5).epsilon(0.15));

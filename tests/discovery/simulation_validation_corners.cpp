@@ -9,6 +9,7 @@
 
 #include "discovery/coefficients.hpp"
 #include "discovery/discovering.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -169,7 +170,7 @@ TEST_CASE("two channels of one state are fitted together, and noise that was tak
   check_errors(first(both).at("channels").at(0), 0.00175);
   check_errors(first(both).at("channels").at(1), 0.00875);
   // A speed whose slope jumps with the force looks noisier than it is: what simulation leaves is the noise.
-  CHECK(first(both).at("channels").at(1).at("residual").get<double>() == doctest::Approx(0.00875).epsilon(0.1));
+  CHECK(first(both).at("channels").at(1).at("residual").get<double>() == relative(0.00875, 0.1));
   CHECK(both.codes() == Texts{"noise_overestimated"});
   json const finding = both.finding("noise_overestimated");
   CHECK(finding.at("severity") == "note");

@@ -11,6 +11,7 @@
 #include "check/checking.hpp"
 #include "house/markdown.hpp"
 #include "load/modules.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using namespace sysid::test;
@@ -156,7 +157,7 @@ TEST_CASE("duffing: the period of free motion is an elliptic integral") {
   double const period = 4 * std::numbers::pi / 2 / a / std::sqrt(w2);
   int const steps = 4000;
   model.run(period / steps, steps, [&](double t, Vector const& state) {
-    if (t > period * (1 - 1e-9)) CHECK(state[0] == doctest::Approx(amplitude).epsilon(1e-8));
+    if (t > period * (1 - 1e-9)) CHECK(state[0] == relative(amplitude, 1e-8));
     if (std::fabs(t - period / 4) < 1e-9) CHECK(std::fabs(state[0]) < 1e-8);
   });
 }
@@ -263,12 +264,12 @@ TEST_CASE("the families `damping` and `friction` of dictionaries are the laws of
           sum += value(term);
           used[term.of].insert(term.index);
         }
-        CHECK(force("damping", law.part + "(velocity = drive)", alone, v) == doctest::Approx(sum).epsilon(1e-14));
+        CHECK(force("damping", law.part + "(velocity = drive)", alone, v) == relative(sum, 1e-14));
         together["law." + coefficient] = next;
         all += next * sum;
         next += 2;
       }
-      CHECK(force("damping", law.part + "(velocity = drive)", together, v) == doctest::Approx(all).epsilon(1e-14));
+      CHECK(force("damping", law.part + "(velocity = drive)", together, v) == relative(all, 1e-14));
     }
   }
   // All that the families hold comes from a law, but the cube, which damping adds.
@@ -399,7 +400,7 @@ TEST_CASE("sir: nobody is lost, and the relation of susceptible and removed") {
   Vector last;
   model.run(0.05, 2000, [&](double, Vector const& s) {
     CHECK(s[0] + s[1] + s[2] == doctest::Approx(population).epsilon(1e-12));
-    CHECK(std::log(s[0] / 997) == doctest::Approx(-transmission / (recovery * population) * s[2]).epsilon(1e-6));
+    CHECK(std::log(s[0] / 997) == relative(-transmission / (recovery * population) * s[2], 1e-6));
     last = s;
   });
   CHECK(last[2] > 800);
@@ -410,6 +411,6 @@ TEST_CASE("one_compartment: Bateman's function") {
   Driven const model("use kinetics\nmodel bench {\npart p = one_compartment()\nobserve o ~ normal(p.body, sd = 1)\n}\n", "bench",
                      {{"p.dose", dose}, {"p.ka", ka}, {"p.ke", ke}, {"p.V", V}});
   model.run(0.01, 1000, [&](double t, Vector const& state) {
-    CHECK(state[1] / V == doctest::Approx(dose * ka / (V * (ka - ke)) * (std::exp(-ke * t) - std::exp(-ka * t))).epsilon(1e-8));
+    CHECK(state[1] / V == relative(dose * ka / (V * (ka - ke)) * (std::exp(-ke * t) - std::exp(-ka * t)), 1e-8));
   });
 }

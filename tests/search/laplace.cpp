@@ -7,6 +7,7 @@
 
 #include "inference/targets.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "relative.hpp"
 #include "search/global/search.hpp"
 
 using namespace sysid;
@@ -49,11 +50,10 @@ TEST_CASE("sds of many parameters are exact, that of the noise too, which Gauss-
   Mode const mode = search(target, ObjectiveKind::likelihood, bench.context).modes.front();
   Eigen::VectorXd const best = OrthogonalTriangular(x).solve(y);
   double const sigma = std::sqrt((y - x * best).squaredNorm() / rows);
-  CHECK(mode.declared.back() == doctest::Approx(sigma).epsilon(1e-3));
-  CHECK(mode.sd.back() == doctest::Approx(sigma / std::sqrt(2.0 * rows)).epsilon(0.01));
+  CHECK(mode.declared.back() == relative(sigma, 1e-3));
+  CHECK(mode.sd.back() == relative(sigma / std::sqrt(2.0 * rows), 0.01));
   Eigen::MatrixXd const covariance = sigma * sigma * inverse(x.transpose() * x);
-  for (int c = 0; c < coefficients; ++c)
-    CHECK(mode.sd[static_cast<std::size_t>(c)] == doctest::Approx(std::sqrt(covariance(c, c))).epsilon(0.01));
+  for (int c = 0; c < coefficients; ++c) CHECK(mode.sd[static_cast<std::size_t>(c)] == relative(std::sqrt(covariance(c, c)), 0.01));
 }
 
 namespace {
@@ -73,8 +73,8 @@ TEST_CASE("a direction that is a million times as long as the narrowest, and a t
   Bench bench;
   Mode const mode = search(narrow(false, 1e-3), ObjectiveKind::posterior, bench.context).modes.front();
   CHECK(mode.flat.empty());
-  CHECK(mode.sd[0] == doctest::Approx(1e-3).epsilon(0.01));
-  CHECK(mode.sd[1] == doctest::Approx(1e-3).epsilon(0.01));
+  CHECK(mode.sd[0] == relative(1e-3, 0.01));
+  CHECK(mode.sd[1] == relative(1e-3, 0.01));
 }
 
 TEST_CASE("a ridge as long as the prior is flat however narrow it is, straight or bent") {

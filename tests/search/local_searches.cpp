@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "inference/targets.hpp"
+#include "relative.hpp"
 #include "search/global/search.hpp"
 
 using namespace sysid;
@@ -40,7 +41,7 @@ TEST_CASE("each mode that searches end in comes once, with the number of searche
   for (Mode const& mode : modes) {
     CHECK(mode.hits == (mode.declared[0] > 0 ? 4 : 1));
     CHECK(std::fabs(mode.declared[0]) == doctest::Approx(2).epsilon(0.01));
-    CHECK(mode.sd[0] == doctest::Approx(0.1).epsilon(0.02));
+    CHECK(mode.sd[0] == relative(0.1, 0.02));
     CHECK(mode.share == doctest::Approx(0.5).epsilon(0.01));
   }
 }
@@ -96,7 +97,7 @@ TEST_CASE("nineteen modes of one height are all found, with equal shares") {
   Bench bench(1);
   SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   CHECK(result.modes.size() == 19);
-  for (Mode const& each : result.modes) CHECK(each.share == doctest::Approx(1.0 / 19).epsilon(0.05));
+  for (Mode const& each : result.modes) CHECK(each.share == relative(1.0 / 19, 0.05));
 }
 
 TEST_CASE("searches that meet go on as one: eight cost little more than one") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "inference/targets.hpp"
+#include "relative.hpp"
 #include "search/global/search.hpp"
 #include "search/mode/moves.hpp"
 
@@ -32,7 +33,7 @@ TEST_CASE("a mode follows its target, and its move is measured in its own sds") 
   CHECK(largest_move(target.parameters(), modes[0], same[0], 0).size() < 1e-3);
   // The prior holds back 1e-4 of the move: half an sd.
   REQUIRE(gains.size() == 1);
-  CHECK(gains[0] == doctest::Approx(0.125).epsilon(1e-3));
+  CHECK(gains[0] == relative(0.125, 1e-3));
   sysid::Move const move = largest_move(target.parameters(), modes[0], moved[0], gains[0]);
   CHECK(move.value == doctest::Approx(0.5).epsilon(1e-3));
   CHECK(move.size() == doctest::Approx(0.5).epsilon(1e-2));

@@ -6,6 +6,7 @@
 #include "core/numeric/random.hpp"
 #include "core/text/number.hpp"
 #include "fits.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -56,6 +57,6 @@ posterior = fit drift to record with mh(samples = 30000, burn_in = 5000, thin = 
     auto const& found = fitted.of("posterior", name);
     CHECK(found.at("ess_bulk").get<double>() >= 2000);
     CHECK(std::abs(found.at("mean").get<double>() - mean) <= 3 * found.at("mcse_mean").get<double>());
-    CHECK(found.at("sd").get<double>() == doctest::Approx(sd).epsilon(0.05));
+    CHECK(found.at("sd").get<double>() == relative(sd, 0.05));
   }
 }

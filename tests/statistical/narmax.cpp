@@ -12,6 +12,7 @@
 
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
+#include "relative.hpp"
 #include "replications.hpp"
 
 using namespace sysid;
@@ -177,8 +178,8 @@ TEST_CASE(
     "a free run on rows that were not used is as good as the errors of the equation allow, and said to be lost where it is not") {
   Found const found(record(2, 1000, {.equation = 0.05}), "spike_slab");
   CHECK(found.exit == 0);
-  CHECK(found.forecast.at("free_run").get<double>() == doctest::Approx(found.forecast.at("expected").get<double>()).epsilon(0.25));
-  CHECK(found.forecast.at("one_step").get<double>() == doctest::Approx(0.05).epsilon(0.15));
+  CHECK(found.forecast.at("free_run").get<double>() == relative(found.forecast.at("expected").get<double>(), 0.25));
+  CHECK(found.forecast.at("one_step").get<double>() == relative(0.05, 0.15));
   // A spring that hardens is linear as long as the motion is small: rows of small motion do not show the cube.
   auto const hardening = [](double small) {
     std::string csv = "u,y\n";

@@ -9,6 +9,7 @@
 #include "core/text/number.hpp"
 #include "fits.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -20,7 +21,7 @@ void check(Fitted const& fitted, std::string const& name, double mean, double sd
   auto const& found = fitted.of("posterior", name);
   CHECK(found.at("ess_bulk").get<double>() >= 2000);
   CHECK(std::abs(found.at("mean").get<double>() - mean) <= 3 * found.at("mcse_mean").get<double>());
-  CHECK(found.at("sd").get<double>() == doctest::Approx(sd).epsilon(0.05));
+  CHECK(found.at("sd").get<double>() == relative(sd, 0.05));
 }
 
 // A posterior of linear regression: precision and information, prior first.

@@ -5,6 +5,7 @@
 
 #include "app/comparison/compared_evidence.hpp"
 #include "core/text/diagnostic.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -54,9 +55,9 @@ TEST_CASE("weights by evidence are the probabilities of a comparison") {
   Comparison const comparison = compared({fit("a", -10), fit("b", -10 + std::log(3.0))}, {"1", "2"});
   MemberWeights const weighed = weights_of(comparison, {"a", "b"}, AverageWeights::evidence);
   REQUIRE(weighed.members.size() == 2);
-  CHECK(weighed.members[0].weight == doctest::Approx(0.25));
+  CHECK(weighed.members[0].weight == relative(0.25, 1e-12));
   CHECK(weighed.members[1].weight == doctest::Approx(0.75));
-  CHECK(*weighed.members[0].error == doctest::Approx(*comparison.fits[0].probability_error));
+  CHECK(*weighed.members[0].error == relative(*comparison.fits[0].probability_error, 1e-12));
   CHECK(found(weighed.findings, FindingCode::averaged_over_models));
   CHECK_FALSE(found(weighed.findings, FindingCode::counted_once));
   CHECK_FALSE(found(weighed.findings, FindingCode::weights_not_confirmed));

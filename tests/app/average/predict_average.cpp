@@ -11,6 +11,7 @@
 #include "app/tables.hpp"
 #include "core/numeric/random.hpp"
 #include "core/text/diagnostic.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -85,10 +86,10 @@ stacked = predict curved, straight on table.test with draws(300), weights = stac
   json const summary = run.summary("both"), alone = run.summary("alone");
   auto const results = run.folder.path() / "results";
   Comparison const comparison = compare({results / "curved", results / "straight"});
-  CHECK(member(summary, "curved").at("weight").get<double>() == doctest::Approx(*comparison.fits[0].probability));
+  CHECK(member(summary, "curved").at("weight").get<double>() == relative(*comparison.fits[0].probability, 1e-12));
   CHECK(member(summary, "straight").at("weight").get<double>() == doctest::Approx(*comparison.fits[1].probability));
   CHECK(member(run.summary("stacked"), "straight").at("weight").get<double>() ==
-        doctest::Approx(comparison.scores.fits[1].stacking).epsilon(1e-9));
+        relative(comparison.scores.fits[1].stacking, 1e-9));
   double const w = member(summary, "straight").at("weight").get<double>();
   CHECK(w > 0.01);  // else the average shows nothing
   CHECK(w < 0.99);
@@ -98,8 +99,8 @@ stacked = predict curved, straight on table.test with draws(300), weights = stac
              mean = column(csv, "y_mean"), lower = column(csv, "y_noisy_q2.5"), upper = column(csv, "y_noisy_q97.5");
   REQUIRE(parameter.size() == 84);
   for (std::size_t i = 0; i < 84; ++i) {
-    CHECK(sd[i] * sd[i] == doctest::Approx(parameter[i] + model[i] + noise[i]).epsilon(1e-9));
-    CHECK(response[i] * response[i] == doctest::Approx(parameter[i] + model[i]).epsilon(1e-9));
+    CHECK(sd[i] * sd[i] == relative(parameter[i] + model[i] + noise[i], 1e-9));
+    CHECK(response[i] * response[i] == relative(parameter[i] + model[i], 1e-9));
     CHECK(parameter[i] > 0);
     CHECK(noise[i] > 0.04);  // sigma is about 0.3
     CHECK(lower[i] < mean[i]);
@@ -173,7 +174,7 @@ two = predict straight, again on table.test with draws(200), weights = stacking,
   for (char const* name : {"y_mean", "y_q2.5", "y_q97.5", "y_noisy_q2.5", "y_noisy_q97.5"}) {
     auto const alone = column(run.file("one/predict.csv"), name), averaged = column(run.file("two/predict.csv"), name);
     REQUIRE(alone.size() == averaged.size());
-    for (std::size_t i = 0; i < alone.size(); ++i) CHECK(averaged[i] == doctest::Approx(alone[i]).epsilon(1e-9));
+    for (std::size_t i = 0; i < alone.size(); ++i) CHECK(averaged[i] == relative(alone[i], 1e-9));
   }
 }
 
@@ -302,7 +303,7 @@ forecast = predict selection on table.test with draws(200), seed = 1
   std::string const csv = run.file("forecast/predict.csv");
   auto const sd = column(csv, "y_sd"), parameter = column(csv, "y_parameter_variance"), model = column(csv, "y_model_variance");
   REQUIRE(sd.size() == 84);
-  for (std::size_t i = 0; i < sd.size(); ++i) CHECK(parameter[i] + model[i] == doctest::Approx(sd[i] * sd[i]).epsilon(1e-9));
+  for (std::size_t i = 0; i < sd.size(); ++i) CHECK(parameter[i] + model[i] == relative(sd[i] * sd[i], 1e-9));
   CHECK(*std::ranges::max_element(model) > 0);
   CHECK(csv.find("y_noise_variance") == std::string::npos);
 }

@@ -11,6 +11,7 @@
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
 #include "core/text/diagnostic.hpp"
+#include "relative.hpp"
 #include "report/file/stored_files.hpp"
 
 using namespace sysid;
@@ -78,7 +79,7 @@ free = predict b_arx on points.test with draws(20), prediction = free_run, seed 
   CHECK(found.data == "points.train, rows 5..80 (76 scored)");
   auto const log_evidence = [&](char const* task) { return run.summary(task).at("evidence").at("log_evidence").get<double>(); };
   double const odds = std::exp(log_evidence("a_still") - log_evidence("b_arx"));
-  CHECK(*found.fits[0].probability == doctest::Approx(odds / (1 + odds)));
+  CHECK(*found.fits[0].probability == relative(odds / (1 + odds), 1e-12));
   CHECK(*found.fits[1].probability == doctest::Approx(1 / (1 + odds)));
   CHECK(*found.fits[2].probability == *found.fits[1].probability);
   CHECK_FALSE(found.fits[3].probability);
@@ -186,7 +187,8 @@ long = fit longer to points.head with map, seed = 1
     return std::string("not refused");
   };
   CHECK(refusal("head", "long") ==
-        "`head` and `long` are fitted to different samples: points.head, rows 2..80 (79 scored) and points.head, rows 4..80 (77 scored); "
+        "`head` and `long` are fitted to different samples: points.head, rows 2..80 (79 scored) and points.head, rows 4..80 (77 "
+        "scored); "
         "evidences can be compared only for the same samples: begin the fitted rows after the longest lag of all models");
   CHECK(refusal("train", "long").starts_with("`train` and `long` are fitted to different samples"));
   CHECK_THROWS_AS(compare({run.folder.path()}), UserError);  // holds no results itself

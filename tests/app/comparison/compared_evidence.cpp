@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "relative.hpp"
+
 using namespace sysid;
 using json = nlohmann::json;
 
@@ -37,10 +39,10 @@ TEST_CASE("errors of evidences are carried through to probabilities and Bayes fa
   CHECK(*fits[2].probability == *fits[0].probability);  // of one model, which counts once
   CHECK(*fits[0].probability + *fits[1].probability == doctest::Approx(1));
   // Of two models dP = P (1 - P) d(log Z - log Z').
-  CHECK(*fits[0].probability_error == doctest::Approx(p * (1 - p) * std::hypot(0.1, 0.2)));
-  CHECK(*fits[1].probability_error == doctest::Approx(p * (1 - p) * std::hypot(0.1, 0.2)));
+  CHECK(*fits[0].probability_error == relative(p * (1 - p) * std::hypot(0.1, 0.2), 1e-12));
+  CHECK(*fits[1].probability_error == relative(p * (1 - p) * std::hypot(0.1, 0.2), 1e-12));
   CHECK(*fits[1].log_bayes_factor == doctest::Approx(-2));
-  CHECK(*fits[1].bayes_factor_error == doctest::Approx(std::hypot(0.1, 0.2)));
+  CHECK(*fits[1].bayes_factor_error == relative(std::hypot(0.1, 0.2), 1e-12));
   CHECK(fits[1].strength == "positive");
   CHECK(fits[0].strength.empty());
   CHECK(*fits[0].log_bayes_factor == 0);

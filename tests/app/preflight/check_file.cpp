@@ -17,6 +17,7 @@
 #include "app/checking.hpp"
 #include "app/running.hpp"
 #include "core/numeric/elementary.hpp"
+#include "relative.hpp"
 #include "replications.hpp"
 
 using namespace sysid;
@@ -392,8 +393,8 @@ free = fit decay to bench with map, prediction = free_run
   CheckResult const result = checked(folder.path() / "decay.sysid", text);
   auto const expected = [&](std::string const& name) { return preflight(result, name).information->lines.at(0); };
   double const ahead = 0.001 / std::sqrt(1 / (1 - 0.25));
-  CHECK(expected("ahead").low == doctest::Approx(ahead).epsilon(0.01));
-  CHECK(expected("ahead").high == doctest::Approx(ahead).epsilon(0.01));
+  CHECK(expected("ahead").low == relative(ahead, 0.01));
+  CHECK(expected("ahead").high == relative(ahead, 0.01));
   auto const free = [](double a) { return 0.001 / std::sqrt((1 + a * a) / std::pow(1 - a * a, 3)); };
   CHECK(expected("free").low > free(0.56));
   CHECK(expected("free").high < free(0.44));
@@ -423,7 +424,7 @@ best = fit wave to bench with map
   PreflightPage const& page = preflight(result, "best");
   CHECK(page.not_examined == "");
   REQUIRE(page.information);
-  CHECK(page.information->lines.at(0).low == doctest::Approx(0.1 / std::sqrt(square)).epsilon(1e-3));
+  CHECK(page.information->lines.at(0).low == relative(0.1 / std::sqrt(square), 1e-3));
 }
 
 TEST_CASE("data in another unit than they were recorded in are seen in the prior's predictions") {

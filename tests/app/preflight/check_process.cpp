@@ -8,6 +8,7 @@
 
 #include "app/checking.hpp"
 #include "core/numeric/random.hpp"
+#include "relative.hpp"
 #include "temporary_folder.hpp"
 
 using namespace sysid;
@@ -53,7 +54,7 @@ TEST_CASE("priors that suit the data are shown beside them, without a finding") 
   CHECK(page.lines[1].what == "length");
   REQUIRE(page.lines[1].inputs);
   CHECK(page.lines[1].inputs->range == doctest::Approx(6));
-  CHECK(page.lines[1].inputs->spacing == doctest::Approx(0.1));
+  CHECK(page.lines[1].inputs->spacing == relative(0.1, 1e-12));
   CHECK(page.lines[1].inputs->places == 61);
   // log_uniform(0.2, 10): the median is the geometric mean, 64 draws scatter by a factor of exp(1.13 * 1.25/8) about it.
   CHECK(std::fabs(std::log(page.lines[1].prior.middle / std::sqrt(2.0))) < 3 * 1.13 * 1.25 / 8);

@@ -7,6 +7,7 @@
 #include "app/checking.hpp"
 #include "app/running.hpp"
 #include "diagnostics/verdict.hpp"
+#include "relative.hpp"
 #include "report/page/check_page.hpp"
 
 using namespace sysid;
@@ -146,9 +147,9 @@ best = fit slider to bench with map
   REQUIRE(page.information);
   CHECK(page.information->null_directions.empty());
   // Quantiles of 128 normal draws at one sd have an sd of 13 % of it; half the difference of two, a tenth.
-  CHECK(page.information->lines.at(0).prior_width == doctest::Approx(0.005).epsilon(0.3));
+  CHECK(page.information->lines.at(0).prior_width == relative(0.005, 0.3));
   // Fifty samples, x = 5.1 to 10, and a prior of its own sd: 1/sqrt(50/0.001^2 + 1/0.005^2), the prior's sd taken from 128 draws.
   double const expected = 1 / std::sqrt(50 / (0.001 * 0.001) + 1 / (0.005 * 0.005));
-  CHECK(page.information->lines.at(0).low == doctest::Approx(expected).epsilon(1e-3));
-  CHECK(page.information->lines.at(0).high == doctest::Approx(expected).epsilon(1e-3));
+  CHECK(page.information->lines.at(0).low == relative(expected, 1e-3));
+  CHECK(page.information->lines.at(0).high == relative(expected, 1e-3));
 }

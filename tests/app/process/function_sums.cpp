@@ -10,6 +10,7 @@
 #include "app/tables.hpp"
 #include "core/numeric/random.hpp"
 #include "gaussian_process/dense.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -145,7 +146,7 @@ posterior = fit curve to points with )" +
     double const error = std::hypot(sum.at("mcse_mean").get<double>(), process.at("mcse_mean").get<double>());
     CHECK(error < 0.2 * process.at("sd").get<double>());
     CHECK(std::fabs(sum.at("mean").get<double>() - process.at("mean").get<double>()) < 4 * error);
-    CHECK(sum.at("sd").get<double>() == doctest::Approx(process.at("sd").get<double>()).epsilon(0.25));
+    CHECK(sum.at("sd").get<double>() == relative(process.at("sd").get<double>(), 0.25));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "app/comparison/compare.hpp"
 #include "app/running.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -180,7 +181,7 @@ TEST_CASE("a distance of one's own, and one by root mean squares, select the sam
     options.output = folder.path() / "results";
     run_text(bouc_wen_file, text, options, {"select"});
     json const summary = json::parse(read_file(options.output / "selection/summary.json"));
-    CHECK(summary.at("populations").at("threshold").get<double>() == doctest::Approx(2e-5));
+    CHECK(summary.at("populations").at("threshold").get<double>() == relative(2e-5, 1e-12));
     CHECK(summary.at("models").at("bouc_wen(n = 2)").at("probability").get<double>() > 0);
   }
 }

@@ -9,6 +9,7 @@
 
 #include "app/selection/line.hpp"
 #include "app/tables.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -102,7 +103,7 @@ TEST_CASE("channels of two units and two noises make one root mean square") {
   // Both are the same line, so both slopes are known alike; the floor of the mean of two root mean squares is (3*0.1 + 0.3)/4 m.
   json const& parameters = answer.model("a").at("parameters");
   for (char const* name : {"k", "g"}) CHECK(parameters.at(name).at("mean").get<double>() == doctest::Approx(slope).epsilon(0.05));
-  CHECK(answer.summary.at("populations").at("noise_floor").get<double>() == doctest::Approx(0.15));
+  CHECK(answer.summary.at("populations").at("noise_floor").get<double>() == relative(0.15, 1e-12));
 }
 
 TEST_CASE("a prior over six decades does not kill its model") {
@@ -120,7 +121,7 @@ TEST_CASE("a prior over six decades does not kill its model") {
     Printed const answer = line.run(
         text + "answer = select all to line with abc_smc(particles = 1000, populations = 6), seed = " + std::to_string(seed));
     CHECK(answer.model("c").at("died_in_population").is_null());
-    CHECK(answer.model("c").at("laplace").at("probability").get<double>() == doctest::Approx(0.1435).epsilon(0.02));
+    CHECK(answer.model("c").at("laplace").at("probability").get<double>() == relative(0.1435, 0.02));
     mean += answer.model("c").at("probability").get<double>() / seeds;
   }
   // A third of 1000 particles is proposed to each model: standard error of a weight sum about 0.1435 sqrt(2/333) a run.
@@ -184,7 +185,7 @@ TEST_CASE("distances beyond the range of numbers are failed simulations: they se
   json const& k = answer.model("a").at("parameters").at("k");
   double const width = threshold / 1.95e306;
   CHECK(std::abs(k.at("mean").get<double>() - 2) < width);
-  CHECK(k.at("sd").get<double>() == doctest::Approx(width / std::sqrt(3.0)).epsilon(0.2));
+  CHECK(k.at("sd").get<double>() == relative(width / std::sqrt(3.0), 0.2));
 }
 
 TEST_CASE("a distance that is zero at every draw is said to tell nothing") {
@@ -226,11 +227,11 @@ TEST_CASE("the noise floor is that of the model that needs the least noise, whic
   REQUIRE(open.model("constant").at("probability").get<double>() > 0.5);
   // The variance of 40 samples' noise is known to sqrt(2/40).
   double const found = open.summary.at("populations").at("noise_floor").get<double>();
-  CHECK(found == doctest::Approx(floor).epsilon(3 * std::sqrt(2.0 / 40)));
+  CHECK(found == relative(floor, 3 * std::sqrt(2.0 / 40)));
   CHECK(open.has("threshold_above_noise"));
   Printed const stated = run("parameter g ~ uniform(0, 1); derive h = g", "0.1");
   REQUIRE(stated.model("constant").at("probability").get<double>() > 0.5);
-  CHECK(stated.summary.at("populations").at("noise_floor").get<double>() == doctest::Approx(floor).epsilon(0.05));
+  CHECK(stated.summary.at("populations").at("noise_floor").get<double>() == relative(floor, 0.05));
 }
 
 TEST_CASE("a shared parameter that only the noise reads is listed with its prior and the reason") {

@@ -8,6 +8,7 @@
 
 #include "app/selection/likelihood_check.hpp"
 #include "app/selection/line.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -184,8 +185,7 @@ TEST_CASE("a candidate without parameters has nothing to polish; one whose noise
   CHECK_FALSE(std::filesystem::exists(line.results() / "answer/polished_fixed_1.csv"));
   CHECK(answer.model("fixed").at("laplace").at("probability").get<double>() > 0);
   // The sd of 40 normal samples is known to 1/sqrt(80).
-  CHECK(answer.model("noisy").at("polished").at("sigma").at("mean").get<double>() ==
-        doctest::Approx(0.1).epsilon(3 / std::sqrt(80.0)));
+  CHECK(answer.model("noisy").at("polished").at("sigma").at("mean").get<double>() == relative(0.1, 3 / std::sqrt(80.0)));
   CHECK(answer.out.find("parameters of noisy") != std::string::npos);
   CHECK(answer.out.find("parameters of fixed") == std::string::npos);
 }

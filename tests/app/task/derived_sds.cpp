@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using nlohmann::json;
@@ -61,10 +62,10 @@ TEST_CASE("derived quantities of an optimum have the sds of the delta method") {
   Line const line;
   json const found = fitted(line_text("  derive ratio = a/b\n  derive product = a*b\n  derive sum = a + 2*b\n"), line);
   double const a = number(found, "a", "mean"), b = number(found, "b", "mean");
-  CHECK(number(found, "a", "sd") == doctest::Approx(std::sqrt(line.va)).epsilon(1e-5));
-  CHECK(number(found, "ratio", "sd") == doctest::Approx(line.sd(1 / b, -a / (b * b))).epsilon(1e-4));
-  CHECK(number(found, "product", "sd") == doctest::Approx(line.sd(b, a)).epsilon(1e-4));
-  CHECK(number(found, "sum", "sd") == doctest::Approx(line.sd(1, 2)).epsilon(1e-4));
+  CHECK(number(found, "a", "sd") == relative(std::sqrt(line.va), 1e-5));
+  CHECK(number(found, "ratio", "sd") == relative(line.sd(1 / b, -a / (b * b)), 1e-4));
+  CHECK(number(found, "product", "sd") == relative(line.sd(b, a), 1e-4));
+  CHECK(number(found, "sum", "sd") == relative(line.sd(1, 2), 1e-4));
   CHECK(found.at("ratio").at("sd_by") == "delta_method");
   CHECK(found.at("a").at("sd_by") == "laplace");
   CHECK_FALSE(found.at("ratio").contains("without_sd"));
@@ -106,7 +107,7 @@ best = fit line to record with ml, seed = 1
   json const found = fitted(text, line);
   double sum = 0;
   for (int i = 0; i < Line::rows; ++i) sum += 0.01 * i * i;
-  CHECK(number(found, "slope", "sd") == doctest::Approx(Line::noise / std::sqrt(sum)).epsilon(0.01));
+  CHECK(number(found, "slope", "sd") == relative(Line::noise / std::sqrt(sum), 0.01));
   CHECK(found.at("other").at("sd").is_null());
   CHECK(found.at("other").at("without_sd") == "it changes along a combination of parameters that the data do not determine");
 }
@@ -130,6 +131,6 @@ TEST_CASE("of Duffing's oscillator the delta method gives the sd of draws, on th
   };
   double const by_draws = sd_by("mh(samples = 5000, burn_in = 1000, chains = 4)");
   // About 1500 independent draws: their sd is known to 2 %.
-  CHECK(sd_by("map") == doctest::Approx(by_draws).epsilon(0.06));
-  CHECK(sd_by("ml") == doctest::Approx(by_draws).epsilon(0.06));
+  CHECK(sd_by("map") == relative(by_draws, 0.06));
+  CHECK(sd_by("ml") == relative(by_draws, 0.06));
 }

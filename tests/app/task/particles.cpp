@@ -10,6 +10,7 @@
 
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -80,7 +81,7 @@ TEST_CASE("particles sample the posterior that the Kalman filter computes") {
                  << posterior_of(cloud, name, "mean") << " +- " << posterior_of(cloud, name, "sd") << ", mcse of the difference "
                  << error);
     CHECK(std::abs(posterior_of(cloud, name, "mean") - posterior_of(exact, name, "mean")) < 4 * error);
-    CHECK(posterior_of(cloud, name, "sd") == doctest::Approx(sd).epsilon(0.2));
+    CHECK(posterior_of(cloud, name, "sd") == relative(sd, 0.2));
   }
   CHECK(cloud.at("settings").at("filter") == "particle");
   CHECK(cloud.at("settings").at("particles").get<int>() >= 64);

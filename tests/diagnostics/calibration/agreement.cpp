@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/numeric/random.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -30,11 +31,11 @@ TEST_CASE("errors of summaries are those of independent normal draws") {
   auto const numbers = compare_draws("k", "N/m", normal_chains(5, 2, 1), normal_chains(5, 2, 2));
   REQUIRE(numbers.size() == 5);
   double const n = 4000, twice = std::sqrt(2.0);
-  CHECK(numbers[0].error == doctest::Approx(twice * 2 / std::sqrt(n)).epsilon(0.1));
-  CHECK(numbers[1].error == doctest::Approx(twice * 2 / std::sqrt(2 * n)).epsilon(0.15));
+  CHECK(numbers[0].error == relative(twice * 2 / std::sqrt(n), 0.1));
+  CHECK(numbers[1].error == relative(twice * 2 / std::sqrt(2 * n), 0.15));
   // sqrt(p (1 - p) / n) over the density at the quantile.
-  CHECK(numbers[3].error == doctest::Approx(twice * 2 * std::sqrt(0.25 / n) / 0.39894).epsilon(0.25));
-  CHECK(numbers[4].error == doctest::Approx(twice * 2 * std::sqrt(0.0475 / n) / 0.10314).epsilon(0.35));
+  CHECK(numbers[3].error == relative(twice * 2 * std::sqrt(0.25 / n) / 0.39894, 0.25));
+  CHECK(numbers[4].error == relative(twice * 2 * std::sqrt(0.0475 / n) / 0.10314, 0.35));
   CHECK(numbers[4].first == doctest::Approx(5 + 2 * 1.645).epsilon(0.02));
 }
 

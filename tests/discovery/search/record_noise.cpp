@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/numeric/random.hpp"
+#include "relative.hpp"
 
 using namespace sysid;
 
@@ -29,11 +30,11 @@ TEST_CASE("the rounding of a record is read off its digits, significant ones or 
       squares += std::pow(written.back() - y, 2);
     }
     // The mean of 300 squares of uniform errors lies within 16 % of its expectation, three sds.
-    CHECK(rounding_sd(written) == doctest::Approx(std::sqrt(squares / 300)).epsilon(0.16));
+    CHECK(rounding_sd(written) == relative(std::sqrt(squares / 300), 0.16));
   }
   std::vector<double> const sds = rounding_sds(std::vector<double>{1.23, -12.3, 0, std::nan(""), 0.456});
   std::vector<double> const places = {0.01, 0.1, 0, 0, 0.001};
-  for (std::size_t i = 0; i < places.size(); ++i) CHECK(sds[i] == doctest::Approx(places[i] / std::sqrt(12.0)));
+  for (std::size_t i = 0; i < places.size(); ++i) CHECK(sds[i] == relative(places[i] / std::sqrt(12.0), 1e-12));
   CHECK(rounding_sd(motion()) == 0);
   CHECK(rounding_sd(std::vector<double>{0, std::nan(""), 0}) == 0);
 }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "relative.hpp"
 #include "replications.hpp"
 #include "search/global/made_record.hpp"
 #include "search/global/search.hpp"
@@ -147,7 +148,7 @@ TEST_CASE("a mode that a coarse solver loses is followed with a finer one") {
     CHECK(grown.result.finer >= 1);
     CHECK(grown.result.finer <= 3);
     REQUIRE_FALSE(grown.result.modes.empty());
-    CHECK(grown.result.modes.front().declared[0] == doctest::Approx(0.137).epsilon(1e-3));
+    CHECK(grown.result.modes.front().declared[0] == relative(0.137, 1e-3));
     MadeRecord stated = make_record(record, seed);
     stated.finest = 0;  // by the user
     CHECK(search_grown(stated, ObjectiveKind::posterior, seed).result.finer == 0);
@@ -162,7 +163,7 @@ TEST_CASE("two modes of a long record are both found") {
   record = make_record(record, 3);
   Grown const grown = search_grown(record, ObjectiveKind::posterior, 3);
   REQUIRE(grown.result.modes.size() == 2);
-  CHECK(grown.result.modes[0].declared[0] == doctest::Approx(-grown.result.modes[1].declared[0]).epsilon(1e-3));
+  CHECK(grown.result.modes[0].declared[0] == relative(-grown.result.modes[1].declared[0], 1e-3));
 }
 
 TEST_CASE("a search on growing records that is interrupted anywhere goes on to the same bytes") {

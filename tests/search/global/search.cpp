@@ -7,6 +7,7 @@
 #include <set>
 
 #include "inference/targets.hpp"
+#include "relative.hpp"
 #include "replications.hpp"
 #include "search/laplace.hpp"
 
@@ -64,7 +65,7 @@ TEST_CASE("modes are weighed by the mass below them, not by their height") {
   };
   double const wide = mass(0.746, -20, 2), narrow = mass(0.25, 10, 0.0894), small = mass(0.004, 40, 1);
   CHECK(result.modes[0].share == doctest::Approx(wide / (wide + narrow + small)).epsilon(2e-3));
-  CHECK(result.modes[1].share == doctest::Approx(narrow / (wide + narrow + small)).epsilon(6e-3));
+  CHECK(result.modes[1].share == relative(narrow / (wide + narrow + small), 6e-3));
   REQUIRE(result.findings.size() == 1);
   CHECK(result.findings[0].code == FindingCode::second_mode);
   CHECK(result.findings[0].message.find("x = 10") != std::string::npos);
@@ -122,8 +123,8 @@ TEST_CASE("a combination that the data leave alone is reported") {
   CHECK(flat.findings[0].message.find("a combination of a and b") != std::string::npos);
   // The direction is (1, -1): a tenth of a prior width of each, in opposite senses.
   REQUIRE(flat.modes[0].flat.size() == 2);
-  CHECK(std::fabs(flat.modes[0].flat[0]) == doctest::Approx(0.1).epsilon(0.05));
-  CHECK(flat.modes[0].flat[1] == doctest::Approx(-flat.modes[0].flat[0]).epsilon(1e-3));
+  CHECK(std::fabs(flat.modes[0].flat[0]) == relative(0.1, 0.05));
+  CHECK(flat.modes[0].flat[1] == relative(-flat.modes[0].flat[0], 1e-3));
   CHECK(search(target, ObjectiveKind::posterior, posterior.context).findings.empty());
 }
 
@@ -187,8 +188,8 @@ TEST_CASE("a parameter known to a billionth leaves the others their widths") {
   Bench bench;
   SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   CHECK(result.findings.empty());
-  CHECK(result.modes.front().sd[0] == doctest::Approx(1e-9).epsilon(1e-3));
-  CHECK(result.modes.front().sd[1] == doctest::Approx(std::sqrt(1 / 101.0)).epsilon(1e-3));
+  CHECK(result.modes.front().sd[0] == relative(1e-9, 1e-3));
+  CHECK(result.modes.front().sd[1] == relative(std::sqrt(1 / 101.0), 1e-3));
 }
 
 TEST_CASE("an optimum is the highest mode, and a lower one that holds more is reported with its share") {
@@ -253,6 +254,6 @@ TEST_CASE("solvable points are used however rare they are") {
   Bench bench;
   SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
   REQUIRE_FALSE(result.failure);
-  CHECK(result.modes.front().declared[0] == doctest::Approx(0.002).epsilon(0.2));
+  CHECK(result.modes.front().declared[0] == relative(0.002, 0.2));
   CHECK(bench.ledger.failed() > 1000);
 }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "relative.hpp"
 #include "replications.hpp"
 #include "search/global/made_record.hpp"
 #include "search/global/search.hpp"
@@ -81,7 +82,7 @@ TEST_CASE("the right period replaces a wrong one") {
     auto const found = look(record, mode_near(record, wrong_period, seed), bench);
     REQUIRE(found);
     CHECK(found->finer == 0);
-    CHECK(found->modes.front().declared[0] == doctest::Approx(0.137).epsilon(5e-3));
+    CHECK(found->modes.front().declared[0] == relative(0.137, 5e-3));
   }
 }
 
@@ -132,7 +133,7 @@ TEST_CASE("modes that are lost with the solver of the first search keep the fine
   auto const found = second_look(Overflowing(record), ObjectiveKind::posterior, parts_of(record), bench.context, {known});
   REQUIRE(found);
   CHECK(found->finer == 2);
-  CHECK(found->modes.front().declared[0] == doctest::Approx(0.137).epsilon(5e-3));
+  CHECK(found->modes.front().declared[0] == relative(0.137, 5e-3));
 }
 
 TEST_CASE("a second search that is interrupted anywhere goes on to the same bytes") {
