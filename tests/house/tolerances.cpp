@@ -11,10 +11,10 @@
 
 namespace {
 
-std::string const comparison = std::string("App") + "rox(";  // this file names none of its own
+std::string const approximate_of = std::string("App") + "rox(";  // this file names none of its own
 
 /// Behind the bracket that closes the one which opens at `open`.
-std::size_t closed(std::string const& text, std::size_t open) {
+std::size_t behind_bracket(std::string const& text, std::size_t open) {
   int depth = 0;
   for (std::size_t i = open; i < text.size(); ++i) {
     depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
@@ -27,18 +27,19 @@ std::size_t closed(std::string const& text, std::size_t open) {
 std::vector<std::string> small_without_scale(std::string const& text) {
   constexpr double small = 0.3;
   std::vector<std::string> found;
-  for (std::size_t at = text.find(comparison); at != std::string::npos; at = text.find(comparison, at + 1)) {
-    std::size_t const open = at + comparison.size() - 1;
-    std::string const argument = text.substr(open + 1, closed(text, open) - open - 2);
+  for (std::size_t at = text.find(approximate_of); at != std::string::npos; at = text.find(approximate_of, at + 1)) {
+    std::size_t const open = at + approximate_of.size() - 1;
+    std::string const argument = text.substr(open + 1, behind_bracket(text, open) - open - 2);
     char* end = nullptr;
     double const value = std::strtod(argument.c_str(), &end);
     if (argument.empty() || *end != '\0' || value == 0 || std::abs(value) >= small) continue;
     bool scaled = false;
-    for (std::size_t next = text.find_first_not_of(" \n", closed(text, open)); next != std::string::npos && text[next] == '.';) {
+    for (std::size_t next = text.find_first_not_of(" \n", behind_bracket(text, open));
+         next != std::string::npos && text[next] == '.';) {
       scaled = scaled || text.compare(next, 7, ".scale(") == 0;
       std::size_t const call = text.find('(', next);
       if (call == std::string::npos) break;
-      next = text.find_first_not_of(" \n", closed(text, call));
+      next = text.find_first_not_of(" \n", behind_bracket(text, call));
     }
     if (!scaled) found.push_back(argument);
   }
@@ -56,9 +57,9 @@ TEST_CASE("a small number has a tolerance that it can fail") {
                  << " compares with " << number << " to an absolute tolerance: write relative(value, tolerance)");
     }
   }
-  std::string const tried = comparison + "0.01).epsilon(0.2)); " + comparison + "-2e-6)); " + comparison +
-                            "1e-3)\n  .epsilon(0.1)\n  .scale(0)); " + comparison + "0.01).scale(1)); " + comparison +
-                            "0.5).epsilon(0.1)); " + comparison + "0)); " + comparison + "x)); " + comparison +
+  std::string const tried = approximate_of + "0.01).epsilon(0.2)); " + approximate_of + "-2e-6)); " + approximate_of +
+                            "1e-3)\n  .epsilon(0.1)\n  .scale(0)); " + approximate_of + "0.01).scale(1)); " + approximate_of +
+                            "0.5).epsilon(0.1)); " + approximate_of + "0)); " + approximate_of + "x)); " + approximate_of +
                             "1e-3 * x).epsilon(f(2)));";
   CHECK(small_without_scale(tried) == std::vector<std::string>{"0.01", "-2e-6"});
 }
