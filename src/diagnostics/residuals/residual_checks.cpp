@@ -122,7 +122,8 @@ std::string size_help(ChannelResiduals const& of, ChannelTests const& tested, bo
 
 void check_size(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, UserText const& text, FitLine& line,
                 Findings& findings) {
-  ChiSquaredTest const size = chi_squared(of.sized.values, of.sized.excess_kurtosis, limits.channels);
+  ChiSquaredTest const size = of.sized.degrees.empty() ? chi_squared(of.sized.values, of.sized.excess_kurtosis, limits.channels)
+                                                       : chi_squared_of_counts(of.sized.values, of.sized.degrees, limits.channels);
   line.scores.push_back({{ScoreKind::chi_squared}, size.per_sample});
   if (!size.fires()) return;
   findings.push_back(

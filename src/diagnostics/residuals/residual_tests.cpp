@@ -24,6 +24,17 @@ double mean_of(std::span<double const> x) {
   return sum / count;
 }
 
+/// Of equal samples the mean is not always exact, and what it leaves is no variance.
+bool constant(std::span<double const> x) {
+  double first = std::numeric_limits<double>::quiet_NaN();
+  for (double const v : x) {
+    if (std::isnan(v)) continue;
+    if (std::isnan(first)) first = v;
+    if (v != first) return false;
+  }
+  return true;
+}
+
 struct Products {
   double sum = 0;
   double pairs = 0;
@@ -49,6 +60,16 @@ double tail_of(double q, double lags, double samples, double bulk) {
   double const share = lags / samples, variance = 2 * lags * (1 + 2 * share), skewness = std::sqrt(8 / lags) * (1 + 8 * share);
   double const shape = 4 / (skewness * skewness), x = shape + std::sqrt(shape / variance) * (q - lags);
   return std::max(bulk, std::min(tail, boost::math::gamma_q(shape, std::max(x, 0.0))));
+}
+
+/// The x for which a Poisson variable of this mean is at most x with this probability, between whole numbers by gamma_q.
+double lowest_events(double mean, double probability) {
+  double low = 0, high = mean;
+  for (int halved = 0; halved < 60; ++halved) {
+    double const middle = 0.5 * (low + high);
+    (boost::math::gamma_q(middle + 1, mean) < probability ? low : high) = middle;
+  }
+  return low;
 }
 
 int usable_lags(double samples, int lags) { return std::min(lags, static_cast<int>(samples / 4)); }
@@ -106,7 +127,7 @@ CorrelationTest input_correlation(std::span<double const> residuals, std::span<d
   auto const e = products(residuals, mean_e, residuals, mean_e, 0);
   auto const u = products(input, mean_u, input, mean_u, 0);
   int const count = usable_lags(std::min(e.pairs, u.pairs), lags);
-  if (count < 1 || !(e.sum > 0) || !(u.sum > 0)) return test;
+  if (count < 1 || !(e.sum > 0) || !(u.sum > 0) || constant(residuals) || constant(input)) return test;
   double const sd = std::sqrt(e.sum / e.pairs) * std::sqrt(u.sum / u.pairs);
   double colour = 1;
   for (int k = 1; k <= count; ++k) {
@@ -133,6 +154,7 @@ CorrelationTest input_correlation(std::span<double const> residuals, std::span<d
 }
 
 double nmse(std::span<double const> observed, std::span<double const> predicted) {
+  if (constant(observed)) return std::numeric_limits<double>::quiet_NaN();
   double const mean = mean_of(observed);
   double misfit = 0, variance = 0;
   for (std::size_t t = 0; t < std::min(observed.size(), predicted.size()); ++t) {
@@ -158,6 +180,23 @@ ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_k
   if (samples == 0) return {};
   double const half = samples / (2 + excess_kurtosis), tail = 5e-4 / together;
   return {sum / samples, boost::math::gamma_p_inv(half, tail) / half, boost::math::gamma_q_inv(half, tail) / half};
+}
+
+ChiSquaredTest chi_squared_of_counts(std::span<double const> standardised, std::span<double const> degrees, int together) {
+  double square = 0, worth = 0, squared_worth = 0;
+  for (std::size_t i = 0; i < standardised.size(); ++i) {
+    if (std::isnan(standardised[i])) continue;
+    double const sized = standardised[i] * std::sqrt(degrees[i]);  // first, as a square of a rare event may overflow
+    square += sized * sized;
+    worth += degrees[i];
+    squared_worth += degrees[i] * degrees[i];
+  }
+  if (!(worth > 0)) return {};
+  double const half = worth / 2, tail = 5e-4 / together;
+  double low = boost::math::gamma_p_inv(half, tail);
+  // Where samples are worth little, of means below a half: P(at most x events, of half on average) = gamma_q(x + 1, half).
+  if (squared_worth < 0.5 * worth) low = std::min(low, lowest_events(half, tail));
+  return {square / worth, low / half, std::max(1.0, boost::math::gamma_q_inv(half, tail)) / half};
 }
 
 }  // namespace sysid

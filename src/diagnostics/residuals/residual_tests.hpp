@@ -58,7 +58,8 @@ double trend_p_value(std::span<double const> residuals);
 CorrelationTest input_correlation(std::span<double const> residuals, std::span<double const> input, int lags = 25);
 
 /// (8.18): 100 / (N var y) sum (y - y*)^2, var with divisor N and of the *observed* record, mean removed. Below 5 good, below 1
-/// excellent; the true model reaches 100 r^2 for noise of a fraction r. NaN when the observed record is constant or empty.
+/// excellent; the true model reaches 100 r^2 for noise of a fraction r. NaN when the observed record is constant (all its samples
+/// are equal) or empty.
 double nmse(std::span<double const> observed, std::span<double const> predicted);
 
 /// sqrt(1/N sum (y - y*)^2), in the unit of y; missing samples are left out. NaN when there are none.
@@ -72,8 +73,17 @@ struct ChiSquaredTest {
 };
 
 /// standardised: (y - location) / sd, independent under the model. n * per_sample ~ chi^2(n) for normal ones. Where they have an
-/// excess kurtosis k (counts: 1/mean for Poisson's) the variance of the sum is n (2 + k), that of chi^2 with 2 n/(2 + k) degrees of
-/// freedom in place of n. together: how many series of a run are tested, each on its part of the thousandth.
+/// excess kurtosis k the variance of the sum is n (2 + k), that of chi^2 with 2 n/(2 + k) degrees of freedom in place of n.
+/// together: how many series of a run are tested, each on its part of the thousandth.
 ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis = 0, int together = 1);
+
+/// The same of counts, whose excess kurtosis k_i is another one at each sample (1/mean for Poisson's) and without bound where the
+/// mean is small. Such a sample says less of the size, and weighs by the degrees of freedom d_i = 2/(2 + k_i) that it is worth,
+///
+///   per_sample = sum d_i z_i^2 / sum d_i,   of mean 1 and variance 2 / sum d_i:   that of chi^2(n)/n, n = sum d_i
+///
+/// which of all weights give the smallest variance. Sums of a few rare events are lumps: there the lower bound is that of so many
+/// events, and a single event is never too much.
+ChiSquaredTest chi_squared_of_counts(std::span<double const> standardised, std::span<double const> degrees, int together = 1);
 
 }  // namespace sysid

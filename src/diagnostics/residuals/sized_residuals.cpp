@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "distribution/deviance.hpp"
@@ -11,16 +12,14 @@ namespace sysid {
 
 SizedResiduals pearson_residuals(DistributionRow const& noise, std::vector<double> const& measured,
                                  std::vector<std::vector<double>> const& arguments, std::vector<double> const& deviance) {
-  SizedResiduals result;
-  double count = 0;
+  SizedResiduals result{std::vector<double>(deviance.size(), std::nan("")), 0, std::vector<double>(deviance.size(), 0.0)};
   for (std::size_t i = 0; i < deviance.size(); ++i) {
-    result.values.push_back(std::nan(""));
-    if (std::isnan(deviance[i]) || !(noise.variance(arguments[i]) > 0)) continue;
-    result.values.back() = (measured[i] - arguments[i][0]) / std::sqrt(noise.variance(arguments[i]));
-    result.excess_kurtosis += noise.excess_kurtosis(arguments[i]);
-    count += 1;
+    if (std::isnan(deviance[i])) continue;
+    double const variance = noise.variance(arguments[i]);
+    if (!(variance >= std::numeric_limits<double>::min())) continue;  // its inverse is no number
+    result.values[i] = (measured[i] - arguments[i][0]) / std::sqrt(variance);
+    result.degrees[i] = 2 / (2 + noise.excess_kurtosis(arguments[i]));
   }
-  if (count > 0) result.excess_kurtosis /= count;
   return result;
 }
 
@@ -37,12 +36,12 @@ SizedResiduals scaled_residuals(DistributionRow const& noise, std::vector<std::v
     moments.variance += here.variance;
     count += 1;
   }
-  if (count == 0) return {std::move(deviance), 0};
+  if (count == 0) return {std::move(deviance), 0, {}};
   moments = {moments.mean / count, moments.variance / count};
   constexpr double as_normal = 1e-4;
-  if (std::fabs(moments.mean - 1) < as_normal) return {std::move(deviance), 0};
+  if (std::fabs(moments.mean - 1) < as_normal) return {std::move(deviance), 0, {}};
   for (double& residual : deviance) residual /= std::sqrt(moments.mean);
-  return {std::move(deviance), moments.excess_kurtosis()};
+  return {std::move(deviance), moments.excess_kurtosis(), {}};
 }
 
 }  // namespace sysid

@@ -9,10 +9,11 @@ namespace sysid {
 /// Residuals of unit size, and how much heavier than normal their tails are.
 struct SizedResiduals {
   std::vector<double> values;
-  double excess_kurtosis = 0;  // mean over the samples
+  double excess_kurtosis = 0;
+  std::vector<double> degrees = {};  // of counts instead, by which each sample weighs: see `chi_squared_of_counts`
 };
 
-/// Pearson's, of counts: the deviance residuals of small counts are not of unit size.
+/// Pearson's, of counts: the deviance residuals of small counts are not of unit size. NaN where none is expected at all.
 /// arguments: of the channel's noise, at every sample; deviance: one residual per sample, NaN where not scored.
 SizedResiduals pearson_residuals(DistributionRow const& noise, std::vector<double> const& measured,
                                  std::vector<std::vector<double>> const& arguments, std::vector<double> const& deviance);

@@ -271,6 +271,31 @@ TEST_CASE("counts that scatter more than Poisson's are given a negative binomial
   CHECK(find(findings_of_late_rows(counts, record(1), "map", ""), "noise_size") == nullptr);
 }
 
+TEST_CASE("counts of a line whose mean is next to nothing beside it have the size of their noise") {
+  // exp(-200^2 / 56.5) is 1e-307.5: its inverse is no number at the last rows.
+  TemporaryFolder folder;
+  Stream stream({1, Purpose::test, 0, 0});
+  std::string table = "x,n\n";
+  for (int x = 0; x <= 401; ++x) {
+    double const mean = 9 * std::exp(-(x - 200.0) * (x - 200.0) / 56.5);
+    table += fmt::format("{},{:.0f}\n", x, mean < 0.1 ? 0 : std::fmax(0, std::round(mean + std::sqrt(mean) * stream.normal())));
+  }
+  write_file(folder.path() / "record.csv", table);
+  for (std::string const noise : {"poisson(mean)", "negative_binomial(mean, shape = 1e4)"}) {
+    CAPTURE(noise);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    run_text(folder.path() / "m.sysid",
+             "model m {\n input x\n parameter A ~ log_uniform(1, 100)\n let mean = A*exp(-(x - 200)^2/56.5)\n observe z ~ " +
+                 noise +
+                 "\n}\ndata record { file \"record.csv\"; input x = x; measure z = n }\n"
+                 "posterior = fit m to record with map, seed = 1\n",
+             options);
+    json const summary = json::parse(read_file(options.output / "posterior/summary.json"));
+    CHECK(find(summary.at("findings"), "noise_size") == nullptr);
+  }
+}
+
 TEST_CASE("a maximum of the likelihood contradicts a prior by its own words, and none that another maximum fits") {
   auto const record = [](int row, Stream& stream) { return 2 * std::exp(-0.005 * (row - 101)) + 0.01 * stream.normal(); };
   std::string contradicted = decay;
