@@ -35,6 +35,10 @@ double mean_square(std::span<double const> values) {
   return sum / static_cast<double>(values.size());
 }
 
+bool all_equal(std::vector<double> const& values) {
+  return std::ranges::all_of(values, [&](double each) { return each == values.front(); });
+}
+
 bool white(std::span<double const> series) { return !whiteness(series).fires(); }
 
 /// Whether what was subtracted to leave `rest` is most of what is correlated in the residuals; little: what may be left of the
@@ -83,7 +87,10 @@ OffsetTest offset_test(std::span<double const> residuals, bool ordered) {
   std::vector<double> const values = scored_values(residuals);
   if (values.size() < fewest) return test;
   double const center = mean(values), variance = population_variance(values);
-  double const squared_error = ordered ? squared_standard_error(values) : variance / static_cast<double>(values.size());
+  // The spread of equal residuals is what their mean is rounded by: they are of unit size, if anything.
+  bool const equal = all_equal(values);
+  double const squared_error =
+      ordered && !equal ? squared_standard_error(values) : (equal ? 1 : variance) / static_cast<double>(values.size());
   test.share = center * center / (center * center + variance);
   test.standard_errors = std::fabs(center) / std::sqrt(squared_error);
   if (!(test.standard_errors > no_chance)) return test;
@@ -103,7 +110,7 @@ TrendTest trend_test(std::span<double const> residuals, std::span<double const> 
   std::vector<double> values, times;
   for (std::size_t i = 0; i < residuals.size(); ++i)
     if (!std::isnan(residuals[i])) values.push_back(residuals[i]), times.push_back(time[i]);
-  if (values.size() < fewest) return test;
+  if (values.size() < fewest || all_equal(values)) return test;
   Line const line = fitted_line(times, values);
   double const middle = mean(times), spread = population_variance(times), squares = mean_square(values);
   // The slope is sum x_i r_i / sum x_i^2, x_i = t_i - mean t: its error is that of the mean of x_i e_i, e_i without the line.
@@ -117,7 +124,8 @@ TrendTest trend_test(std::span<double const> residuals, std::span<double const> 
   test.white_without = white(straight);
   // A step, and what bends, look like a line as far as nine tenths of their spread.
   std::vector<double> centred(residuals.begin(), residuals.end());
-  for (double& each : centred) each -= mean(values);
+  double const center = mean(values);
+  for (double& each : centred) each -= center;
   test.fires = explains_correlation(centred, straight, 0.01);
   return test;
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "app/running.hpp"
@@ -150,6 +151,27 @@ TEST_CASE("white series have an offset in fewer than one of a thousand, and no t
     found += trend_test(values, time).fires ? 1 : 0;
   }
   CHECK(found == 0);
+}
+
+TEST_CASE("equal residuals have the size of the noise, and no trend") {
+  for (bool const ordered : {false, true}) {
+    CHECK_FALSE(offset_test(std::vector<double>(60, 1e-7), ordered).fires);
+    OffsetTest const large = offset_test(std::vector<double>(60, 5.1), ordered);
+    CHECK(large.fires);
+    CHECK(large.standard_errors == doctest::Approx(5.1 * std::sqrt(60)).epsilon(1e-9));
+  }
+  std::vector<double> time;
+  for (int i = 0; i < 60; ++i) time.push_back(0.1 * i);
+  CHECK_FALSE(trend_test(std::vector<double>(60, 0.1), time).fires);
+}
+
+TEST_CASE("the trend of a long record takes a time in proportion to it") {
+  std::vector<double> residuals, time;
+  Stream stream({11, Purpose::test, 0, 0});
+  for (int i = 0; i < 100000; ++i) residuals.push_back(1e-5 * i + stream.normal()), time.push_back(i);
+  std::clock_t const before = std::clock();
+  CHECK(trend_test(residuals, time).fires);
+  CHECK(std::clock() - before < 5 * CLOCKS_PER_SEC);  // a twentieth of a second, and half a minute where each row costs a sum
 }
 
 TEST_CASE("an offset of a sensor is named with lines that remove it") {
