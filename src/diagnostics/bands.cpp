@@ -78,6 +78,7 @@ Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajector
     predicted.response = random ? normal_band(result.values[q], result.spread[q]) : band(result.values[q]);
     if (quantity.channel >= 0) {
       auto const channel = static_cast<std::size_t>(quantity.channel);
+      predicted.logarithmic = multiplies(*model.channels[channel].noise.row);
       if (channel < result.noisy_spread.size() && !result.noisy_spread[channel].empty())
         predicted.noisy = normal_band(result.values[q], result.noisy_spread[channel]);
       else if (result.noisy[channel].size() > 1)

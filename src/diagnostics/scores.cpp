@@ -115,7 +115,8 @@ std::vector<Score> scores(PredictedQuantity const& quantity, std::vector<std::ui
     predicted.push_back(quantity.response.mean[i]);
   }
   if (rows.empty()) return {};
-  std::vector<Score> out = {{{ScoreKind::nmse}, nmse(observed, predicted)}, {{ScoreKind::rmse}, rmse(observed, predicted)}};
+  double const error = quantity.logarithmic ? nmse_of_logarithms(observed, predicted) : nmse(observed, predicted);
+  std::vector<Score> out = {{{ScoreKind::nmse}, error}, {{ScoreKind::rmse}, rmse(observed, predicted)}};
   if (quantity.noisy.mean.empty()) return out;
   double inside = 0, within = 0;
   auto const n = static_cast<double>(rows.size());

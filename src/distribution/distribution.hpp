@@ -80,6 +80,9 @@ struct DistributionRow {
   NoiseMoments (*moments)(std::span<double const> arguments) = nullptr;
 };
 
+/// Of a noise: whether it multiplies what is predicted, as log-normal noise does, so that it has one size by logarithms.
+inline bool multiplies(DistributionRow const& noise) { return noise.lower != nullptr && !noise.discrete; }
+
 std::span<DistributionRow const> distributions();
 DistributionRow const* find_distribution(std::string_view name);
 

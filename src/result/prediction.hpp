@@ -28,6 +28,7 @@ struct PredictedQuantity {
   std::vector<double> measured;     // [N], NaN where missing; empty for what is not measured
   VarianceParts variance = {};      // of an average over models
   bool average = false;             // at each sample the mean from there to the next
+  bool logarithmic = false;         // of a channel whose noise multiplies it: scored by logarithms
   std::vector<double> alarms = {};  // times at which it was found to have changed, as in Prediction::time
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/numeric/random.hpp"
+#include "diagnostics/scores.hpp"
 
 using namespace sysid;
 
@@ -38,6 +39,20 @@ Report predicted(std::uint64_t seed, int samples, double lasting, double size, d
   prediction.quantities.push_back(quantity);
   Report report;
   report.predictions.push_back(prediction);
+  return report;
+}
+
+/// A right prediction of log-normal samples of this log-sd, beside a mean that their largest hide.
+Report log_normal_samples(double log_sd, bool logarithmic) {
+  Report report = predicted(1, 500, 0, 1, 0);
+  PredictedQuantity& quantity = report.predictions[0].quantities[0];
+  for (std::size_t i = 0; i < quantity.measured.size(); ++i) {
+    double const error = quantity.measured[i] - quantity.response.mean[i];
+    quantity.response.mean[i] = std::exp(quantity.response.mean[i] / 80);
+    quantity.measured[i] = quantity.response.mean[i] * std::exp(log_sd * error);
+  }
+  quantity.noisy = {};
+  quantity.logarithmic = logarithmic;
   return report;
 }
 
@@ -96,4 +111,14 @@ TEST_CASE("bands that are too narrow are found by independent errors, and by las
   CHECK(warned(100, 900, 1, 0.1, 0.999, 4) == 100);
   // Noise is the whole band: what lasts of the errors is the model's own mistake.
   CHECK(warned(100, 150, 0.02, 1, 0, 2) == 100);
+}
+
+TEST_CASE("a prediction of a channel whose noise multiplies is compared with the mean of logarithms") {
+  Report by_logarithms = log_normal_samples(1, true), plain = log_normal_samples(1, false);
+  // The variance of the signal is 1/32, so of 33/32 of the logarithms 1 is left; of the values more than their variance.
+  CHECK(find_score(fit_lines(by_logarithms)[0].scores, {ScoreKind::nmse}).value() == doctest::Approx(3200 / 33.).epsilon(0.02));
+  CHECK_FALSE(add_coverage(by_logarithms, false));
+  CHECK(by_logarithms.findings.empty());
+  CHECK_FALSE(add_coverage(plain, false));
+  CHECK(plain.findings.size() == 1);
 }

@@ -96,7 +96,7 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
   for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
     TrajectoryQuantity const& from = trajectory.quantities()[q];
     bool const is_channel = from.channel >= 0;
-    MemberQuantity quantity{from.name, from.unit, is_channel, true, result.drawn(q), {}, {}, {}, {}};
+    MemberQuantity quantity{from.name, from.unit, is_channel, true, result.drawn(q), {}, {}, {}, {}, {}};
     Quantity const* const own = quantity_of(member.model(), from.name, is_channel);
     Quantity const* to = quantity_of(units, from.name, is_channel);
     quantity.comparable = to != nullptr && comparable(*own, *to);
@@ -106,6 +106,7 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
     conversion.apply(quantity.values);
     if (is_channel) {
       auto const c = static_cast<std::size_t>(from.channel);
+      quantity.logarithmic = multiplies(*member.model().channels[c].noise.row);
       quantity.noisy = std::move(result.noisy[c]);
       quantity.noise_mean = std::move(result.noise_mean[c]);
       quantity.noise_variance = std::move(result.noise_variance[c]);

@@ -20,6 +20,7 @@ struct MemberQuantity {
   /// [rows] of each scored sample the log of the mean density over the draws that are solved, of the unit; -infinity where it is
   /// impossible by all of them; NaN where there is no sample.
   std::vector<double> log_density;
+  bool logarithmic = false;  // a channel whose noise multiplies it
 };
 
 struct MemberAlong {

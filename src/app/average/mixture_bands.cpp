@@ -121,11 +121,13 @@ class AveragedQuantity {
     }
     out_.average.name = members_.front()->name;
     out_.average.unit = members_.front()->unit;
+    out_.average.logarithmic = std::ranges::all_of(members_, &MemberQuantity::logarithmic);
     out_.members.resize(members_.size());
     for (std::size_t k = 0; k < members_.size(); ++k) {
       PredictedQuantity& alone = out_.members[k].band;
       alone.name = out_.average.name;
       alone.unit = out_.average.unit;
+      alone.logarithmic = out_.average.logarithmic;
       std::size_t const trajectories = members_[k]->values.size();
       for (PredictedQuantity* each : {&alone, weights_[k] > 0 ? &out_.average : nullptr}) {
         if (each == nullptr) continue;

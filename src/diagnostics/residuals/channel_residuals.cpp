@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numeric/elementary.hpp"
 #include "core/numeric/statistics.hpp"
 #include "diagnostics/residuals/outliers.hpp"
 #include "likelihood/parameter_space.hpp"
@@ -15,6 +14,11 @@ namespace sysid {
 std::string ChannelResiduals::name() const { return described().name + on_experiment(data().name, experiments.size() > 1); }
 
 std::vector<std::string> ChannelResiduals::names() const { return {described().name, data().name}; }
+
+double ChannelResiduals::nmse_of(std::vector<double> const& some_observed, std::vector<double> const& some_predicted) const {
+  return multiplies(*described().noise.row) ? nmse_of_logarithms(some_observed, some_predicted)
+                                            : nmse(some_observed, some_predicted);
+}
 
 bool ChannelResiduals::noise_is_estimated() const {
   return std::any_of(described().noise.arguments.begin() + 1, described().noise.arguments.end(),
@@ -73,21 +77,15 @@ std::vector<std::size_t> spikes(ChannelResiduals const& of) {
   return alone(of, outliers(errors));
 }
 
-// nmse [%] without `excluded`, places that rise, on the scale on which the noise has one size: by logarithms where it multiplies.
+// nmse [%] without `excluded`, places that rise.
 double unexplained(ChannelResiduals const& of, std::vector<std::size_t> const& excluded) {
-  DistributionRow const& noise = *of.described().noise.row;
   std::vector<double> observed, predicted;
   for (std::size_t i = 0; i < of.observed.size(); ++i) {
     if (std::binary_search(excluded.begin(), excluded.end(), of.places[i])) continue;
     observed.push_back(of.observed[i]);
     predicted.push_back(of.predicted[i]);
   }
-  if (noise.lower == nullptr || noise.discrete) return nmse(observed, predicted);
-  for (std::vector<double>* const series : {&observed, &predicted})
-    for (double& value : *series) value = value > 0 ? elementary::log(value) : std::nan("");
-  for (std::size_t i = 0; i < observed.size(); ++i)
-    if (std::isnan(predicted[i])) observed[i] = std::nan("");
-  return nmse(observed, predicted);
+  return of.nmse_of(observed, predicted);
 }
 
 /// Measured minus predicted samples, without those far off, in the channel's declared unit.

@@ -210,7 +210,7 @@ void check_law(ChannelResiduals const& of, ChannelTests const& tested, int toget
 FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, UserText const& text,
                       Findings& findings) {
   FitLine line{of.data().name, of.described().name, of.described().unit_text(), {}};
-  line.scores = {{{ScoreKind::nmse}, nmse(of.observed, of.predicted)}, {{ScoreKind::rmse}, rmse(of.observed, of.predicted)}};
+  line.scores = {{{ScoreKind::nmse}, of.nmse_of(of.observed, of.predicted)}, {{ScoreKind::rmse}, rmse(of.observed, of.predicted)}};
   Findings shape;
   check_line(of, tested, text, shape);
   check_size(of, tested, limits, text, line, shape);

@@ -165,6 +165,16 @@ double nmse(std::span<double const> observed, std::span<double const> predicted)
   return variance > 0 ? 100 * misfit / variance : std::numeric_limits<double>::quiet_NaN();
 }
 
+double nmse_of_logarithms(std::span<double const> observed, std::span<double const> predicted) {
+  std::vector<double> logarithms, of_predicted;
+  for (std::size_t t = 0; t < std::min(observed.size(), predicted.size()); ++t) {
+    if (!(observed[t] > 0 && predicted[t] > 0)) continue;
+    logarithms.push_back(elementary::log(observed[t]));
+    of_predicted.push_back(elementary::log(predicted[t]));
+  }
+  return nmse(logarithms, of_predicted);
+}
+
 double rmse(std::span<double const> observed, std::span<double const> predicted) {
   double square = 0, samples = 0;
   for (std::size_t t = 0; t < std::min(observed.size(), predicted.size()); ++t) {

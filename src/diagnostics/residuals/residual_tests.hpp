@@ -61,6 +61,8 @@ CorrelationTest input_correlation(std::span<double const> residuals, std::span<d
 /// excellent; the true model reaches 100 r^2 for noise of a fraction r. NaN when the observed record is constant (all its samples
 /// are equal) or empty.
 double nmse(std::span<double const> observed, std::span<double const> predicted);
+/// The same of logarithms, where the noise multiplies what is predicted; samples and predictions without one are left out.
+double nmse_of_logarithms(std::span<double const> observed, std::span<double const> predicted);
 
 /// sqrt(1/N sum (y - y*)^2), in the unit of y; missing samples are left out. NaN when there are none.
 double rmse(std::span<double const> observed, std::span<double const> predicted);

@@ -196,11 +196,13 @@ void to_json(json& out, PredictedQuantity const& quantity) {
   if (VarianceParts const& parts = quantity.variance; !parts.parameter.empty())
     out["variance"] = {parts.parameter.size(), parts.model.size(), parts.noise.size()};
   if (quantity.average) out["average"] = true;
+  if (quantity.logarithmic) out["logarithmic"] = true;
   if (!quantity.alarms.empty()) out["alarms"] = quantity.alarms;
 }
 void from_json(json const& stored, PredictedQuantity& quantity) {
   quantity_members(Reader(stored), quantity);
   quantity.average = stored.value("average", false);
+  quantity.logarithmic = stored.value("logarithmic", false);
   quantity.alarms = stored.value("alarms", std::vector<double>());
   if (!stored.contains("variance")) return;
   quantity.variance.parameter = column_of(stored.at("variance").at(0));

@@ -130,6 +130,14 @@ TEST_CASE("the normalised mean square error is that of (8.18)") {
   CHECK(std::isnan(nmse(std::vector<double>(60, 0.1), std::vector<double>(60, 0.2))));  // the mean of these is not 0.1
 }
 
+TEST_CASE("where the noise multiplies the error is that of logarithms, of what has one") {
+  std::vector<double> const y = {1, std::exp(1), std::exp(2), std::exp(3)}, off = {1, std::exp(1), std::exp(2), std::exp(4)};
+  CHECK(nmse_of_logarithms(y, off) == doctest::Approx(20).epsilon(1e-12));
+  CHECK(nmse_of_logarithms(std::vector<double>{missing, 1, 0, std::exp(2)}, std::vector<double>{1, 1, 1, std::exp(1)}) ==
+        doctest::Approx(50).epsilon(1e-12));
+  CHECK(std::isnan(nmse_of_logarithms(std::vector<double>{1, 2}, std::vector<double>{1, 0})));
+}
+
 TEST_CASE("residuals of the stated size pass the chi-squared test, others do not") {
   CHECK_FALSE(chi_squared(noise(500, 70)).fires());
   CHECK_FALSE(chi_squared(with_gaps(noise(500, 71))).fires());
