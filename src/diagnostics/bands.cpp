@@ -60,6 +60,15 @@ Band normal_band(std::vector<std::vector<double>> const& means, std::vector<std:
   return out;
 }
 
+/// Of one draw of the noise about each trajectory or several, which count as one.
+Band noisy_band(std::vector<std::vector<double>> const& noisy, std::size_t trajectories) {
+  Band out = band(noisy);
+  int const times = std::max(1, static_cast<int>(noisy.size() / std::max<std::size_t>(1, trajectories)));
+  out.draws /= times;
+  out.excluded = (out.excluded + times - 1) / times;
+  return out;
+}
+
 }  // namespace
 
 Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajectory::Result const& result,
@@ -82,7 +91,7 @@ Prediction bands_along(std::span<TrajectoryQuantity const> quantities, Trajector
       if (channel < result.noisy_spread.size() && !result.noisy_spread[channel].empty())
         predicted.noisy = normal_band(result.values[q], result.noisy_spread[channel]);
       else if (result.noisy[channel].size() > 1)
-        predicted.noisy = band(result.noisy[channel]);  // one trajectory has no width
+        predicted.noisy = noisy_band(result.noisy[channel], result.values[q].size());  // one trajectory has no width
       for (double const si : experiment.measured[channel]) predicted.measured.push_back(model.channels[channel].from_si(si));
     }
     prediction.quantities.push_back(std::move(predicted));

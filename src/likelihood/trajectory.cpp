@@ -93,7 +93,7 @@ void Trajectory::record_failures(LaneArray const& parameters, std::vector<Outcom
       {simulator, parameters, start_ != nullptr, {}}, outcome, describe_, [](int) { return std::vector<double>(); }, ledger);
 }
 
-void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key,
+void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, int noises,
                          Result& result) const {
   Model const& model = compiled_->model;
   int const samples = this->samples(), rows = static_cast<int>(compiled_->records.size());
@@ -136,10 +136,11 @@ void Trajectory::collect(LaneArray const& records, std::vector<Outcome> const& o
   for (int r = 0; r < rows; ++r) {
     auto const& record = compiled_->records[static_cast<std::size_t>(r)];
     if (record.kind != RecordKind::centre) continue;
-    for (auto& noisy :
-         with_noise(records, outcome, r,
-                    noise_key.at(noise_key.index + static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(record.index))))
-      result.noisy[static_cast<std::size_t>(record.index)].push_back(std::move(noisy));
+    for (int lane = first; lane < first + noises * records.width(); lane += records.width())
+      for (auto& noisy :
+           with_noise(records, outcome, r,
+                      noise_key.at(noise_key.index + static_cast<std::uint64_t>(lane), static_cast<std::uint64_t>(record.index))))
+        result.noisy[static_cast<std::size_t>(record.index)].push_back(std::move(noisy));
     if (model.filtered()) add_noisy_spreads(records, outcome, r, result);
   }
 }
@@ -245,7 +246,7 @@ LaneArray Trajectory::no_records(int width) const {
   return {rows, width};
 }
 
-Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key, bool moments, int ahead) const {
+Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key, bool moments, int ahead, int noises) const {
   Result result;
   std::optional<Schedule> uncorrected;
   if (ahead > 1) {
@@ -267,7 +268,7 @@ Trajectory::Result Trajectory::run(ConstLanes parameters, StreamKey noise_key, b
     else
       simulator_.records(block, 0, samples(), records, outcome);
     record_failures(block, outcome, result.ledger);
-    collect(records, outcome, first, noise_key, result);
+    collect(records, outcome, first, noise_key, noises, result);
     if (moments) collect_moments(records, outcome, result);
   }
   return result;
@@ -317,7 +318,7 @@ Trajectory::Result Trajectory::run_redrawn(ConstLanes parameters, int trajectori
       if (!each.ok)
         result.ledger.add_failure(each.kind, "parameters redrawn at each sample",
                                   simulator_.schedule().time(std::max(each.sample, 0)), {});
-    collect(records, outcome, first, noise_key, result);
+    collect(records, outcome, first, noise_key, 1, result);
   }
   return result;
 }

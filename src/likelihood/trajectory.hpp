@@ -57,7 +57,8 @@ class Trajectory {
   };
   /// parameters: of the model, SI [parameters x W]; NaN where irrelevant. moments: of the noise, too. ahead: of random states; each
   /// sample is predicted from those that lie so many rows before it or more. 1, as 0: from all that correct the states before it.
-  Result run(ConstLanes parameters, StreamKey noise_key, bool moments = false, int ahead = 0) const;
+  /// noises: draws of the noise about each vector, of few vectors; noisy[c][k W + d] is the k-th about vector d.
+  Result run(ConstLanes parameters, StreamKey noise_key, bool moments = false, int ahead = 0, int noises = 1) const;
   /// Arguments of a channel's noise along the record, SI: [samples][arguments]; NaN where the solve fails. parameters: [parameters
   /// x 1].
   std::vector<std::vector<double>> noise_arguments(ConstLanes parameters, int channel) const;
@@ -69,7 +70,8 @@ class Trajectory {
   /// For what is recorded of so many vectors; UserError (E5003) where it is too much.
   LaneArray no_records(int width) const;
   void record_failures(LaneArray const& parameters, std::vector<Outcome> const& outcome, Ledger& ledger) const;
-  void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, Result& result) const;
+  void collect(LaneArray const& records, std::vector<Outcome> const& outcome, int first, StreamKey noise_key, int noises,
+               Result& result) const;
   void collect_moments(LaneArray const& records, std::vector<Outcome> const& outcome, Result& result) const;
   void add_noisy_spreads(LaneArray const& records, std::vector<Outcome> const& outcome, int row, Result& result) const;
   void add_spread(ConstLanes records, int lane, int spread, StreamKey key, std::vector<double>& values) const;

@@ -31,20 +31,6 @@ bool comparable(Quantity const& one, Quantity const& other) {
   return of_one.dimension == of_other.dimension && !zero_against_difference(of_one, of_other);
 }
 
-/// Trajectories below this number get several draws of the noise each, so that there are `noisy_draws` at least: the quantiles
-/// of 2.5 and 97.5 % lie between draws from 39 on.
-constexpr int few_trajectories = 39, noisy_draws = 200;
-
-/// [channels][times * draws][rows]: the draws with noise, then the same with other noise, and so on.
-std::vector<std::vector<std::vector<double>>> noisy_again(PosteriorTrajectories const& member, int e, Trajectory const& trajectory,
-                                                          LaneArray const& parameters) {
-  int const draws = parameters.width(), times = (noisy_draws + draws - 1) / draws;
-  LaneArray all(parameters.rows(), draws * times);
-  for (int r = 0; r < all.rows(); ++r)
-    for (int w = 0; w < all.width(); ++w) all(r, w) = parameters(r, w % draws);
-  return member.run(e, trajectory, all).noisy;
-}
-
 /// Log of the mean over the draws that are solved; -infinity where none gives the sample a density. A draw whose equations have no
 /// value at the sample says that it is impossible.
 double log_mean_density(std::vector<std::vector<double>> const& log_density, std::vector<char> const& solved, std::size_t sample) {
@@ -91,8 +77,7 @@ MemberAlong run_along(Session& session, PosteriorTrajectories const& member, int
   out.ledger = std::move(result.ledger);
   PointwiseLikelihood const pointwise = member.pointwise(e);
   auto const densities = pointwise.run(parameters);
-  if (!member.model().channels.empty() && parameters.width() < few_trajectories)
-    result.noisy = noisy_again(member, e, trajectory, parameters);
+  member.add_noise(e, trajectory, parameters, result);
   for (std::size_t q = 0; q < trajectory.quantities().size(); ++q) {
     TrajectoryQuantity const& from = trajectory.quantities()[q];
     bool const is_channel = from.channel >= 0;

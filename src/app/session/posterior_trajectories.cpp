@@ -14,6 +14,9 @@ namespace {
 /// Where the fit states none: it has looked for a number that suits the likelihood of a whole record, which bands do not need.
 constexpr int particles_of_prediction = 1000;
 
+/// The quantiles of 2.5 and 97.5 % lie between draws from 39 on.
+constexpr int few_trajectories = 39, fewest_noises = 200;
+
 /// The fit, with the errors that inputs have in the records that it predicts.
 FitTask fit_of(Session const& session, PredictTask const& what) {
   FitTask fit = std::get<FitTask>(session.file.tasks[static_cast<std::size_t>(what.fit)].what);
@@ -103,6 +106,20 @@ Trajectory::Result PosteriorTrajectories::run(int e, Trajectory const& trajector
   StreamKey const noise = prediction_noise(seed_, e);
   return what_.redraw_each_step ? trajectory.run_redrawn(parameters, wanted_, {seed_, Purpose::redraw, noise.index, 0}, noise)
                                 : trajectory.run(parameters, noise, moments, what_.ahead);
+}
+
+void PosteriorTrajectories::add_noise(int e, Trajectory const& trajectory, ConstLanes parameters,
+                                      Trajectory::Result& result) const {
+  int const draws = parameters.width(), times = (std::max(fewest_noises, what_.draws) + draws - 1) / draws;
+  if (model().channels.empty() || draws >= few_trajectories || (what_.redraw_each_step && draws > 1)) return;
+  if (fit_.filter != FilterRule::particle) {
+    result.noisy = trajectory.run(parameters, prediction_noise(seed_, e), false, what_.ahead, times).noisy;
+    return;
+  }
+  LaneArray all(parameters.rows(), draws * times);
+  for (int r = 0; r < all.rows(); ++r)
+    for (int w = 0; w < all.width(); ++w) all(r, w) = parameters(r, w % draws);
+  result.noisy = by_particles(e, all).noisy;
 }
 
 Trajectory::Result PosteriorTrajectories::by_particles(int e, ConstLanes parameters) const {

@@ -39,6 +39,9 @@ class PosteriorTrajectories {
   Trajectory trajectory(int e) const;
   /// parameters: those of experiment e. moments: of the noise, too.
   Trajectory::Result run(int e, Trajectory const& trajectory, ConstLanes parameters, bool moments = false) const;
+  /// Where trajectories are fewer than a band needs, as those of an optimum are: several draws of the noise about each of them in
+  /// place of one, so many in all as draws are asked for, and 200 at least; behind the first of all the second of all.
+  void add_noise(int e, Trajectory const& trajectory, ConstLanes parameters, Trajectory::Result& result) const;
   /// Log densities of the scored samples of experiment e.
   PointwiseLikelihood pointwise(int e) const;
 

@@ -90,7 +90,8 @@ class Predict {
     Trajectory const trajectory = trajectories_.trajectory(e);
     LaneArray const draws = trajectories_.parameters(e);
     stop_if_interrupted();
-    Trajectory::Result const result = trajectories_.run(e, trajectory, draws);
+    Trajectory::Result result = trajectories_.run(e, trajectory, draws);
+    if (!model_.filtered()) trajectories_.add_noise(e, trajectory, draws, result);  // else the sds of samples tell the band
     stop_if_interrupted();
     report.predictions.push_back(bands_along(trajectory.quantities(), result, experiment, model_));
     for (Finding& finding :

@@ -119,6 +119,30 @@ again = predict line_fit on bench with draws(200), seed = 1
   CHECK_FALSE(finding_in(run.summary("line_fit"), "undefined_in_band").is_null());
 }
 
+TEST_CASE("a prediction from an optimum has the band of its noise, and is told where that misses the samples") {
+  Stream stream({5, Purpose::test, 0, 0});
+  std::string table = "x,o\n";
+  for (int row = 0; row < 200; ++row) {
+    double const x = 0.01 * row;
+    table += fmt::format("{},{}\n", x, 2 * x + (row < 100 ? 0.3 : 1.2) * stream.normal());
+  }
+  CaseRun const run(
+      "model line { input x\n parameter r ~ normal(0, sd = 5)\n observe o ~ normal(r*x, sd = 0.3) }\n"
+      "data bench { file \"bench.csv\"; input x = x; measure o = o; split early = rows 1..100, late = rows 101..200 }\n"
+      "best = fit line to bench.early with map, seed = 1\n"
+      "same = predict best on bench.early with draws(400), seed = 1\n"
+      "one = predict best on bench.early with draws(1), seed = 1\n"
+      "late = predict best on bench.late with draws(400), seed = 1\n",
+      {{"bench.csv", table}});
+  auto const coverage = [&](char const* task) { return run.summary(task).at("fit").at("coverage_95").get<double>(); };
+  for (char const* task : {"same", "one"}) {
+    CHECK(coverage(task) > 0.88);  // of 0.95 with 100 samples: 3 sds
+    CHECK(finding_in(run.summary(task), "coverage_low").is_null());
+  }
+  CHECK(coverage("late") < 0.6);
+  CHECK_FALSE(finding_in(run.summary("late"), "coverage_low").is_null());
+}
+
 TEST_CASE("scores on rows that were fitted are called so; scores on others are not") {
   std::string const parts = with(growth, "past = fit growth to short",
                                  "data cut { file \"long.csv\"; time t [s]; measure o = o; "
