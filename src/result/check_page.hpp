@@ -45,6 +45,7 @@ struct CoveragePage {
   bool equal = true;            // steps
   std::string time_unit = "s";  // in which the record counts its time,
   double time_scale = 1;        // [s] one of these
+  bool timed = true;            // false: rows of any order
   struct Input {
     std::string name, unit, rule;  // rule: between samples; empty where the model reads none there
     double low = 0, high = 0;      // Hz: between them lies 99 % of the power

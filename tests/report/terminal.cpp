@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "example.hpp"
+#include "report/page/html_parts.hpp"
 
 using namespace sysid;
 
@@ -29,6 +30,15 @@ TEST_CASE("the terminal shows aligned columns under the user's names, failures a
         "  warning[second_mode]: a second mode holds 2 %\n"
         "    what to do: look at the starts\n"
         "  more: sysid explain second_mode\n");
+}
+
+TEST_CASE("a simulation of rows that no time orders fails at no time") {
+  Report report = example::duffing(20);
+  CHECK(terminal_summary(report).find("3 x non-finite: k3*y^3 at duffing.sysid:12 (first at t = ") != std::string::npos);
+  CHECK(simulations_html(report).find("first at t [") != std::string::npos);
+  for (Prediction& each : report.predictions) each.rows = true;
+  CHECK(terminal_summary(report).find("3 x non-finite: k3*y^3 at duffing.sysid:12\n") != std::string::npos);
+  CHECK(simulations_html(report).find("first at t") == std::string::npos);
 }
 
 TEST_CASE("each channel of each experiment has one line of scores, with the unit of its rmse and each score once") {

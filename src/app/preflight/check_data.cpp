@@ -25,6 +25,7 @@ CoveragePage describe_coverage(ExperimentData const& data, DataBlock const& bloc
     shortest = std::min(shortest, time[i] - time[i - 1]);
     longest = std::max(longest, time[i] - time[i - 1]);
   }
+  page.timed = model.dynamics != Dynamics::none;
   bool const timed = model.dynamics != Dynamics::none && time.size() > 1;
   if (timed) {
     UsualStep const usual = usual_step(time);

@@ -63,7 +63,7 @@ std::string unit_of_time_first(Preflight const& preflight) {
   constexpr double nearly_all = 0.9;
   PriorPage const& page = *preflight.page.prior;
   SolverSettings const& solver = preflight.what.solver;
-  bool const coarse = preflight.bounded() || (solver.fixed_step() && !solver.row().exact);
+  bool const coarse = preflight.bounded() || (preflight.model().integrated() && solver.fixed_step() && !solver.row().exact);
   if (!coarse || page.failed_as_stated < nearly_all * page.draws) return {};
   Experiment const& first = preflight.experiments.front();
   if (first.time.size() < 2) return {};

@@ -156,6 +156,7 @@ PriorSimulations simulate_prior(Session& session, FitTask const& what, std::shar
   stated.centres(points, result.centres);
   for (std::size_t w = 0; w < width; ++w) result.followed[w] = std::isfinite(result.density[w]);
   result.failed_as_stated = static_cast<int>(std::count(result.followed.begin(), result.followed.end(), false));
+  result.failed_explicit = result.failed_as_stated;  // nothing is integrated, or nothing else tried
   Model const& model = compiled->model;
   PriorSimulation simulation(session, what, space, experiments, compiled, theta, points, result);
   bool const lost = result.failed_as_stated > 0;

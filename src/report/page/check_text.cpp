@@ -124,11 +124,13 @@ std::string failures_text(PriorPage const& prior) {
                             prior.spent ? "more steps between two samples are needed" : "the steps are too long");
 }
 
-std::string prior_text(PriorPage const& prior, std::string const& time_unit, double time_scale) {
+std::string prior_text(PriorPage const& prior, CoveragePage const& data) {
   std::vector<std::string> lines = {failures_text(prior)};
   for (Failure const& failure : prior.failures)
-    lines.push_back(fmt::format("  {} x {}: {} (first at t = {} {})", failure.count, name(failure.kind), failure.where,
-                                significant(failure.time / time_scale, 4), time_unit));
+    lines.push_back(fmt::format(
+        "  {} x {}: {}{}", failure.count, name(failure.kind), failure.where,
+        data.timed ? fmt::format(" (first at t = {} {})", significant(failure.time / data.time_scale, 4), data.time_unit)
+                   : std::string()));
   if (prior.untraced > 0) lines.push_back(fmt::format("  {} x {}", prior.untraced, Ledger::untraced));
   for (PriorPage::Channel const& channel : prior.channels)
     lines.push_back(
@@ -193,10 +195,11 @@ std::string information_text(InformationPage const& page) {
   return out;
 }
 
-/// "20 ms", "0:12 min".
+/// "20 ms", "0:12 (min:s)", "1:00:12 (h:min:s)".
 std::string seconds_text(double seconds) {
-  return seconds < 0.95 ? fmt::format("{} ms", significant(std::max(1e3 * seconds, 0.1), 1))
-                        : fmt::format("{} (h:min:s)", format_duration(seconds));
+  if (seconds < 0.95) return fmt::format("{} ms", significant(std::max(1e3 * seconds, 0.1), 1));
+  std::string const text = format_duration(seconds);
+  return fmt::format("{} ({}min:s)", text, std::count(text.begin(), text.end(), ':') > 1 ? "h:" : "");
 }
 
 std::string process_text(ProcessPage const& page) {
@@ -243,7 +246,7 @@ std::string task_text(TaskPage const& task) {
   out += findings_text(task.findings);
   for (PreflightPage const& preflight : task.preflights) {
     if (!preflight.candidate.empty()) out += fmt::format(" candidate {}\n", preflight.candidate);
-    if (preflight.prior) out += prior_text(*preflight.prior, task.coverage.front().time_unit, task.coverage.front().time_scale);
+    if (preflight.prior) out += prior_text(*preflight.prior, task.coverage.front());
     if (preflight.information) out += information_text(*preflight.information);
     if (!preflight.disturbances.empty()) out += entry("disturbance", preflight.disturbances);
     for (ProcessPage const& process : preflight.processes) out += process_text(process);

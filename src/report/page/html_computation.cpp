@@ -37,9 +37,13 @@ std::string simulations_html(Report const& report) {
   double scale = 1;
   if (!report.predictions.empty()) unit = report.predictions.front().time_unit, scale = report.predictions.front().time_scale;
   HtmlTable table{"Failures by kind and place", {"kind", "where", "count", fmt::format("first at t [{}]", escape(unit))}, {}, 2};
-  for (Failure const& failure : report.ledger.failures())
+  bool const timed = report.predictions.empty() || !report.predictions.front().rows;
+  if (!timed) table.header.pop_back();
+  for (Failure const& failure : report.ledger.failures()) {
     table.rows.push_back({escape(name(failure.kind)), escape(failure.where), std::to_string(failure.count),
                           std::isnan(failure.time) ? "" : pretty_number(significant(failure.time / scale, 4))});
+    if (!timed) table.rows.back().pop_back();
+  }
   return out + html(table);
 }
 

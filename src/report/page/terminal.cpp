@@ -61,21 +61,21 @@ std::string evidence_line(Report const& report) {
   return text.empty() ? "" : text + "\n";
 }
 
-// The unit that the records count their time in, and one of it in s.
-std::pair<std::string, double> time_unit(Report const& report) {
-  if (report.predictions.empty()) return {"s", 1};
-  return {report.predictions.front().time_unit, report.predictions.front().time_scale};
+// " (first at t = 2.5 s)" in the unit that the records count their time in; nothing where rows have none.
+std::string first_time(Report const& report, Failure const& failure) {
+  bool const told = !report.predictions.empty();
+  if (std::isnan(failure.time) || (told && report.predictions.front().rows)) return "";
+  double const scale = told ? report.predictions.front().time_scale : 1;
+  return fmt::format(" (first at t = {} {})", significant(failure.time / scale, 4),
+                     told ? report.predictions.front().time_unit : std::string("s"));
 }
 
 std::string ledger_text(Report const& report) {
   Ledger const& ledger = report.ledger;
-  auto const [unit, scale] = time_unit(report);
   if (ledger.solves() == 0 && ledger.failed() == 0) return "";
   std::string out = fmt::format("{} simulations, {} failed\n", ledger.solves(), ledger.failed());
   for (Failure const& failure : ledger.failures())
-    out += fmt::format(
-        "  {} x {}: {}{}\n", failure.count, name(failure.kind), failure.where,
-        std::isnan(failure.time) ? "" : fmt::format(" (first at t = {} {})", significant(failure.time / scale, 4), unit));
+    out += fmt::format("  {} x {}: {}{}\n", failure.count, name(failure.kind), failure.where, first_time(report, failure));
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "app/checking.hpp"
 #include "app/running.hpp"
 #include "core/numeric/elementary.hpp"
+#include "report/page/check_page.hpp"
 
 using namespace sysid;
 
@@ -51,6 +52,27 @@ TEST_CASE("rates per second beside a time in years are named, and neither stiffn
   CHECK(apart(cured) == nullptr);
   CHECK(messages(cured, "stiff_prior").empty());
   CHECK(messages(cured, "prior_fails").empty());
+}
+
+TEST_CASE("what no step is taken for fails by no step, and at no time") {
+  std::string table = "x,y\n";
+  for (int row = 0; row < 40; ++row) table += fmt::format("{},1\n", 0.1 * row);
+  TemporaryFolder folder;
+  write_file(folder.path() / "record.csv", table);
+  std::string const priors = " input x\n parameter a ~ normal(0, sd = 1)\n parameter b ~ normal(0, sd = 1)\n";
+  for (auto const& [model, time] :
+       {std::pair(priors + " observe z ~ normal(b*log(a + x), sd = 1)\n", ""),
+        std::pair(" time discrete 1 [s]\n" + priors + " observe z ~ normal(b*lag(measured(z), 1) + log(a) + x, sd = 1)\n",
+                  "step 1 [s]; ")}) {
+    CAPTURE(model);
+    CheckResult const result =
+        checked(folder.path() / "m.sysid", "model m {\n" + model + "}\ndata rec { file \"record.csv\"; " + time +
+                                               "input x = x; measure z = y }\npost = fit m to rec with map, seed = 1\n");
+    CHECK(messages(result, "integration_step").empty());
+    CHECK_FALSE(messages(result, "prior_fails").empty());
+    for (Finding const& each : preflight(result, "post").findings) CHECK(each.help.find("unit of time") == std::string::npos);
+    CHECK((check_text(result.page).find("first at t = ") == std::string::npos) == (*time == '\0'));
+  }
 }
 
 TEST_CASE("the same time read in seconds is the other cure") {
