@@ -53,6 +53,11 @@ TEST_CASE("a file of every row is removed with its result, others stay") {
   for (char const* name : {"post.nc", "post_osc(n=2).nc", "post.stan", "post.data.json"}) CHECK_MESSAGE(removed(name), name);
   for (char const* name : {"notes.txt", "draws.csv", "draws_1.txt", "other.nc", "post_a.stan", "predict"})
     CHECK_MESSAGE(!removed(name), name);
+  // A folder is the user's, whatever its name.
+  fs::create_directory(folder / "predict_x.csv");
+  remove_result(folder);
+  CHECK(fs::is_directory(folder / "predict_x.csv"));
+  CHECK_FALSE(holds_result(folder));
 }
 
 TEST_CASE("a name that no row has is our own mistake") {

@@ -57,6 +57,9 @@ TEST_CASE("a result with a file missing, cut short, changed or too many is refus
   make_folder(folder.path() / "draws_of_before.csv");  // the user's
   CHECK(refusal(folder.path()) == "");
 
+  fs::create_directory(folder.path() / "draws_6.csv");  // the user's, who may call a folder what he likes
+  CHECK(refusal(folder.path()) == "");
+
   fs::path const summary = folder.path() / "summary.json";
   std::string text = read_file(summary);
   text.replace(text.find("\"seed\": 1"), 9, "\"seed\": 2");
