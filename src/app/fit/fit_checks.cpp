@@ -21,6 +21,7 @@
 #include "diagnostics/member_check.hpp"
 #include "diagnostics/model_checks.hpp"
 #include "diagnostics/prior_checks.hpp"
+#include "diagnostics/verdict.hpp"
 #include "model/linear_states.hpp"
 #include "search/laplace.hpp"
 #include "search/objective.hpp"
@@ -242,7 +243,31 @@ Findings all_rows(FinishedFit const& fit, Findings FittedRows::*part) {
 }
 
 Findings constraint_drift(FinishedFit& fit) { return all_rows(fit, &FittedRows::drift); }
-Findings bands(FinishedFit& fit) { return all_rows(fit, &FittedRows::bands); }
+
+// Of derived quantities that do not change along a record, and whose summary is of all draws.
+Findings undefined_draws(Draws const& draws) {
+  Findings findings;
+  for (auto c = static_cast<std::size_t>(draws.parameter_count); c < draws.names.size(); ++c) {
+    std::vector<double> const values = draws.column(c);
+    auto const undefined = std::ranges::count_if(values, [](double each) { return !std::isfinite(each); });
+    if (undefined == 0) continue;
+    Severity const severity = failure_severity(static_cast<std::uint64_t>(undefined), values.size());
+    findings.push_back({FindingCode::undefined_in_band,
+                        severity == Severity::error ? Severity::warning : severity,  // the others are what they are
+                        {draws.names[c]},
+                        values.size() == 1 ? fmt::format("{} is undefined at the optimum", draws.names[c])
+                                           : fmt::format("{} is undefined at {} of {} draws, so it has no mean and no quantiles",
+                                                         draws.names[c], undefined, values.size()),
+                        "check for a root or a logarithm of a negative number, or a division by zero"});
+  }
+  return findings;
+}
+
+Findings bands(FinishedFit& fit) {
+  Findings all = all_rows(fit, &FittedRows::bands);
+  for (Finding& each : undefined_draws(fit.report.draws)) all.push_back(std::move(each));
+  return all;
+}
 
 Findings priors(FinishedFit& fit) {
   if (fit.objective_kind != ObjectiveKind::likelihood) return check_priors(fit.report);

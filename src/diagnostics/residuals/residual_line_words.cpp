@@ -155,7 +155,7 @@ Finding residual_offset(Model const& model, Channel const& channel, std::string 
           fmt::format("the residuals of {} have a mean of {}{}, {} times its standard error; the square of this mean is {} of "
                       "their mean square",
                       channel.name + on_experiment(experiment, several), significant(size, 3),
-                      channel.unit_text().empty() ? "" : " " + channel.unit_text(), significant(test.standard_errors, 2),
+                      unit_after_number(unit_of_offset(channel)), significant(test.standard_errors, 2),
                       fmt::format("{:.3g} %", 100 * test.share)),
           cure(model, channel, several, largest, text)};
 }

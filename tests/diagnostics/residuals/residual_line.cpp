@@ -288,8 +288,20 @@ TEST_CASE("the offset of a temperature is an interval, and its name is one that 
   REQUIRE_MESSAGE(found != nullptr, findings.dump());
   std::string const help = found->at("help"), declaration = quoted_part(help, 1), statement = quoted_part(help, 2);
   CHECK(declaration == "parameter temp_offset_2 [delta_degC] ~ normal(0, sd = 5)");
+  CHECK(found->at("message").get<std::string>().find(" delta_degC, ") != std::string::npos);
   json const cured = findings_of(begin + "  " + declaration + "\n  " + statement + "\n}\n", data, "wave");
   CHECK_MESSAGE(of_code(cured, "residual_offset") == nullptr, cured.dump());
+}
+
+TEST_CASE("the offset of a pure number has no unit, and its name keeps Greek letters") {
+  json const findings = findings_of(
+      "model m {\n  input s\n  parameter A [-] ~ log_uniform(0.1, 100)\n  parameter sigma [-] ~ log_uniform(0.001, 100)\n"
+      "  observe θ [-] ~ normal(A*s, sd = sigma)\n}\n",
+      "data wave { file \"wave.csv\"; input s = s; measure θ = b }\n", "wave");
+  json const* const found = of_code(findings, "residual_offset");
+  REQUIRE_MESSAGE(found != nullptr, findings.dump());
+  CHECK(found->at("message").get<std::string>().find(" -, ") == std::string::npos);
+  CHECK(quoted_part(found->at("help"), 1).starts_with("parameter θ_offset [-] ~ "));
 }
 
 TEST_CASE("records of different offsets get one declaration, and an offset that they share becomes one of each") {
