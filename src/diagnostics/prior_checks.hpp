@@ -33,8 +33,8 @@ struct Maxima {
 /// maxima that are nearly as high contradicts no prior with which one of them agrees.
 Findings check_priors(Report const& report, std::optional<Maxima> const& of_likelihood = std::nullopt);
 
-/// Further apart than this many times: a wrong unit or a wild prior. Medians of the shipped models lie within a factor of 5.2 of
-/// what was measured, so that a unit a thousand times too large or small shows in each of them, by 190 and more.
+/// Further apart than this many times: a wrong unit or a wild prior. Medians of the shipped models lie within a factor of ten of
+/// what was measured, so that a unit a thousand times too large or small shows in each of them.
 inline constexpr double wild = 100;
 /// The share of failed draws that deserves a warning.
 inline constexpr double many_failures = 0.2;

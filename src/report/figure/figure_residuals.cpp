@@ -116,8 +116,9 @@ Figure residual_figure(Prediction const& prediction, PredictedQuantity const& qu
   Figure out{drawing.name, fmt::format("Correlations of the residuals of {}", quantity.name), "", script(drawing), Topic::fit};
   out.caption = fmt::format(
       "Autocorrelation of the residuals of {}{}{}. For white residuals 99 % of the values lie inside the band; a pattern shows "
-      "dynamics that the model lacks.",
-      quantity.name, where, crossed.shown.empty() ? "" : ", and below it their correlation with past values of the input");
+      "{} that the model lacks.",
+      quantity.name, where, crossed.shown.empty() ? "" : ", and below it their correlation with past values of the input",
+      prediction.rows ? "a dependence" : "dynamics");
   if (quantity.response.draws != 1)
     out.caption +=
         " Residuals are measured minus mean prediction of the draws; the checks of a fit use those of its best mode, divided by "

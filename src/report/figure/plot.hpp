@@ -65,7 +65,7 @@ Axis axis(double low, double high, int count, double margin = 0);
 
 /// "k3 [10⁹ N/m³]"; no brackets when there is nothing to put in them.
 std::string axis_label(std::string_view name, std::string_view unit, int exponent = 0);
-/// The same with what the numbers are counted from: "f0 − 15.9145 [10⁻⁶ Hz]".
+/// The same with what the numbers are counted from: "f0 − 15.9145 [µHz]".
 std::string axis_label(std::string_view name, std::string_view unit, Axis const& axis);
 
 /// About how many pixels a text is wide.

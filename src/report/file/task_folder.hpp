@@ -27,7 +27,7 @@ std::vector<DrawnFigure> drawn_figures(Report const& report, bool pictures);
 std::vector<std::string> write_figures(std::vector<DrawnFigure> const& figures, std::filesystem::path const& folder,
                                        std::vector<FigureFormat> const& pictures);
 
-/// "gnuplot did not draw pairs.pdf and 2 more; the scripts are in figures/". undrawn: as `write_figures` returns it, not empty.
+/// "gnuplot failed to draw pairs.pdf and 2 more; the scripts are in figures/". undrawn: as `write_figures` returns it, not empty.
 std::string undrawn_words(std::vector<std::string> const& undrawn);
 
 // Names of its files, as the writer gives them and the reader looks for them.

@@ -32,7 +32,7 @@ std::string ledger_words(Report const& report);
 /// What the modes that were found say, and no more than a search can. There is a mode.
 std::string mode_words(Report const& report);
 
-/// What the posterior has learnt beyond the prior: its narrowest and widest parameters against their priors.
+/// What the posterior has learnt beyond the prior: the parameters that are hardly narrower than their priors.
 std::string learning_words(Report const& report);
 
 }  // namespace sysid
