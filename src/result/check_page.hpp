@@ -43,9 +43,9 @@ struct CoveragePage {
   double rate = 0;              // Hz, of the usual step; 0: rows that no time orders
   int gaps = 0;                 // steps longer than 1.5 usual ones
   bool equal = true;            // steps
+  bool timed = true;            // false: rows of any order
   std::string time_unit = "s";  // in which the record counts its time,
   double time_scale = 1;        // [s] one of these
-  bool timed = true;            // false: rows of any order
   struct Input {
     std::string name, unit, rule;  // rule: between samples; empty where the model reads none there
     double low = 0, high = 0;      // Hz: between them lies 99 % of the power
