@@ -56,13 +56,15 @@ Model oscillator(bool wandering) {
 
 /// w: of x, x' and the noise, known to `sd`. wandering: x is the integral of w, and x' another state.
 template <class Force>
-Findings findings(Motion const& of, Force const& force, std::string const& unit = "", bool wandering = false, double sd = 0) {
+Findings findings(Motion const& of, Force const& force, std::string const& unit = "", bool wandering = false, double sd = 0,
+                  std::string const& force_unit = "") {
   Model model = oscillator(wandering);
   if (!unit.empty()) {
     model.states[0].unit = unit_atom(unit);
     model.states[1].unit = divide(*unit_atom(unit), *unit_atom("s"));
     model.disturbances[0].unit = unit_atom("N");
   }
+  if (!force_unit.empty()) model.disturbances[0].unit = unit_atom(force_unit);
   Prediction states;
   std::size_t const n = of.x.size();
   states.scored.assign(n, 1);
@@ -101,6 +103,15 @@ TEST_CASE("the coefficient of a term is in SI units, whatever the states are dec
   INFO(found.front().message);
   CHECK(found.front().message.find("e9 [kg/(m^2 s^2)]*x^3") != std::string::npos);
   CHECK(found.front().help.find("`parameter extra [kg/(m^2 s^2)] ~ normal(0, sd = 2") != std::string::npos);
+}
+
+TEST_CASE("the coefficient of a term of states without a unit is that of their numbers") {
+  Motion const of = motion(1, 600, 10);
+  Findings const found = findings(
+      of, [](double x, double, double e) { return -6 * (x * x * x - 0.5 * x) + 0.01 * e; }, "", false, 0, "kN");
+  REQUIRE(found.size() == 1);
+  CHECK(found.front().message.find('[') == std::string::npos);
+  CHECK_MESSAGE(found.front().help.find("`parameter extra ~ normal(0, sd = 20000)`") != std::string::npos, found.front().help);
 }
 
 TEST_CASE("a smoothed disturbance that is white or slow follows no state") {

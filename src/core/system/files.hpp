@@ -35,7 +35,7 @@ std::filesystem::path partial_path(std::filesystem::path path);
 
 /// Writes `bytes` under a temporary name in the same folder (`partial_path`), flushes them to the disk and renames: `path` holds
 /// either the old bytes or all of the new. On failure the temporary file is removed and IoError "cannot write `PATH`: reason" is
-/// thrown. A symbolic link is followed, permissions are kept; a device or pipe is written directly.
+/// thrown. A symbolic link is followed to what is there, permissions are kept; a device or pipe is written directly.
 void write_file(std::filesystem::path const& path, std::string_view bytes);
 
 /// The first half of `write_file`: the bytes stand under `partial_path(path)`, flushed, and what is at `path` stays as it is until

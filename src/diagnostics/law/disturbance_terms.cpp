@@ -214,24 +214,24 @@ std::optional<Found> most_followed(Model const& model, Disturbance const& distur
   return best;
 }
 
-/// "[N/m^3]" and the coefficient in it; both in SI units where all are declared, else without a unit.
+/// "[N/m^3]" and the coefficient in it; both in SI units, which is what numbers without a unit are in. No unit where one that it
+/// is made of is not declared.
 struct Sized {
   double value;
   std::string unit;
 };
 
 Sized sized(Model const& model, Disturbance const& disturbance, Smoothed const& of, Found const& found) {
-  double value = found.followed.coefficient;
+  Unit unit = disturbance.unit.value_or(Unit{});
+  double value = found.followed.coefficient * unit.scale;
   bool known = disturbance.unit.has_value();
-  for (std::size_t const factor : found.term.factors) known = known && model.states[of.states[factor]].unit.has_value();
-  if (!known) return {value, ""};
-  Unit unit = *disturbance.unit;
-  value *= unit.scale;
   for (std::size_t const factor : found.term.factors) {
-    Unit const& state = *model.states[of.states[factor]].unit;
-    unit = divide(unit, state);
-    value /= state.scale;
+    std::optional<Unit> const& declared = model.states[of.states[factor]].unit;
+    known = known && declared.has_value();
+    unit = divide(unit, declared.value_or(Unit{}));
+    value /= declared.value_or(Unit{}).scale;
   }
+  if (!known) return {value, ""};
   std::string const text = format_dimension(unit.dimension);
   return {value, text == "1" ? "-" : text};
 }
