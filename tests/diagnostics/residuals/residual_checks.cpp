@@ -284,7 +284,7 @@ TEST_CASE("counts of a line whose mean is next to nothing beside it have the siz
   for (std::string const noise : {"poisson(mean)", "negative_binomial(mean, shape = 1e4)"}) {
     CAPTURE(noise);
     RunOptions options;
-    options.output = folder.path() / "results";
+    options.output = folder.path() / noise;
     run_text(folder.path() / "m.sysid",
              "model m {\n input x\n parameter A ~ log_uniform(1, 100)\n let mean = A*exp(-(x - 200)^2/56.5)\n observe z ~ " +
                  noise +
