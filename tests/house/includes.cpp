@@ -125,7 +125,7 @@ std::vector<std::pair<std::string, std::set<std::string>>> const rooms = {
      {"core", "result", "data", "data/cell", "data/table", "model", "solver", "syntax", "regression/column", "likelihood",
       "diagnostics/residuals", "check/checked", "check/units"}},
     {"mechanics", {"core", "result", "data", "model", "likelihood"}},
-    {"discovery/preparation", {"core", "data", "check/checked", "regression", "experiment"}},
+    {"discovery/preparation", {"core", "linear_algebra", "data", "check/checked", "regression", "experiment"}},
     {"discovery",
      {"core",
       "linear_algebra",

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,6 +11,7 @@
 
 #include "app/running.hpp"
 #include "core/numeric/random.hpp"
+#include "linear_algebra/decompositions.hpp"
 
 using namespace sysid;
 using json = nlohmann::json;
@@ -143,7 +144,7 @@ TEST_CASE("by the regression alone, of a difference equation, where the record i
     products += slopes * slopes.transpose();
     squares += std::pow(ys[i] - a * ys[i - 1] - b * share, 2);
   }
-  Eigen::Matrix3d const covariance = products.inverse() * squares / static_cast<double>(ys.size() - 4);
+  Eigen::MatrixXd const covariance = inverse(products) * squares / static_cast<double>(ys.size() - 4);
   CHECK(kept_term(0).at("sd").get<double>() == doctest::Approx(std::sqrt(covariance(0, 0))).epsilon(0.03).scale(0));
   CHECK(kept_term(1).at("sd").get<double>() == doctest::Approx(std::sqrt(covariance(1, 1))).epsilon(0.03).scale(0));
   CHECK(found.summary.at("discovery").at("inside_terms").at(0).at("regression_sd").get<double>() ==
