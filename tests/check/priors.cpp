@@ -172,3 +172,22 @@ TEST_CASE("a log-normal distribution of other languages is offered with its firs
   CHECK(below.find("median") == std::string::npos);
   CHECK(help("lognormal(mu = 5.8, sigma = 0.5)").find("median =") == std::string::npos);
 }
+
+TEST_CASE("an argument that is computed from one that is missing or wrong is left alone") {
+  std::string const noise = "parameter sigma ~ half_normal(sd = 1)\nparameter a ~ ";
+  for (auto const& [prior, code] : {std::pair("gamma(mean = 0.03)", "E2105"),
+                                    {"gamma(mean = 0.03, variance = 0.01)", "E2102"},
+                                    {"gamma(mean = 0.03, rate = 1)", "E2104"},
+                                    {"gamma(shapes, mean = 0.03)", "E2001"},
+                                    {"gamma(\"2\", mean = 0.03)", "E2009"},
+                                    {"gamma((1, 2), mean = 0.03)", "E2013"},
+                                    {"student_t(0, sd = sigma)", "E2105"},
+                                    {"student_t(0, variance = sigma)", "E2105"},
+                                    {"student_t(0, nu, precision = sigma)", "E2001"},
+                                    {"student_t(b, 4, sd = sigma)", "E2001"}}) {
+    CAPTURE(prior);
+    std::string const said = refused_parameters(noise + prior);
+    CHECK(errors_in(said) == 1);
+    CHECK(said.find(std::string("error[") + code + "]") != std::string::npos);
+  }
+}

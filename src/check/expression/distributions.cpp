@@ -213,7 +213,7 @@ class DistributionChecker {
     for (std::size_t i = 0; i < given_.size(); ++i) {
       ArgumentRow const& argument = row_.arguments[i];
       if (given_[i].value != nullptr) {
-        evaluate(given_[i], argument);
+        evaluate(given_[i], argument, i);
       } else if (!std::isnan(argument.fallback)) {
         auto const scale = unit_of_argument(variate_.unit, argument.spellings.front().unit_power);
         use_.arguments.push_back(graph_.constant(argument.fallback * (scale ? scale->scale : 1)));
@@ -244,7 +244,7 @@ class DistributionChecker {
     return cures;
   }
 
-  void evaluate(Given const& given, ArgumentRow const& row) {
+  void evaluate(Given const& given, ArgumentRow const& row, std::size_t index) {
     std::optional<Unit> unit = unit_of_argument(variate_.unit, given.spelling->unit_power);
     // Widths of a temperature are differences: they have no zero to shift.
     std::string_view const spelt = given.spelling->name;
@@ -264,6 +264,8 @@ class DistributionChecker {
         return fail(errors::logarithm_of_shifted(given.span, std::string(spelt), name_));
       node = graph_.multiply(graph_.constant(variate_.unit ? variate_.unit->scale : 1), exp(Term(graph_, node)).id);
     }
+    // Some are computed from those before, of which one may be missing or wrong: that has been said.
+    if (use_.arguments.size() != index) return;
     if (given.spelling->to_canonical != nullptr) node = given.spelling->to_canonical(graph_, node, use_.arguments);
     use_.arguments.push_back(node);
   }
