@@ -28,7 +28,7 @@ std::optional<Unit> rate_unit(std::optional<Unit> const& unit, int primes) {
 }
 
 Scope::Scope(Graph& graph, Diagnostics& diagnostics, std::vector<ast::FunctionDefinition const*> shared_functions)
-    : graph_(graph), diagnostics_(diagnostics), units_(diagnostics) {
+    : graph_(graph), diagnostics_(diagnostics), units_(graph, diagnostics) {
   for (auto const* function : shared_functions) functions_.emplace(function->name.text, function);
 }
 

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "check/message/unit_words.hpp"
+#include "check/units/product.hpp"
 #include "check/units/unit_errors.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
@@ -82,49 +85,18 @@ bool terms_alike(Groups const& groups, std::span<UnitOperand const> operands) {
          });
 }
 
-/// The factors of a product: those that a value is multiplied by, and those that it is divided by. One factor of 2 and those of pi,
-/// by which cycles and radians are converted, are counted only.
-struct Factors {
-  std::vector<ast::Expression const*> above, below;
-  int pi_above = 0, pi_below = 0, twos = 0;
+/// In radians where it counts in degrees or turns, in the sense of the SI.
+bool is_angle(Unit const& unit) { return unit.dimensionless() && (unit.radian.numerator != 0 || unit.hertz.numerator != 0); }
+bool is_scaled(Unit const& unit) { return unit.offset == 0 && std::fabs(unit.scale - 1) > 0.01; }
 
-  void take(ast::Expression const& tree, bool divides) {
-    if (auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
-        binary != nullptr && ((*binary)->symbol == "*" || (*binary)->symbol == "/")) {
-      take(*(*binary)->left, divides);
-      return take(*(*binary)->right, divides != ((*binary)->symbol == "/"));
-    }
-    auto const* number = std::get_if<ast::Number>(&tree.node);
-    auto const* name = std::get_if<ast::Reference>(&tree.node);
-    if (number != nullptr && number->value == 2 && !number->unit && twos++ == 0) return;
-    if (name != nullptr && name->name.text == "pi")
-      ++(divides ? pi_below : pi_above);
-    else
-      (divides ? below : above).push_back(&tree);
+/// A bare number where a unit is dimensionless: what it is counted in is no longer what stands beside it.
+ast::Number const* bare_number(ast::Expression const& tree, bool& negative) {
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) {
+    negative = !negative;
+    return (*unary)->symbol == "-" ? bare_number(*(*unary)->operand, negative) : nullptr;
   }
-};
-
-std::string product_text(std::vector<ast::Expression const*> const& factors) {
-  std::string text;
-  for (ast::Expression const* factor : factors) {
-    auto const* binary = std::get_if<ast::Box<ast::Binary>>(&factor->node);
-    bool const sum = binary != nullptr && (*binary)->symbol != "^";
-    text += (text.empty() ? "" : "*") + (sum ? "(" + unparse(*factor) + ")" : unparse(*factor));
-  }
-  return text;
-}
-
-/// With 2*pi on the other side of the fraction, where it stands on the wrong one; else empty.
-std::string with_turns_moved(ast::Expression const& tree, bool multiply) {
-  Factors factors;
-  factors.take(tree, false);
-  if ((multiply ? factors.pi_below : factors.pi_above) != 1 || (multiply ? factors.pi_above : factors.pi_below) != 0) return {};
-  if (factors.above.empty()) return {};
-  std::string text = (multiply ? "2*pi*" : "") + product_text(factors.above);
-  std::string below = product_text(factors.below);
-  if (!multiply) below = "2*pi" + (below.empty() ? "" : "*" + below);
-  bool const several = !multiply || factors.below.size() > 1;
-  return below.empty() ? text : fmt::format("{}/{}", text, several ? "(" + below + ")" : below);
+  auto const* number = std::get_if<ast::Number>(&tree.node);
+  return number == nullptr || number->unit ? nullptr : number;
 }
 
 }  // namespace
@@ -174,12 +146,71 @@ void UnitCheck::hint_cycles(std::span<UnitOperand const> operands) {
     }
 }
 
+bool UnitCheck::converted_angle(UnitOperand const& operand) {
+  if (operand.tree == nullptr || !is_angle(operand.value.unit)) return false;
+  for (double const factor : {std::numbers::pi / 180, 180 / std::numbers::pi})
+    if (auto const taken = taken_from_product(*operand.tree, factor)) {
+      report(errors::angle_converted(operand.value.span, taken->factor, taken->rest));
+      return true;
+    }
+  return false;
+}
+
+// `1000*y` in [mm], `60*fn` in [rpm].
+bool UnitCheck::hint_converted_twice(std::span<UnitOperand const> operands) {
+  auto const declared =
+      std::find_if(operands.begin(), operands.end(), [](UnitOperand const& each) { return each.tree == nullptr; });
+  for (UnitOperand const& each : operands) {
+    if (each.tree == nullptr || !is_known(each)) continue;
+    if (declared != operands.end() && is_known(*declared) && is_scaled(declared->value.unit)) {
+      Unit const& unit = declared->value.unit;
+      bool const turns = unit.radian.numerator == 1 && each.value.unit.radian.numerator == 0;
+      auto taken = taken_from_product(*each.tree, 1 / unit.scale);
+      if (auto cycles = turns && !taken ? taken_from_product(*each.tree, 2 * std::numbers::pi / unit.scale) : std::nullopt) {
+        cycles->rest = "2*pi*" + cycles->rest;
+        taken = cycles;
+      }
+      if (taken) {
+        report(errors::converted_twice({each.value.span, ""}, unit_label(*declared), taken->factor, words(unit), taken->rest));
+        return true;
+      }
+    }
+    if (converted_angle(each)) return true;
+  }
+  return false;
+}
+
+// Beside a pure number a bare number is one: 1 + a/L is not 1 mm/m more than a/L. Beside an angle in degrees few expect that.
+void UnitCheck::hint_bare_numbers(std::span<UnitOperand const> operands) {
+  auto const scaled = std::find_if(operands.begin(), operands.end(), [](UnitOperand const& each) {
+    return each.tree != nullptr && is_known(each) && each.value.unit.dimensionless() && is_scaled(each.value.unit) &&
+           !each.value.unit.text.empty();
+  });
+  if (scaled == operands.end()) return;
+  bool const angle = is_angle(scaled->value.unit);
+  for (UnitOperand const& each : operands) {
+    if (each.tree == nullptr || each.value.kind != Typed::Kind::literal) continue;
+    auto const value = graph_->constant_value(each.value.node);
+    if (!value || *value == 0 || std::isinf(*value)) continue;
+    if (angle ? to_rational(*value / std::numbers::pi).has_value() : std::fabs(*value) <= 1) continue;
+    bool negative = false;
+    bool const number = bare_number(*each.tree, negative) != nullptr;
+    auto const* name = std::get_if<ast::Reference>(&each.tree->node);
+    report(errors::number_beside(each.value.span, unit_label(*scaled), angle, unparse(*each.tree), words(scaled->value.unit),
+                                 number            ? ""
+                                 : name == nullptr ? "1"
+                                                   : name->name.text));
+    return;
+  }
+}
+
 bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> operands) {
   Groups const groups = group(operands);
   for (UnitOperand const& each : operands)
     if (each.value.kind == Typed::Kind::unknown) remember(each);
   if (groups.size() < 2) {
-    hint_cycles(operands);
+    hint_bare_numbers(operands);
+    if (!hint_converted_twice(operands)) hint_cycles(operands);
     return true;
   }
   std::vector<std::size_t> const right = majority(groups, operands);
@@ -242,6 +273,7 @@ bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, b
   if (!is_known(argument)) return true;
   Unit const& unit = argument.value.unit;
   if (unit.dimensionless()) {
+    if (angle && converted_angle(argument)) return true;
     if (angle && unit.hertz.numerator != 0 && unit.radian.numerator == 0)
       report(errors::cycles_in_angle(argument.value.span, function));
     return true;

@@ -35,7 +35,8 @@ struct Occasion {
 /// said of what is unknown: after an error an expression is made unknown by the caller, so that one mistake gives one message.
 class UnitCheck {
  public:
-  explicit UnitCheck(Diagnostics& diagnostics) : diagnostics_(&diagnostics) {}
+  /// graph: of the values that are compared.
+  UnitCheck(Graph const& graph, Diagnostics& diagnostics) : graph_(&graph), diagnostics_(&diagnostics) {}
   UnitCheck(UnitCheck const& other, Diagnostics& diagnostics) : UnitCheck(other) { diagnostics_ = &diagnostics; }
 
   /// Known to the help lines ("multiply it by a length, such as `y`").
@@ -82,10 +83,15 @@ class UnitCheck {
 
  private:
   void hint_cycles(std::span<UnitOperand const> operands);
+  // True with a warning: a factor in the text does what the unit does by itself.
+  bool hint_converted_twice(std::span<UnitOperand const> operands);
+  bool converted_angle(UnitOperand const& operand);
+  void hint_bare_numbers(std::span<UnitOperand const> operands);
   Label unit_label(UnitOperand const& operand) const;
   void remember(UnitOperand const& operand, std::string why = {});
   void report(Diagnostic diagnostic);
 
+  Graph const* graph_;
   Diagnostics* diagnostics_;
   DeclaredUnits declared_;
   std::vector<Call> calls_;

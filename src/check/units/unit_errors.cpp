@@ -145,6 +145,27 @@ Diagnostic cycles_in_angle(Span argument, std::string const& function) {
   return errors::about({function}, at(Severity::warning, "E2210", {argument, "cycles"}, {},
                                       fmt::format("`{}` takes radians, but this counts cycles", function), "multiply by 2*pi"));
 }
+Diagnostic number_beside(Span number, Label other, bool angle, std::string const& text, std::string const& unit,
+                         std::string const& name) {
+  std::string const one = angle ? "rad" : "-";
+  std::string help = fmt::format("write `{0} [{1}]` or `{0} [{2}]`", text, unit, one);
+  if (name == "1") help = fmt::format("multiply it by `1 [{}]` or by `1 [{}]`", unit, one);
+  if (!name.empty() && name != "1") help = fmt::format("declare `{}` in [{}] or in [{}]", name, unit, one);
+  return at(Severity::warning, "E2213", {number, angle ? "in radians" : "a pure number"}, {std::move(other)},
+            fmt::format("`{}` has no unit: beside what is in [{}] it is {}", text, unit, angle ? "in radians" : "a pure number"),
+            help);
+}
+Diagnostic converted_twice(Label shown, Label declared, std::string const& factor, std::string const& unit,
+                           std::string const& written) {
+  return at(Severity::warning, "E2214", std::move(shown), {std::move(declared)},
+            fmt::format("`{}` converts to [{}], as the unit itself does", factor, unit),
+            fmt::format("write `{}`: the unit [{}] converts", written, unit));
+}
+Diagnostic angle_converted(Span shown, std::string const& factor, std::string const& written) {
+  return at(Severity::warning, "E2214", {shown, "an angle with a unit"}, {},
+            fmt::format("`{}` converts an angle that has a unit, which does so itself", factor),
+            fmt::format("write `{}`: a function takes an angle in any unit", written));
+}
 
 bool is_unit_conflict(Diagnostic const& diagnostic) {
   return diagnostic.severity == Severity::error && diagnostic.primary &&

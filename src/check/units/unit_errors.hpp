@@ -40,6 +40,13 @@ Diagnostic cycles_meet_radians(Label shown, Label other, bool counts_cycles, std
 /// name: of the frequency, or empty.
 Diagnostic cycles_as_angular(Label shown, Label other, std::string const& name);
 Diagnostic cycles_in_angle(Span argument, std::string const& function);
+/// Warnings. A bare number beside what is in a dimensionless unit; name: of the constant that it is, "1" for an expression.
+Diagnostic number_beside(Span number, Label other, bool angle, std::string const& text, std::string const& unit,
+                         std::string const& name);
+/// factor: what the declared unit does already; written: the product without it.
+Diagnostic converted_twice(Label shown, Label declared, std::string const& factor, std::string const& unit,
+                           std::string const& written);
+Diagnostic angle_converted(Span shown, std::string const& factor, std::string const& written);
 
 /// Quantities whose units do not agree, as an error.
 bool is_unit_conflict(Diagnostic const& diagnostic);
