@@ -32,7 +32,7 @@ bool begins_with_verb(Gap const& gap) {
   return gap.statement.size() > verb && words::contains(words::verbs, gap.statement[verb].text);
 }
 
-constexpr std::array<Situation, 37> situations{{
+constexpr std::array<Situation, 40> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
      "a parameter has a prior or a value: `parameter m [kg] ~ log_uniform(0.1, 10)`, `parameter m [kg] = 1`"},
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
@@ -76,6 +76,10 @@ constexpr std::array<Situation, 37> situations{{
     {[](Gap const& g) { return g.wanted == wanted::item && found_kind(g, TokenKind::number); },
      "a name begins with a letter or `_`"},
     {[](Gap const& g) { return found(g, "=") && g.at == 0; }, "an equation has two sides: `left = right`"},
+    {[](Gap const& g) { return found(g, "%") && g.begins_with("parameter") && g.find("~") < g.at; },
+     "a share of the mean is a product: of 30 % and a mean of 0.03, `sd = 0.3*0.03`"},
+    {[](Gap const& g) { return found(g, "%") && g.begins_with("observe") && g.find("~") < g.at; },
+     "a share of the signal is a product, and needs a floor: `sd = 0.05*abs(y) + sigma`"},
     {[](Gap const& g) { return found(g, "%") && g.before() != nullptr && g.before()->kind == TokenKind::number; },
      "a percentage is written `1 [percent]`"},
     {[](Gap const& g) {
@@ -116,7 +120,13 @@ constexpr std::array<Situation, 37> situations{{
      "an equation has two sides: `left = right`; a definition is written `let name = value`"},
     {[](Gap const& g) { return g.wanted == wanted::opening_brace && g.begins_with("model"); },
      "a model is written `model name { ... }`; a name is made of letters, digits and `_`"},
-    {[](Gap const& g) { return g.before() != nullptr && g.before(2) != nullptr && g.before(2)->is(".") && found(g, "("); },
+    {[](Gap const& g) {
+       return found(g, "(") && g.before() != nullptr && g.before(2) != nullptr && g.before(2)->is(".") && g.before()->is("diff");
+     },
+     "a derivative is written with primes: `y'`, `y''`"},
+    {[](Gap const& g) {
+       return !begins_with_verb(g) && g.before() != nullptr && g.before(2) != nullptr && g.before(2)->is(".") && found(g, "(");
+     },
      "write the function without a module before it"},
 }};
 

@@ -51,6 +51,8 @@ std::string in_head(Gap const& gap) {
     if (close + 1 < gap.statement.size())
       return fmt::format("the unit comes last: `{} {} {}`", gap.statement[0].text, gap.text(close + 1, gap.statement.size()),
                          gap.text(1, close + 1));
+    if (gap.statement[2].kind == TokenKind::text)
+      return fmt::format("write it without brackets: `{} {}`", gap.statement[0].text, gap.text(2, close));
     return fmt::format("name the column before its unit: `{} t {}`", gap.statement[0].text, gap.text(1, close + 1));
   }
   bool const another = gap.found->is(",") && gap.next() != nullptr && gap.next()->kind == TokenKind::text;
@@ -94,6 +96,10 @@ std::string in_rule(Gap const& gap, std::string_view column) {
                        gap.next()->is("hold") && gap.next(2) != nullptr ? gap.next(2)->text : gap.next()->text);
   if (hold < gap.at) {
     Token const* const word = gap.found->is("-") ? gap.next() : gap.found;
+    std::string const joined = is_word(word) ? fmt::format("{}_{}", gap.before()->text, word->text) : std::string();
+    if (gap.at == hold + 2 && is_word(word) && joined != "zero_order" && joined != "band_limited" && joined != "first_order" &&
+        joined != "first_order_hold" && joined != "zero_order_hold")
+      return fmt::format("remove `{}`", gap.rest());
     if (gap.at == hold + 2 && is_word(word))
       return fmt::format("the rule is one word: `hold {}_{}`", gap.before()->text, word->text);
     if (gap.at == hold + 1 && gap.found->is("(") && is_word(gap.next()))
@@ -249,6 +255,8 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
     return fmt::format("separate the fits of an average by commas: `predict {}, {}`", gap.text(verb + 1, gap.at), found.text);
   if (after_fits && gap.before()->is("on") && gap.before(2) != nullptr && gap.before(2)->is(","))
     return "remove the comma before `on`";
+  if (gap.wanted == "the name of a data block" && (found.is("[") || found.is("(")) && gap.closing(gap.at) < gap.statement.size())
+    return fmt::format("list the data without brackets: `{}`", gap.text(gap.at + 1, gap.closing(gap.at)));
   if (gap.wanted == "the name of a data block" && found.kind == TokenKind::text)
     return "name a data block: `to DATA`; the CSV file is named inside that block";
   if (!ends || gap.before() == nullptr) return {};
@@ -276,6 +284,9 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
         "a task has the rows of its data: remove `{}`; a range of rows is named in the data block, `split part = rows "
         "101..500`, and used as `DATA.part`",
         gap.text(gap.at, with));
+  if (found.is("rows") && is_number(gap.next()))
+    return fmt::format("a range of rows is named in the data block: `split part = {}`, and used as `{}.part`",
+                       gap.text(gap.at, with), gap.before()->text);
   if (is_word(gap.found) && is_number(gap.next()))
     return fmt::format("options follow `with`: `with {} = {}`", found.text, gap.next()->text);
   return {};
@@ -317,6 +328,12 @@ std::string in_options(Gap const& gap) {
       gap.closing(start + 2) < gap.statement.size())
     return fmt::format("remove `{}`: a fit has no start values, its search begins at draws of the prior",
                        gap.text(start, gap.closing(start + 2) + 1));
+  // The first word is the back end.
+  if (side_by_side && gap.at == with + 2 && is_word(gap.before()) && is_word(gap.found))
+    return is_number(gap.next())
+               ? fmt::format("write a comma and `=`: `with {}, {} = {}`", gap.before()->text, found.text,
+                             gap.text(gap.at + 1, gap.statement.size()))
+               : fmt::format("remove `{}`: options follow a comma, `with {}, seed = 1`", gap.rest(), gap.before()->text);
   if (side_by_side && is_word(gap.before()) && is_word(gap.found) && gap.before(2) != nullptr &&
       (gap.before(2)->is(",") || gap.before(2)->is("with")))
     return fmt::format("an option is written `{} = {}`", gap.before()->text, gap.rest());

@@ -19,8 +19,9 @@ constexpr std::array<std::string_view, 8> start_words{"start", "init", "initial"
 constexpr std::array<std::string_view, 3> definitions{"let", "derive", "constant"};
 
 std::string no_start(std::string_view rest) {
+  bool const truncates = words::contains(truncations, rest.substr(0, rest.find(' ')));
   for (std::string_view const bound : {"lower", "upper", "min", "max", "bounds"})
-    if (rest.find(bound) < 3) return "bounds are arguments of the prior: `normal(0, sd = 1, lower = 0, upper = 1)`";
+    if (truncates || rest.find(bound) < 3) return "bounds are arguments of the prior: `normal(0, sd = 1, lower = 0, upper = 1)`";
   return fmt::format("remove `{}`: a parameter has no start value, the search begins at draws of the prior", rest);
 }
 
@@ -81,6 +82,10 @@ std::string behind_distribution(Gap const& gap) {
     return fmt::format("`per experiment` comes after the name: `{} per experiment{}{} ~ {}`", gap.text(0, name_end),
                        name_end < tilde ? " " : "", gap.text(name_end, tilde), prior);
   }
+  std::size_t const comma = gap.find(",", tilde);
+  if (gap.begins_with("observe") && (gap.found->is("+") || gap.found->is("-")) && comma < gap.at)
+    return fmt::format("what is measured stands inside: `{} {}{}`", gap.text(tilde + 1, comma), gap.rest(),
+                       gap.text(comma, gap.at));
   if (!parameter) return fmt::format("remove `{}`", gap.rest());
   if (std::string bounds = truncation(gap, tilde); !bounds.empty()) return bounds;
   if (gap.found->is("=")) return fmt::format("a parameter has a prior or a value: remove `{}`", gap.rest());
@@ -161,6 +166,12 @@ std::string behind_declared(Gap const& gap) {
     if (parameter && end < gap.statement.size())
       return fmt::format("bounds are arguments of the prior, `normal(0, sd = 1, lower = 0)`: remove `{}`",
                          gap.text(gap.statement[1].is("real") ? 1 : gap.at, end + 1));
+  }
+  if (parameter && (gap.found->is(">") || gap.found->is("<")) && gap.find("~") < gap.statement.size() &&
+      gap.statement.back().is(")")) {
+    std::size_t const tilde = gap.find("~"), end = std::min(gap.find("["), tilde);
+    return fmt::format("bounds are arguments of the prior: `{} {}, {} = {})`", gap.text(0, gap.at),
+                       gap.text(end, gap.statement.size() - 1), gap.found->is(">") ? "lower" : "upper", gap.text(gap.at + 1, end));
   }
   if (parameter && (gap.found->is(">") || gap.found->is("<") || gap.found->is(">=") || gap.found->is("<=")))
     return fmt::format("bounds are arguments of a prior: `{} ~ normal(0, sd = 1, {} = {})`", gap.text(0, gap.at),
@@ -297,6 +308,12 @@ std::string in_expression(Gap const& gap) {
     return fmt::format("a power of ten is written `{}e{}`", left->text,
                        gap.text(gap.at + 3, std::min(gap.at + 4, gap.statement.size())));
   if (side_by_side && right->is("end")) return "remove `end`";
+  // The number of an equation, before it or behind it.
+  bool const first_number = gap.at == 3 && gap.statement[0].is("(") && gap.statement[1].kind == TokenKind::number && left->is(")");
+  bool const last_number = right->is("(") && gap.at + 3 == gap.statement.size() &&
+                           gap.statement[gap.at + 1].kind == TokenKind::number && gap.find("=") < gap.at;
+  if (side_by_side && (first_number || last_number) && !words::contains(words::model_statements, gap.statement[0].text))
+    return fmt::format("an equation has no number: remove `{}`", first_number ? gap.text(0, 3) : gap.rest());
   if (side_by_side && left->is("return")) return "remove `return`";
   if (side_by_side && (left->is("for") || left->is("while")) && gap.begins_with(left->text))
     return "there are no loops: declare a vector, `state q(3)`, and write its equation once";

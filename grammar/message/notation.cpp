@@ -153,6 +153,10 @@ std::string instead_of_colon(std::string_view text, std::size_t begin, std::size
   Token const& before = tokens.back();
   std::size_t digits_end = end;
   while (digits_end < text.size() && words::is_digit(text[digits_end])) ++digits_end;
+  std::size_t statement = tokens.size() - 1;
+  while (statement > 0 && !tokens[statement].newline_before) --statement;
+  if (before.kind == TokenKind::number && tokens[statement].is("time"))
+    return "equal steps have no column: write `step 0.02 [s]` in place of `time`";
   if (before.kind == TokenKind::number)
     return digits_end > end ? fmt::format("a range is written `{}..{}`", before.text, text.substr(end, digits_end - end))
                             : "a range is written `1..500`";

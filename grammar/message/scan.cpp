@@ -274,6 +274,15 @@ class Scanner {
     bool const behind_name = begin > 0 && words::continues_name(text_[begin - 1]);
     if (command.empty() || (behind_name && !notation::is_command(command))) {
       at_ = name;  // `N\m`
+      bool const ends_line = peek() == '\n' || peek() == '\r';
+      if (ends_line || begin + 1 == text_.size())
+        return mistake(
+            errors::no_meaning(from(begin), "the character `\\`",
+                               "remove it: a line ends inside parentheses, or after an operator or a comma, and goes on"));
+      if (peek() == '(')
+        return mistake(
+            errors::no_meaning(from(begin), "the character `\\`",
+                               "`a\\b` of matrices is the solution of an equation; of numbers it is the quotient `b/a`"));
       return mistake(errors::no_meaning(from(begin), "the character `\\`", "a quotient is written with `/`"));
     }
     mistake(errors::no_meaning(from(begin), fmt::format("the command `{}` of LaTeX", text_.substr(begin, at_ - begin)),

@@ -12,6 +12,7 @@
 #include "check/message/errors.hpp"
 #include "check/message/errors_disturbances.hpp"
 #include "check/message/errors_numbers.hpp"
+#include "check/units/unit_errors.hpp"
 #include "check/units/units.hpp"
 #include "data/table/column_unit_errors.hpp"
 #include "syntax/unparse.hpp"
@@ -57,6 +58,16 @@ class DataChecker {
     std::string help;
   };
 
+  /// `1/50 [s]`: the unit belongs to the 50 alone.
+  std::string quotient_of_number(ast::Expression const& tree) {
+    auto const* quotient = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+    if (quotient == nullptr || (*quotient)->symbol != "/") return {};
+    auto const* below = std::get_if<ast::Number>(&(*quotient)->right->node);
+    auto const* above = std::get_if<ast::Number>(&(*quotient)->left->node);
+    if (below == nullptr || above == nullptr || !below->unit || above->unit || below->value == 0) return {};
+    return errors::number_by_quotient(unparse(tree), above->value / below->value, unparse(*below->unit));
+  }
+
   std::optional<double> number(ast::Expression const& tree, Unit const& unit, errors::Subject const& what,
                                std::optional<OtherPlace> const& elsewhere = std::nullopt) {
     auto const value = scope_.expression(tree);
@@ -64,6 +75,7 @@ class DataChecker {
     if (value->kind == Typed::Kind::known)
       if (auto refused = refuse_number(tree.span, what, value->unit, unit)) {
         if (elsewhere && !refuse_number(tree.span, what, value->unit, elsewhere->unit)) refused->help = elsewhere->help;
+        if (std::string const whole = quotient_of_number(tree); !whole.empty()) refused->help = whole;
         diagnostics_.add(std::move(*refused));
         return std::nullopt;
       }
@@ -295,7 +307,10 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, errors::Subject const& what) {
     if (!column.unit || !declared.unit) return;
     std::string const wanted = declared.unit->text_or_dimension();
-    if (column.unit->dimension != declared.unit->dimension || zero_against_difference(*column.unit, *declared.unit))
+    // A column of degrees that says no unit would be read as radians.
+    bool const unsaid_angle = declared.unit->dimensionless() && declared.unit->radian.numerator == 1 && declared.unit->scale != 1 &&
+                              column.unit->dimensionless() && column.unit->radian.numerator == 0;
+    if (column.unit->dimension != declared.unit->dimension || zero_against_difference(*column.unit, *declared.unit) || unsaid_angle)
       diagnostics.add(errors::unit_mismatch(column.span, what, column.unit->text, wanted));
     else if (cycles_against_radians(*column.unit, *declared.unit))
       diagnostics.add(data_errors::cycles_against_radians(column.column, column.unit->text, wanted, column.span));

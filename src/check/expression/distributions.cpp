@@ -10,6 +10,7 @@
 #include "check/message/errors.hpp"
 #include "check/message/errors_numbers.hpp"
 #include "check/message/unit_words.hpp"
+#include "check/units/unit_errors.hpp"
 #include "function/primitive.hpp"
 #include "syntax/unparse.hpp"
 
@@ -228,20 +229,50 @@ class DistributionChecker {
   std::vector<std::pair<Dimension, std::string>> other_spellings(Given const& given, ArgumentRow const& row) const {
     std::vector<std::pair<Dimension, std::string>> cures;
     if (!variate_.unit || variate_.unit->dimensionless()) return cures;
+    for (Spelling const& other : row.spellings)
+      if (other.unit_power != given.spelling->unit_power && other.unit_power != 0)
+        cures.emplace_back(unit_of_argument(variate_.unit, other.unit_power)->dimension, as_other_spelling(given, other));
+    return cures;
+  }
+
+  static std::string as_other_spelling(Given const& given, Spelling const& other) {
     std::string const text = unparse(*given.value);
     std::string const base = std::holds_alternative<ast::Reference>(given.value->node) ? text : "(" + text + ")";
-    for (Spelling const& other : row.spellings) {
-      if (other.unit_power == given.spelling->unit_power || other.unit_power == 0) continue;
-      std::string const written = fmt::format("write `{} = {}`", other.name, text);
-      std::string power;
-      if (other.unit_power == 1 && given.spelling->unit_power == 2) power = fmt::format("{}^2", base);
-      if (other.unit_power == 1 && given.spelling->unit_power == -2) power = fmt::format("1/{}^2", base);
-      if (other.unit_power == 2 && given.spelling->unit_power == 1) power = fmt::format("sqrt({})", text);
-      if (other.unit_power == -given.spelling->unit_power) power = fmt::format("1/{}", base);
-      cures.emplace_back(unit_of_argument(variate_.unit, other.unit_power)->dimension,
-                         power.empty() ? written : fmt::format("{}, or `{} = {}`", written, given.spelling->name, power));
+    std::string power;
+    if (other.unit_power == 1 && given.spelling->unit_power == 2) power = fmt::format("{}^2", base);
+    if (other.unit_power == 1 && given.spelling->unit_power == -2) power = fmt::format("1/{}^2", base);
+    if (other.unit_power == 2 && given.spelling->unit_power == 1) power = fmt::format("sqrt({})", text);
+    if (other.unit_power == -given.spelling->unit_power) power = fmt::format("1/{}", base);
+    std::string const written = fmt::format("write `{} = {}`", other.name, text);
+    return power.empty() ? written : fmt::format("{}, or `{} = {}`", written, given.spelling->name, power);
+  }
+
+  /// The same where the dimension does not tell: `variance = sigma` of a sigma in [deg].
+  bool of_other_power(Given const& given, ArgumentRow const& row, Typed const& value) {
+    int const wanted = given.spelling->unit_power;
+    if (!variate_.unit || !variate_.unit->dimensionless() || variate_.unit->scale == 1 || value.kind != Typed::Kind::known)
+      return false;
+    if (wanted == 0 && given.spelling->name != "degrees_of_freedom") return false;
+    for (int const found : {1, 2, -2}) {
+      Unit const unit = power(*variate_.unit, {found, 1});
+      if (found == wanted || std::fabs(value.unit.scale / unit.scale - 1) > 1e-9 || value.unit.radian != unit.radian) continue;
+      auto const in_words = [&](int exponent) {
+        bool const atom = variate_.unit->text.find_first_of(" */^") == std::string::npos;
+        std::string const base = atom ? variate_.unit->text : "(" + variate_.unit->text + ")";
+        return exponent == 0 ? "-" : exponent == 1 ? variate_.unit->text : fmt::format("{}^{}", base, exponent);
+      };
+      UnitConflict conflict;
+      conflict.primary = {given.span, "[" + in_words(found) + "]"};
+      conflict.found = in_words(found);
+      conflict.wanted = in_words(wanted);
+      auto const other =
+          std::find_if(row.spellings.begin(), row.spellings.end(), [&](Spelling const& each) { return each.unit_power == found; });
+      conflict.help = other != row.spellings.end() ? as_other_spelling(given, *other) : errors::should_be_in(conflict.wanted);
+      fail(errors::units_differ({Occasion::Kind::distribution, std::string(given.spelling->name), variate_.name},
+                                std::move(conflict)));
+      return true;
     }
-    return cures;
+    return false;
   }
 
   void evaluate(Given const& given, ArgumentRow const& row, std::size_t index) {
@@ -255,6 +286,7 @@ class DistributionChecker {
       return;
     }
     if (!place) {
+      if (of_other_power(given, row, *value)) return;
       value->unit.offset = 0;
       if (unit) unit->offset = 0;
     }

@@ -13,6 +13,7 @@ namespace sysid {
 namespace {
 
 constexpr int default_start_rows = 50;
+constexpr double example_burn_in = 1000;
 
 }  // namespace
 
@@ -50,7 +51,8 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
         values.set(name, static_cast<std::int64_t>(*value));
       break;
     case SettingKind::real:
-      if (auto const value = number(argument.value, name, Unit{}, row.minimum, row.maximum)) {
+      // The one setting that is a time: a bare number is in seconds.
+      if (auto const value = number(argument.value, name, unit_of(name == "wall_time" ? "s" : ""), row.minimum, row.maximum)) {
         if (*value > 0 && *value < row.least_positive)
           diagnostics_.add(errors::option_range_or_zero(argument.value.span, name, *value, row.least_positive, row.maximum));
         values.set(name, *value);
@@ -99,6 +101,13 @@ std::optional<double> OptionReader::width(ast::Expression const& tree, std::stri
 std::optional<double> OptionReader::number_of(Typed const& value, Span place, std::string const& name,
                                               std::optional<Unit> const& unit, double least, double most, bool whole,
                                               std::optional<OtherPlace> const& elsewhere) {
+  // A number of degrees is no share and no count, though the SI has all three as pure numbers.
+  bool const angle = unit && unit->dimensionless() && unit->radian.numerator == 0 && value.kind == Typed::Kind::known &&
+                     value.unit.dimensionless() && value.unit.radian.numerator != 0;
+  if (angle) {
+    diagnostics_.add(errors::number_of_other_kind(place, errors::named(name), value.unit, *unit));
+    return std::nullopt;
+  }
   if (unit && value.kind == Typed::Kind::known)
     if (auto refused = refuse_number(place, errors::named(name), value.unit, *unit)) {
       if (elsewhere && !refuse_number(place, errors::named(name), value.unit, elsewhere->unit)) refused->help = elsewhere->help;
@@ -112,7 +121,9 @@ std::optional<double> OptionReader::number_of(Typed const& value, Span place, st
   }
   bool const scaled = value.kind == Typed::Kind::known && value.unit.scale != 1;  // 100 [percent] is no count
   if (whole && (scaled || *constant != std::floor(*constant))) {
-    double const nearest = std::round(scaled ? *constant / value.unit.scale : *constant);
+    double nearest = std::round(scaled ? *constant / value.unit.scale : *constant);
+    // A share of the iterations, as other programs have it.
+    if (name == "burn_in" && *constant <= 1) nearest = example_burn_in;
     diagnostics_.add(
         errors::option_kind(place, name, {"a whole number"}, fmt::format("{} = {:.0f}", name, std::clamp(nearest, least, most))));
     return std::nullopt;

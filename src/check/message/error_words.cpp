@@ -61,7 +61,8 @@ std::string positive_prior(Names const& names) {
 }
 
 std::string measure(Unit const& unit) {
-  if (unit.dimensionless()) return "a pure number";
+  bool const angle = unit.radian.numerator != 0 && !unit.text.empty();
+  if (unit.dimensionless() && !angle) return "a pure number";
   return fmt::format("in [{}]", unit.text_or_dimension());
 }
 

@@ -29,6 +29,12 @@ std::string unit_help(std::string const& column_unit, std::string const& declare
   if (column_unit == "g") return "`[g]` is the gram; the acceleration of gravity is `[g_n]`";
   if (column_unit == "mg") return "`[mg]` is the milligram; a thousandth of the acceleration of gravity is `[mg_n]`";
   if (column_unit == "ug") return "`[ug]` is the microgram; a millionth of the acceleration of gravity is `[ug_n]`";
+  auto const declared = unit_atom(declared_unit);
+  if ((column_unit == "kg" || column_unit == "lb") && declared && declared->dimension == unit_atom("N")->dimension)
+    return fmt::format("`[{0}]` is a mass: a force is in `[{0}f]`", column_unit);
+  if (auto const of_column = unit_atom(column_unit);
+      of_column && of_column->dimensionless() && declared && declared->dimensionless())
+    return "an angle has a unit: write that of the column, [deg] or [rad]";
   return "correct one of the two units: both must measure the same kind of quantity";
 }
 
@@ -121,7 +127,10 @@ Diagnostic unknown_input(Span span, std::string const& input, std::string const&
 
 Diagnostic unknown_channel(Span span, std::string const& channel, Subject const& owner, Names const& channels) {
   return also_about(owner.names, about({channel}, error("E4111", span, fmt::format("{} has no channel `{}`", owner.words, channel),
-                                                        guess_or(channel, channels, choose(channels, "channel")))));
+                                                        guess_or(channel, channels,
+                                                                 fmt::format("remove this line, or add `observe {} ~ normal(...)` "
+                                                                             "to the model; {}",
+                                                                             channel, choose(channels, "channel"))))));
 }
 
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules) {

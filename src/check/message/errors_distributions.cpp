@@ -24,7 +24,6 @@ constexpr Synonym distribution_synonyms[] = {
     {"halfnormal", "half_normal"},
     {"halfcauchy", "half_cauchy"},
     {"t", "student_t"},
-    {"cauchy", "student_t"},
     {"n", "normal"},
     {"norm", "normal"},
     {"u", "uniform"},
@@ -74,6 +73,8 @@ constexpr Synonym argument_synonyms[] = {
     {"scale", "sd"},
     {"lb", "lower"},
     {"ub", "upper"},
+    {"lambda", "rate"},
+    {"theta", "scale"},
     {"alpha", "shape"},
     {"beta", "rate"},
 };
@@ -112,6 +113,17 @@ std::string or_rate(Names const& spellings, std::string const& value) {
   return has_rate ? fmt::format(", or `rate = {}` if it is a rate, as in Stan", value) : std::string();
 }
 
+/// `0.01^2` as the second argument of a normal distribution is a variance, as in most books, and `1/0.01^2` a precision.
+std::string by_its_form(Names const& spellings, ast::Expression const& value) {
+  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&value.node);
+  bool const quotient = binary != nullptr && (*binary)->symbol == "/";
+  if (quotient) binary = std::get_if<ast::Box<ast::Binary>>(&(*binary)->right->node);
+  auto const* exponent = binary == nullptr ? nullptr : std::get_if<ast::Number>(&(*binary)->right->node);
+  bool const square = exponent != nullptr && (*binary)->symbol == "^" && exponent->value == 2 && !exponent->unit;
+  std::string const meant = quotient ? "precision" : "variance";
+  return square && std::find(spellings.begin(), spellings.end(), meant) != spellings.end() ? meant : spellings.front();
+}
+
 /// The call with its arguments in another order.
 std::string with_arguments(ast::Call const& call, std::vector<std::size_t> const& order) {
   std::string text = call.function.text + "(";
@@ -122,45 +134,64 @@ std::string with_arguments(ast::Call const& call, std::vector<std::size_t> const
   return text + ")";
 }
 
+/// Of a gamma distribution by its mean and sd or variance, which are those of one shape.
+std::string gamma_by_moments(ast::Name const& argument) {
+  if (argument.text != "sd" && argument.text != "variance") return {};
+  return fmt::format("write `gamma(shape = S, mean = M)`, of sd M/sqrt(S): S is M^2/{}",
+                     argument.text == "sd" ? "sd^2" : "variance");
+}
+
 constexpr std::array<std::string_view, 6> start_words{"start", "init", "initval", "initial", "testval", "value"};
 constexpr std::array<std::string_view, 6> truncations{"truncated", "truncate",        "trunc",
                                                       "truncnorm", "truncatednormal", "truncated_normal"};
 
 }  // namespace
 
-Diagnostic unknown_distribution(ast::Name const& name, Names const& known, LogNormalOfOthers const& written) {
-  std::string const small = in_small_letters(name.text);
-  if (!written.of_logarithm.empty())
-    return about({name.text},
-                 error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text), written_here(written)),
-                 "distribution");
+namespace {
+
+/// How a distribution of another name is written here; empty where a guess is as good.
+std::string other_distribution(std::string const& small) {
   if (std::find(truncations.begin(), truncations.end(), small) != truncations.end())
-    return about({name.text},
-                 error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
-                       "bounds are arguments of a distribution: `normal(0, sd = 1, lower = 0, upper = 2)`"),
-                 "distribution");
-  return about({name.text},
-               error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text),
-                     guess_or(distribution_synonyms, name.text, known, fmt::format("distributions: {}", quoted(known)))),
+    return "bounds are arguments of a distribution: `normal(0, sd = 1, lower = 0, upper = 2)`";
+  if (small == "half_student_t" || small == "half_t")
+    return "half of Student's t is written `student_t(0, 3, scale = 1, lower = 0)`";
+  if (small == "cauchy") return "write it as Student's t: for `cauchy(0, 0.05)` it is `student_t(0, 1, scale = 0.05)`";
+  if (small.starts_with("log10"))
+    return "logarithms are natural: for a mean of -1.5 of log10 write `log_normal(median = 10^-1.5, sd = ...)`, with an sd log(10) "
+           "times as large";
+  return {};
+}
+
+std::string other_argument(ast::Name const& argument, std::string const& distribution, Names const& known) {
+  if (std::find(start_words.begin(), start_words.end(), argument.text) != start_words.end())
+    return "remove it: a parameter has no start value, the search begins at draws of the prior";
+  // A mean where a median or the mean of the logarithm can be given: neither is it.
+  bool const logarithmic = std::find(known.begin(), known.end(), "log_mean") != known.end();
+  if (logarithmic && argument.text == "mean")
+    return "write `log_mean` for the mean of the logarithm, `median` for the median (half of the values lie below it); "
+           "the mean itself is median*exp(sd^2/2)";
+  if (logarithmic && argument.text.starts_with("log10"))
+    return "logarithms are natural: for a mean of -1.5 of log10 write `median = 10^-1.5`, and an sd log(10) times as large";
+  return distribution == "gamma" ? gamma_by_moments(argument) : std::string();
+}
+
+}  // namespace
+
+Diagnostic unknown_distribution(ast::Name const& name, Names const& known, LogNormalOfOthers const& written) {
+  std::string help = written.of_logarithm.empty() ? other_distribution(in_small_letters(name.text)) : written_here(written);
+  if (help.empty()) help = guess_or(distribution_synonyms, name.text, known, fmt::format("distributions: {}", quoted(known)));
+  return about({name.text}, error("E2101", name.span, fmt::format("there is no distribution `{}`", name.text), std::move(help)),
                "distribution");
 }
 
 Diagnostic unknown_argument(ast::Name const& argument, std::string const& distribution, Names const& known) {
-  if (std::find(start_words.begin(), start_words.end(), argument.text) != start_words.end())
-    return about({distribution, argument.text},
-                 error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
-                       "remove it: a parameter has no start value, the search begins at draws of the prior"));
-  // A mean where a median or the mean of the logarithm can be given: neither is it.
-  bool const logarithmic = std::find(known.begin(), known.end(), "log_mean") != known.end();
-  if (logarithmic && argument.text == "mean")
-    return about({distribution, argument.text},
-                 error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
-                       "write `log_mean` for the mean of the logarithm, `median` for the median (half of the values lie below it); "
-                       "the mean itself is median*exp(sd^2/2)"));
-  return about({distribution, argument.text},
-               error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text),
-                     guess_or(argument_synonyms, argument.text, known,
-                              fmt::format("{} {}", known.size() == 1 ? "its argument is" : "its arguments are", quoted(known)))));
+  std::string help = other_argument(argument, distribution, known);
+  if (help.empty())
+    help = guess_or(argument_synonyms, argument.text, known,
+                    fmt::format("{} {}", known.size() == 1 ? "its argument is" : "its arguments are", quoted(known)));
+  return about(
+      {distribution, argument.text},
+      error("E2102", argument.span, fmt::format("`{}` has no argument `{}`", distribution, argument.text), std::move(help)));
 }
 
 Diagnostic argument_twice(Span second, Span first, std::string const& spelling, std::string const& other) {
@@ -172,11 +203,26 @@ Diagnostic argument_twice(Span second, Span first, std::string const& spelling, 
                                            "keep one: precision = 1/variance, variance = sd^2"));
 }
 
+namespace {
+
+/// `student_t(y, sigma)`, `student_t(y, sd = sigma)`: the second argument is what few expect.
+std::string with_degrees_of_freedom(ast::Call const& call) {
+  if (call.function.text != "student_t" || call.arguments.size() != 2 || call.arguments[0].name) return {};
+  ast::Argument width = call.arguments[1];
+  if (width.name && width.name->text == "degrees_of_freedom") return {};
+  if (!width.name) width.name = ast::Name{call.span, "scale"};
+  return fmt::format("the degrees of freedom come second, 1 for a Cauchy distribution: write `student_t({}, 4, {} = {})`",
+                     unparse(call.arguments[0].value), width.name->text, unparse(width.value));
+}
+
+}  // namespace
+
 Diagnostic argument_missing(ast::Call const& call, Names const& spellings) {
+  std::string const whole = with_degrees_of_freedom(call);
   return also_about(spellings,
                     about({call.function.text},
                           error("E2105", call.span, fmt::format("`{}` needs {}", call.function.text, quoted(spellings, "or")),
-                                fmt::format("write for example `{} = ...`", spellings.front()))));
+                                whole.empty() ? fmt::format("write for example `{} = ...`", spellings.front()) : whole)));
 }
 
 Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, Names const& spellings, std::string const& first) {
@@ -186,8 +232,8 @@ Diagnostic must_be_named(ast::Call const& call, ast::Argument const& argument, N
       about({call.function.text},
             error("E2106", argument.span, fmt::format("the name of this argument is missing: {}", quoted(spellings, "or")),
                   fmt::format("{}write `{} = {}`{}{}", point.empty() ? "" : point + "; if the comma separates arguments, ",
-                              spellings.front(), unparse(argument.value), or_rate(spellings, unparse(argument.value)),
-                              first.empty() ? "" : "; " + first))));
+                              by_its_form(spellings, argument.value), unparse(argument.value),
+                              or_rate(spellings, unparse(argument.value)), first.empty() ? "" : "; " + first))));
 }
 
 Diagnostic range_in_distribution(ast::Call const& call, ast::Expression const& range, bool bounds, bool truncates) {

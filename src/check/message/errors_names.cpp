@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "check/message/error_words.hpp"
 #include "function/table.hpp"
@@ -26,6 +27,8 @@ constexpr Synonym name_synonyms[] = {
     {"e", "the exponential function is written `exp(x)`"},
     {"g", "declare it: `constant g = 9.81 [m/s^2]`"},
     {"unknown", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
+    {"s", "declare it; of a transfer function write the differential equation, a prime for each power of s: `y''` for `s^2*y`"},
+    {"i", "declare it; there are no complex numbers: write an equation for the real and one for the imaginary part"},
     {"free", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"estimate", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"real", declared_in_stan},
@@ -178,7 +181,12 @@ Diagnostic unknown_unit(ast::Name const& name, std::optional<UnitSlip> const& me
     return about({name.text}, error("E2011", name.span, message, "a pure number is written `[-]`, or without brackets"));
   if (name.text == "dB" || name.text == "db")
     return about({name.text}, error("E2011", name.span, message,
-                                    "a level is a logarithm: convert it to the quantity, `10^(level/20)` for an amplitude"));
+                                    "a level is a pure number, `[-]`; to declare the quantity in its own unit, convert the level: "
+                                    "`10^(level/20)` for an amplitude"));
+  if (name.text == "sqrt")
+    return about({name.text}, error("E2011", name.span, message, "a root is written as a power: `[V/Hz^(1/2)]`"));
+  if (name.text == "gon" || name.text == "grad")
+    return about({name.text}, error("E2011", name.span, message, "convert it to degrees: 1 gon is 0.9 [deg]"));
   if (!meant)
     return about({name.text}, error("E2011", name.span, message,
                                     guess_or(unit_synonyms, name.text, common_unit_names(),
@@ -211,10 +219,29 @@ Diagnostic list_here(Span span) {
                "parentheses with a comma make a list: write a single value");
 }
 
+namespace {
+
+std::string without_wrong_unit(Unit const& given, Unit const& wanted) {
+  if (!wanted.dimensionless()) return "correct the unit, or remove it";
+  if (given.dimension == unit_atom("s").value().dimension)
+    return "write a pure number: a number of rows is a time multiplied by the rate, as 500 for 10 s at 50 Hz";
+  if (!wanted.text.empty() && wanted.text != "-") return fmt::format("write a share, as `1 [{}]`", wanted.text);
+  return "remove the unit";
+}
+
+/// "1 Hz is 60 rpm".
+std::string cycles_in_words(Unit const& given, Unit const& wanted) {
+  bool const plain = given.text.empty() || wanted.text.empty() || given.scale == 1 || wanted.radian.numerator != 0;
+  if (plain) return "1 Hz is 2*pi rad/s";
+  return fmt::format("1 [{}] is {:.6g} [{}]", wanted.text, 2 * std::numbers::pi * wanted.scale / given.scale, given.text);
+}
+
+}  // namespace
+
 Diagnostic number_of_other_kind(Span span, Subject const& what, Unit const& given, Unit const& wanted) {
   return about(what.names,
                error("E2014", span, fmt::format("{} is {}, but this is {}", what.words, measure(wanted), measure(given)),
-                     wanted.dimensionless() ? "remove the unit" : "correct the unit, or remove it"));
+                     without_wrong_unit(given, wanted)));
 }
 
 Diagnostic number_in_cycles(Span span, Subject const& what, Unit const& given, Unit const& wanted) {
@@ -223,7 +250,7 @@ Diagnostic number_in_cycles(Span span, Subject const& what, Unit const& given, U
       error("E4017", span,
             fmt::format("{} is {}, but this is {}: one counts cycles, the other radians, so they differ by a factor of 2 pi",
                         what.words, measure(wanted), measure(given)),
-            fmt::format("give the number {}: 1 Hz is 2*pi rad/s", measure(wanted))));
+            fmt::format("give the number {}: {}", measure(wanted), cycles_in_words(given, wanted))));
 }
 
 }  // namespace sysid::errors

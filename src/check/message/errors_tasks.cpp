@@ -149,7 +149,11 @@ bool among(Words const& all, std::string const& word) {
 std::string place_of_option(std::string const& option, OptionOwner const& owner, Names const& known) {
   bool const inside = owner.name != owner.verb, own = among(owner.verbs, owner.verb);
   if (inside && own) return fmt::format("`{0}` is an option of the task: write `{0} = ...` after the parentheses", option);
+  if (inside && option == "x0") return "remove it: a fit has no start values, its search begins at draws of the prior";
   if (known.empty()) return {};
+  constexpr std::string_view tolerances[] = {"rtol", "reltol", "atol", "abstol"};
+  if (inside && among(tolerances, option) && among(known, "relative"))
+    return fmt::format("write `{}(relative = 1e-8, absolute = 1e-10)`", owner.name);
   auto const kind = words::task_kind(owner.verb);
   bool const has_backend = kind == TaskKind::fit || kind == TaskKind::select;
   if (!inside && has_backend && among(of_backends, option))
@@ -230,8 +234,10 @@ Diagnostic option_range(Span span, std::string const& option, double given, doub
                             : least == 0               ? std::string("not be negative")
                             : least > 0                ? std::string("be positive")
                                                        : std::string("be finite");
-  return about({option}, error("E6005", span, fmt::format("`{}` must {}, but is {}", option, range, given),
-                               "choose a number that satisfies this"));
+  return about({option},
+               error("E6005", span, fmt::format("`{}` must {}, but is {}", option, range, given),
+                     option == "phase" ? fmt::format("a number without a unit is in radians: write `{} [deg]` for degrees", given)
+                                       : "choose a number that satisfies this"));
 }
 
 Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most) {

@@ -12,12 +12,21 @@ namespace sysid {
 namespace {
 
 constexpr std::pair<std::string_view, std::string_view> quotients[] = {
-    {"ms2", "m/s^2"}, {"mss", "m/s^2"}, {"kmh", "km/h"}, {"kph", "km/h"}, {"mps", "m/s"}, {"rps", "rev/s"}, {"fps", "ft/s"},
+    {"ms2", "m/s^2"}, {"mss", "m/s^2"},    {"kmh", "km/h"},   {"kph", "km/h"},  {"mps", "m/s"},
+    {"rps", "rev/s"}, {"fps", "ft/s"},     {"mph", "mile/h"}, {"lpm", "l/min"}, {"bpm", "1/min"},
+    {"dps", "deg/s"}, {"psf", "lbf/ft^2"}, {"cSt", "mm^2/s"},
 };
 
 // In small letters they are lengths.
 constexpr std::pair<std::string_view, std::string_view> molar[] = {
     {"M", "mol/l"}, {"mM", "mmol/l"}, {"uM", "umol/l"}, {"µM", "umol/l"}, {"μM", "umol/l"}, {"nM", "nmol/l"}, {"pM", "pmol/l"}};
+
+// Of which the letters would tell something else.
+constexpr std::pair<std::string_view, std::string_view> other_names[] = {
+    {"lbs", "lb"},      {"lbm", "lb"},         {"revs", "rev"},      {"kp", "kgf"},      {"klbf", "kip"},
+    {"mseconds", "ms"}, {"msec", "ms"},        {"usec", "us"},       {"pct", "percent"}, {"Vrms", "V"},
+    {"dyn", "dyne"},    {"µε", "microstrain"}, {"με", "microstrain"}};
+constexpr std::pair<std::string_view, std::string_view> products[] = {{"mNm", "mN m"}, {"NS", "N s"}};
 
 bool is_common(std::string_view word) {
   return std::find(common_unit_names().begin(), common_unit_names().end(), word) != common_unit_names().end();
@@ -64,6 +73,10 @@ std::optional<std::string> as_product(std::string_view word) {
 std::optional<UnitSlip> unit_slip(std::string_view word) {
   for (auto const& [written, meant] : quotients)
     if (word == written) return UnitSlip{UnitSlip::Kind::quotient, std::string(meant)};
+  for (auto const& [written, meant] : other_names)
+    if (word == written) return UnitSlip{UnitSlip::Kind::key, std::string(meant)};
+  for (auto const& [written, meant] : products)
+    if (word == written) return UnitSlip{UnitSlip::Kind::product, std::string(meant)};
   for (auto const& [written, meant] : molar)
     if (word == written) return UnitSlip{UnitSlip::Kind::molar, std::string(meant)};
   std::size_t const end = word.find_last_not_of("0123456789") + 1;

@@ -95,7 +95,10 @@ class Search {
         unit.dimension = product(now->dimension, factor, power);
         std::set<Mistake> resolved = resolved_by(declared, written(unit.dimension, declared.unit->span));
         if (resolved.size() >= 2 && (!best || resolved.size() > best->resolved.size())) {
-          std::string const kept = with_changed_power(now->text, quotient(unit.dimension, now->dimension));
+          static Dimension const acceleration = unit_atom("g_n").value().dimension;
+          Dimension const change = quotient(unit.dimension, now->dimension);
+          std::string kept = change == acceleration ? with_force_for_mass(now->text) : std::string();
+          if (kept.empty()) kept = with_changed_power(now->text, change);
           best = Blame{declared.name, kept.empty() ? units.words(unit) : kept, std::move(resolved)};
         }
       }

@@ -31,7 +31,7 @@ std::vector<SignalRow> const& signals() {
       {"gaussian", InputGenerator::Kind::gaussian, {{"mean", "input", 0}, {"sd", "input", needed}}, InputRule::zero_order},
       {"sine",
        InputGenerator::Kind::sine,
-       {{"amplitude", "input", needed}, {"frequency", "Hz", needed}, {"phase", "", 0}, {"mean", "input", 0}},
+       {{"amplitude", "input", needed}, {"frequency", "Hz", needed}, {"phase", "rad", 0}, {"mean", "input", 0}},
        InputRule::cubic},
       {"multisine",
        InputGenerator::Kind::multisine,
@@ -98,9 +98,11 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
     } else {
       std::optional<Unit> const unit = place->unit == "input" ? input.unit : unit_of(place->unit);
       bool const is_width = name == "sd" || name == "amplitude";
-      double const least = name == "mean" || name == "value" || name == "phase" ? -1e300 : 0;
-      auto const value =
-          is_width ? reader.width(argument.value, name, unit) : reader.number(argument.value, name, unit, least, 1e300);
+      // 90 is no phase in radians.
+      constexpr double turn = 6.3;
+      double const least = name == "phase" ? -turn : name == "mean" || name == "value" ? -1e300 : 0;
+      auto const value = is_width ? reader.width(argument.value, name, unit)
+                                  : reader.number(argument.value, name, unit, least, name == "phase" ? turn : 1e300);
       if (value) result.arguments[name] = *value;
     }
   }

@@ -1,8 +1,10 @@
 // The text is cut into its names and their powers, one power is changed, and they are written again.
 #include "check/units/changed_power.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -91,6 +93,21 @@ std::string with_changed_power(std::string_view text, Dimension const& factor) {
     }
   }
   return fitting == 1 ? written_again(*names) : std::string();
+}
+
+std::string with_force_for_mass(std::string_view unit) {
+  constexpr std::string_view of_force[] = {"kg cm", "kg mm", "cm kg", "mm kg", "kg/mm", "kg/cm", "kg/cm^2", "kg/mm^2"};
+  auto const is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  for (std::string_view const mass : {"lb", "oz", "kg"}) {
+    if (mass == "kg" && std::find(std::begin(of_force), std::end(of_force), unit) == std::end(of_force)) continue;
+    std::size_t const at = unit.find(mass);
+    if (at == std::string_view::npos || (at > 0 && is_letter(unit[at - 1]))) continue;
+    std::size_t const end = at + mass.size();
+    if (end < unit.size() && is_letter(unit[end])) continue;
+    std::string const force = std::string(mass) + "f";
+    if (unit_atom(force)) return std::string(unit.substr(0, end)) + "f" + std::string(unit.substr(end));
+  }
+  return {};
 }
 
 }  // namespace sysid

@@ -11,4 +11,8 @@ namespace sysid {
 /// whole power, is the factor.
 std::string with_changed_power(std::string_view text, Dimension const& factor);
 
+/// "lbf in" of "lb in": a unit of mass as that of its weight, which engineers mean by it; empty without one. Of kilograms where
+/// no mass is counted so: "kg cm", "kg/mm".
+std::string with_force_for_mass(std::string_view unit);
+
 }  // namespace sysid

@@ -155,11 +155,24 @@ std::string DeclaredUnits::named(Dimension const& dimension, std::vector<std::st
   return text;
 }
 
+std::string DeclaredUnits::by_weight(ast::Expression const& odd, Dimension const& missing) const {
+  static Dimension const acceleration = unit_atom("g_n").value().dimension;
+  if (missing != acceleration) return {};
+  std::vector<std::string> const names = names_in(odd);
+  for (DeclaredUnit const& each : declared_)
+    if (std::find(names.begin(), names.end(), each.name) != names.end())
+      if (std::string const force = with_force_for_mass(each.unit.text); !force.empty())
+        return errors::declare_in(each.name, force);
+  return {};
+}
+
 std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted) const {
   Dimension const& missing = wanted.missing;
   bool const pure = wanted.pure, is_term = wanted.is_term;
   std::vector<std::string> but;
   if (pure && odd != nullptr) but = names_in(*odd);
+  if (odd != nullptr && !pure)
+    if (std::string weight = by_weight(*odd, missing); !weight.empty()) return weight;
   if (odd != nullptr && !pure) {
     // A number in the place of a coefficient: nothing else in the product could carry its unit.
     ast::Expression const* number = bare_factor(*odd);

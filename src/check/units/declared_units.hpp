@@ -63,6 +63,8 @@ class DeclaredUnits {
   std::string frequency_in(ast::Expression const& tree) const;
 
  private:
+  // A pound or a kilogram in place of its weight.
+  std::string by_weight(ast::Expression const& odd, Dimension const& missing) const;
   std::string by_inverse(ast::Expression const& odd, Dimension const& missing) const;
   // The term as it is declared, with another factor; in_text: it is an expression, no declaration; but: names that it must not be.
   /// what: is to be changed, "this" or "this term".

@@ -167,7 +167,7 @@ bool UnitCheck::hint_converted_twice(std::span<UnitOperand const> operands) {
       bool const turns = unit.radian.numerator == 1 && each.value.unit.radian.numerator == 0;
       auto taken = taken_from_product(*each.tree, 1 / unit.scale);
       if (auto cycles = turns && !taken ? taken_from_product(*each.tree, 2 * std::numbers::pi / unit.scale) : std::nullopt) {
-        cycles->rest = "2*pi*" + cycles->rest;
+        cycles->rest = cycles->rest.starts_with("1/") ? "2*pi" + cycles->rest.substr(1) : "2*pi*" + cycles->rest;
         taken = cycles;
       }
       if (taken) {
@@ -262,6 +262,11 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   conflict.help = cure != occasion.cures.end()
                       ? cure->second
                       : declared_.cure(operands[shown].tree, {conflict.wanted, missing_.back(), false, of_a_number, is_term});
+  // [g] is the gram.
+  static Dimension const acceleration = unit_atom("g_n").value().dimension;
+  bool const gram = conflict.wanted == "g" && dimension_of(operands[shown]) == acceleration;
+  if (gram || (conflict.wanted == "mg" && dimension_of(operands[shown]) == acceleration))
+    conflict.help = errors::gram_for_gravity(conflict.wanted);
   // Against other terms of its own sum a term is shown as such, whatever the sum is for.
   bool const among_terms = has_declaration && !declaration_alone && operands[right.front()].tree != nullptr;
   report(errors::units_differ(among_terms ? Occasion{} : occasion, std::move(conflict)));

@@ -42,11 +42,14 @@ Diagnostic unit_of_another_kind(std::string const& file, std::string const& colu
 
 Diagnostic cycles_against_radians(std::string const& column, std::string const& column_unit, std::string const& declared_unit,
                                   Mention mention) {
-  Diagnostic result = error("E4017", mention,
-                            fmt::format("column `{}` is in [{}], but [{}] is needed: one counts cycles, the other radians, so they "
-                                        "differ by a factor of 2 pi",
-                                        column, column_unit, declared_unit),
-                            "declare both in Hz or both in rad/s, and write the factor 2*pi where the model needs it");
+  Diagnostic result =
+      error("E4017", mention,
+            fmt::format("column `{}` is in [{}], but [{}] is needed: one counts cycles, the other radians, so they "
+                        "differ by a factor of 2 pi",
+                        column, column_unit, declared_unit),
+            fmt::format("declare it in the model in [{}], as its numbers are, and write the factor 2*pi there where "
+                        "one is needed",
+                        column_unit));
   result.names = {column};
   return result;
 }
