@@ -1,0 +1,78 @@
+// Factors of a text that convert what a unit converts, and bare numbers beside angles and shares.
+#include "checking.hpp"
+
+using namespace sysid;
+using namespace sysid::test;
+
+namespace {
+
+std::string with(std::string const& statement) {
+  return messages(
+      "model m {\ninput u [N m]\nstate phi [deg]\ninitial phi = 0, phi' = 0\nparameter J [kg m^2] ~ log_uniform(1e-3, 1)\n"
+      "parameter G [N m] ~ log_uniform(0.1, 10)\nparameter loss [percent] ~ uniform(1, 20)\nparameter s [deg] ~ half_normal(sd = "
+      "1)\n"
+      "parameter f [Hz] ~ log_uniform(0.1, 10)\nJ*phi'' + G*sin(phi) = u\nobserve angle [deg] ~ normal(phi, sd = s)\n"
+      "parameter T [s] ~ log_uniform(0.1, 10)\nderive used = loss*f*T\n" +
+      statement + "\n}\n");
+}
+
+}  // namespace
+
+TEST_CASE("a factor of the size of the declared unit converts twice") {
+  for (auto const& [statement, cure] : {std::pair("derive a [deg] = phi*180/pi", "write `phi`"),
+                                        {"derive a [deg] = 57.3*phi", "write `phi`"},
+                                        {"derive a [rpm] = 60*sqrt(G/J)/(2*pi)", "write `sqrt(G/J)`"},
+                                        {"derive a [rpm] = 60*f", "write `2*pi*f`"},
+                                        {"derive a [rpm] = 60/T", "write `2*pi/T`"},
+                                        {"derive a [ms] = 1000*2*pi*sqrt(J/G)", "write `2*pi*sqrt(J/G)`"},
+                                        {"derive a [hp] = G*f/745.7", "write `G*f`"},
+                                        {"derive a = sin(phi*pi/180)", "write `phi`"},
+                                        {"derive a = cos(2*phi/57.2958)", "write `2*phi`"}}) {
+    CAPTURE(statement);
+    std::string const said = with(statement);
+    CHECK(errors_in(said) == 0);
+    CHECK(said.find("warning[E2214]") != std::string::npos);
+    CHECK(said.find("warning[") == said.rfind("warning["));
+    CHECK(said.find(cure) != std::string::npos);
+  }
+  for (char const* const statement : {"derive a [deg] = 2*phi", "derive a [Hz] = sqrt(G/J)/(2*pi)",
+                                      "derive a [ms] = 2*pi*sqrt(J/G)", "derive a [percent] = 50*loss", "derive a [-] = 100*loss",
+                                      "derive a = sin(pi/2 + phi)", "derive a = sin(pi*f*2*pi/180/1 [Hz])"}) {
+    CAPTURE(statement);
+    CHECK(with(statement).find("E2214") == std::string::npos);
+  }
+}
+
+TEST_CASE("a bare number beside degrees is in radians, which is said") {
+  for (auto const& [statement, cure] : {std::pair("derive a = if phi > 30 then 1 else 0", "`30 [deg]` or `30 [rad]`"),
+                                        {"derive a = max(phi - 30, 0)", "`30 [deg]`"},
+                                        {"derive a = clamp(phi, -30, 30)", "`-30 [deg]`"},
+                                        {"derive a = sin(phi - 2*15)", "multiply it by `1 [deg]`"},
+                                        {"derive a = if loss > 5 then 1 else 0", "`5 [percent]` or `5 [-]`"}}) {
+    CAPTURE(statement);
+    std::string const said = with(statement);
+    CHECK(errors_in(said) == 0);
+    CHECK(said.find("warning[E2213]") != std::string::npos);
+    CHECK(said.find(cure) != std::string::npos);
+  }
+  for (char const* const statement :
+       {"derive a = if phi > 0 then 1 else 0", "derive a = phi - pi/2", "derive a = phi - 30 [deg]", "derive a = 1 - loss",
+        "derive a = if loss > 0.05 then 1 else 0", "derive a [deg] = 30", "derive a = 1 + phi/1 [rad]"}) {
+    CAPTURE(statement);
+    CHECK(with(statement).find("E2213") == std::string::npos);
+  }
+}
+
+TEST_CASE("a spread in the unit of another power is refused where the dimension does not tell") {
+  for (auto const& [noise, cure] : {std::pair("variance = s", "write `sd = s`, or `variance = s^2`"),
+                                    {"precision = s", "write `sd = s`, or `precision = 1/s^2`"},
+                                    {"sd = s^2", "write `variance = s^2`"}}) {
+    CAPTURE(noise);
+    std::string const said = with(std::string("observe other [deg] ~ normal(phi, ") + noise + ")");
+    CHECK(errors_in(said) == 1);
+    CHECK(said.find("error[E2205]") != std::string::npos);
+    CHECK(said.find(cure) != std::string::npos);
+  }
+  for (char const* const noise : {"variance = s^2", "precision = 1/s^2", "sd = s", "sd = 0.1", "variance = 0.01"})
+    CHECK(errors_in(with(std::string("observe other [deg] ~ normal(phi, ") + noise + ")")) == 0);
+}
