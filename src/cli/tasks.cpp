@@ -41,7 +41,8 @@ ExecutorKind executor_kind(std::string const& name) {
 
 void add_run_options(CLI::App& verb, TaskOptions& options) {
   add_result_options(verb, options);
-  verb.add_flag("--resume", options.run.resume, "continue after an interruption; keep tasks that are complete");
+  verb.add_flag("--resume", options.run.resume, "continue after an interruption; keep tasks that are complete")
+      ->excludes(verb.get_option("--force"));
   verb.add_option("--lanes", options.run.execution.lanes,
                   "number of simulations in one batch, 0: automatic; results do not depend on it")
       ->type_name("N")

@@ -24,7 +24,7 @@ std::optional<int> TaskChecker::fitted_task(ast::Name const& subject, bool or_se
   }
   std::vector<std::string> known;
   for (ast::Task const* each : all_tasks_)
-    if (fits(*find_task_kind(each->verb.text))) known.push_back(task_name(*each));
+    if (each != &tree_ && fits(*find_task_kind(each->verb.text))) known.push_back(task_name(*each));
   auto const self = std::find(all_tasks_.begin(), all_tasks_.end(), &tree_);
   auto const written = std::find_if(all_tasks_.begin(), all_tasks_.end(),
                                     [&](ast::Task const* each) { return each != &tree_ && task_name(*each) == name; });
