@@ -17,6 +17,17 @@
 namespace sysid {
 namespace {
 
+// `lab/bench.csv` in lab/mount.sysid, which is there for who stands beside the folder: its path from the file.
+std::string from_folder_of_file(DataBlock const& block, std::filesystem::path const& path) {
+  std::string const whole = path.string();
+  std::error_code failed;
+  if (!whole.ends_with(block.path) || whole.size() == block.path.size() || !std::filesystem::is_regular_file(block.path, failed))
+    return {};
+  std::filesystem::path const folder = whole.substr(0, whole.size() - block.path.size());
+  std::filesystem::path const relative = std::filesystem::relative(block.path, folder, failed);
+  return failed ? std::string() : relative.string();
+}
+
 // Says which files of the folder have names like the one wanted.
 Diagnostic unreadable(DataBlock const& block, std::filesystem::path const& path, std::string message) {
   std::vector<std::string> near;
@@ -30,6 +41,8 @@ Diagnostic unreadable(DataBlock const& block, std::filesystem::path const& path,
     help = "`~` is not replaced by your home folder: write the path from `/`, or relative to the folder of the .sysid file";
   else if (block.path.find("://") != std::string::npos)
     help = "only files of this machine are read: download it, and write its path";
+  if (std::string const beside = from_folder_of_file(block, path); !beside.empty())
+    return {Severity::error, "E4018", std::move(message), Label{block.path_span, {}}, {}, help + ": write `" + beside + "`"};
   return {Severity::error, "E4018", std::move(message), Label{block.path_span, {}}, {}, guess.empty() ? help : guess};
 }
 

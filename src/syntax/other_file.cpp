@@ -18,6 +18,8 @@ constexpr Signature signatures[] = {
     {"\x89HDF"sv, "a file of HDF5 or MATLAB (.mat)"},
     {"MATLAB 5.0"sv, "a file of MATLAB (.mat)"},
     {"\x1f\x8b"sv, "a gzip archive"},
+    {"\xff\xfe"sv, "a text in UTF-16: save it in UTF-8"},
+    {"\xfe\xff"sv, "a text in UTF-16: save it in UTF-8"},
     {"%PDF"sv, "a PDF document"},
     {"\x89PNG"sv, "a picture"},
     {"\x7f"

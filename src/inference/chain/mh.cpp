@@ -25,6 +25,7 @@
 namespace sysid::mh {
 namespace {
 
+constexpr double default_variance = 0.1;
 constexpr SettingRow rows[] = {
     {"samples", SettingKind::integer, "25000", 1, 1e9, "", "iterations of each chain, burn-in included"},
     {"burn_in", SettingKind::integer, "5000", 0, 1e9, "", "first iterations, discarded; the proposal adapts during them"},
@@ -301,7 +302,11 @@ void add_proposals(Target const& target, Plan const& plan, State const& state, F
 
 std::span<SettingRow const> settings() { return rows; }
 
-std::string refuse(Settings const& settings) { return refuse_kept(settings); }
+std::string refuse(Settings const& settings) {
+  if (settings.word("proposal") != "spherical" && settings.real("variance") != default_variance)
+    return "`variance` is that of `proposal = spherical`, the others adapt theirs";
+  return refuse_kept(settings);
+}
 
 FitResult run(Target const& target, Settings const& settings, RunContext& context) {
   FitResult result;
