@@ -32,7 +32,7 @@ bool begins_with_verb(Gap const& gap) {
   return gap.statement.size() > verb && words::contains(words::verbs, gap.statement[verb].text);
 }
 
-constexpr std::array<Situation, 40> situations{{
+constexpr std::array<Situation, 41> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
      "a parameter has a prior or a value: `parameter m [kg] ~ log_uniform(0.1, 10)`, `parameter m [kg] = 1`"},
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
@@ -116,6 +116,11 @@ constexpr std::array<Situation, 40> situations{{
     {[](Gap const& g) { return g.wanted == wanted::end_of_statement && found(g, ",") && g.begins_with("parameter"); },
      "declare each parameter in a statement of its own, without a start value: the fit chooses the start"},
     {[](Gap const& g) { return g.wanted == wanted::end_of_statement && found(g, ","); }, "begin a new line, or write `;`"},
+    {[](Gap const& g) {
+       bool const compares = g.find("<") < g.statement.size() || g.find(">") < g.statement.size();
+       return g.wanted == wanted::equals && g.found == nullptr && compares;
+     },
+     "bounds are arguments of a prior: `parameter a ~ normal(0, sd = 1, lower = 0)`; an equation has two sides: `left = right`"},
     {[](Gap const& g) { return g.wanted == wanted::equals && g.found == nullptr; },
      "an equation has two sides: `left = right`; a definition is written `let name = value`"},
     {[](Gap const& g) { return g.wanted == wanted::opening_brace && g.begins_with("model"); },

@@ -266,6 +266,10 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
                        gap.text(gap.at + 1, gap.statement.size()));
   if (gap.wanted == wanted::preposition_or_end && (gap.before()->is("model") || gap.before()->is("data")) && is_word(gap.found))
     return fmt::format("remove `{}`: write `{} {}`", gap.before()->text, gap.statement[verb].text, found.text);
+  if (gap.wanted == wanted::preposition_or_end && found.is(".") && gap.statement[verb].is("predict") && is_word(gap.next()))
+    return fmt::format("remove `{}`: a prediction is made from all draws of a fit", gap.text(gap.at, gap.at + 2));
+  if (gap.wanted == wanted::preposition_or_end && found.is(",") && gap.statement[verb].is("select"))
+    return "the models are listed in a block of their own, `candidates NAME { ... }`, each in a line: `select NAME to DATA`";
   if (gap.wanted == wanted::preposition_or_end && (found.is(".") || found.is(",")) && gap.next() != nullptr)
     return fmt::format("a model is fitted `to` data, a fit predicts `on` data: `{} {} {} {}`", gap.statement[verb].text,
                        gap.statement[verb].is("predict") ? "FIT" : "MODEL", gap.statement[verb].is("predict") ? "on" : "to",

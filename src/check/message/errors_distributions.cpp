@@ -94,7 +94,8 @@ std::string decimal_comma(ast::Call const& call, ast::Argument const& last) {
     std::string const whole = digits_of(left), fraction = right.name ? std::string() : digits_of(right);
     if (whole.empty() || fraction.empty() || left.span.end + 1 != right.span.begin) continue;
     std::string const decimal = fmt::format("write the number with a decimal point: `{}.{}`", whole, fraction);
-    return fraction.size() == 3 ? fmt::format("digits are not grouped: write `{}{}`; {}", whole, fraction, decimal) : decimal;
+    return fraction.size() == 3 && whole != "0" ? fmt::format("digits are not grouped: write `{}{}`; {}", whole, fraction, decimal)
+                                                : decimal;
   }
   return {};
 }

@@ -264,6 +264,9 @@ Diagnostic backend_missing(ast::Task const& task, Names const& known) {
 }
 
 Diagnostic unknown_backend(ast::Name const& name, Names const& known) {
+  if (name.text == "values" || name.text == "fix" || name.text == "fixed")
+    return about({name.text}, error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
+                                    "remove it, and give the parameter its value in the model: `parameter m [kg] = 1`"));
   return about({name.text}, error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
                                   guess_or(backend_synonyms, name.text, known, fmt::format("back ends: {}", quoted(known)))));
 }
