@@ -220,7 +220,8 @@ class Failure {
   Diagnostic unknown_data_statement() const {
     Diagnostic diagnostic = errors::unknown_statement(found(), "a data block", words::data_statements);
     if (found().is("hold")) diagnostic.help = "the rule comes after the column of its input: `input x = force [N] hold linear`";
-    if (has("..")) diagnostic.help = fmt::format("a range of rows has a name: `split train = {}`", gap().rest());
+    if (has(".."))
+      diagnostic.help = fmt::format("a range of rows has a name: `split {}{}`", has("=") ? "" : "train = ", gap().rest());
     if (std::string place = errors::place_of_statement(found().text, has("~")); !place.empty()) diagnostic.help = std::move(place);
     return diagnostic;
   }

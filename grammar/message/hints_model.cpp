@@ -308,12 +308,8 @@ std::string in_expression(Gap const& gap) {
     return fmt::format("a power of ten is written `{}e{}`", left->text,
                        gap.text(gap.at + 3, std::min(gap.at + 4, gap.statement.size())));
   if (side_by_side && right->is("end")) return "remove `end`";
-  // The number of an equation, before it or behind it.
-  bool const first_number = gap.at == 3 && gap.statement[0].is("(") && gap.statement[1].kind == TokenKind::number && left->is(")");
-  bool const last_number = right->is("(") && gap.at + 3 == gap.statement.size() &&
-                           gap.statement[gap.at + 1].kind == TokenKind::number && gap.find("=") < gap.at;
-  if (side_by_side && (first_number || last_number) && !words::contains(words::model_statements, gap.statement[0].text))
-    return fmt::format("an equation has no number: remove `{}`", first_number ? gap.text(0, 3) : gap.rest());
+  bool const numbered = gap.at == 3 && gap.statement[0].is("(") && gap.statement[1].kind == TokenKind::number && left->is(")");
+  if (side_by_side && numbered) return fmt::format("an equation has no number: remove `{}`", gap.text(0, 3));
   if (side_by_side && left->is("return")) return "remove `return`";
   if (side_by_side && (left->is("for") || left->is("while")) && gap.begins_with(left->text))
     return "there are no loops: declare a vector, `state q(3)`, and write its equation once";

@@ -247,15 +247,26 @@ class DistributionChecker {
     return power.empty() ? written : fmt::format("{}, or `{} = {}`", written, given.spelling->name, power);
   }
 
+  /// Of `sigma^2`, whose unit is a pure number where that of sigma is.
+  Unit unit_with_power(ast::Expression const& tree, Unit const& otherwise) const {
+    auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+    auto const* exponent = binary == nullptr ? nullptr : std::get_if<ast::Number>(&(*binary)->right->node);
+    if (exponent == nullptr || exponent->unit || (*binary)->symbol != "^" || exponent->value != 2) return otherwise;
+    Diagnostics unsaid;
+    auto const base = scope_.with(unsaid).expression(*(*binary)->left);
+    return base && base->kind == Typed::Kind::known ? power(base->unit, {2, 1}) : otherwise;
+  }
+
   /// The same where the dimension does not tell: `variance = sigma` of a sigma in [deg].
   bool of_other_power(Given const& given, ArgumentRow const& row, Typed const& value) {
     int const wanted = given.spelling->unit_power;
     if (!variate_.unit || !variate_.unit->dimensionless() || variate_.unit->scale == 1 || value.kind != Typed::Kind::known)
       return false;
     if (wanted == 0 && given.spelling->name != "degrees_of_freedom") return false;
+    Unit const given_unit = unit_with_power(*given.value, value.unit);
     for (int const found : {1, 2, -2}) {
       Unit const unit = power(*variate_.unit, {found, 1});
-      if (found == wanted || std::fabs(value.unit.scale / unit.scale - 1) > 1e-9 || value.unit.radian != unit.radian) continue;
+      if (found == wanted || std::fabs(given_unit.scale / unit.scale - 1) > 1e-9 || given_unit.radian != unit.radian) continue;
       auto const in_words = [&](int exponent) {
         bool const atom = variate_.unit->text.find_first_of(" */^") == std::string::npos;
         std::string const base = atom ? variate_.unit->text : "(" + variate_.unit->text + ")";

@@ -159,7 +159,10 @@ std::string of_quantity(ast::Call const& call) {
       "multiplication is written with *: `{0}*(...)`; a quantity is written without its time, `{0}`, and an initial value as "
       "`initial {0} = ...`",
       name);
-  return call.arguments.size() != 1 || is_bare_number(call.arguments.front().value)
+  // `... = x (2)`: more often the number of an equation than a factor.
+  if (call.arguments.size() == 1 && is_bare_number(call.arguments.front().value))
+    return fmt::format("remove `({})` if it is the number of the equation; {}", unparse(call.arguments.front().value), general);
+  return call.arguments.size() != 1
              ? general
              : fmt::format("multiplication is written with *: `{0}*({1})`; a quantity is written without its time, `{0}`", name,
                            unparse(call.arguments.front().value));

@@ -214,7 +214,7 @@ std::string declare_in(std::string const& name, std::string const& unit) {
   return fmt::format("declare `{}` in [{}]", without_index(name), unit);
 }
 std::string number_by_quotient(std::string const& written, double number, std::string const& unit) {
-  return fmt::format("the unit of `{}` belongs to the last number alone: write `{:.10g} {}`", written, number, unit);
+  return fmt::format("the unit of `{}` belongs to the last number alone: write `{:.10g} [{}]`", written, number, unit);
 }
 std::string gram_for_gravity(std::string const& unit) {
   return fmt::format("`[{0}]` is a mass: an acceleration in units of that of gravity is in `[{0}_n]`", unit);

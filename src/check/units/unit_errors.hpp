@@ -74,7 +74,7 @@ std::string multiply_by(std::string_view what, std::string const& kind, std::str
 std::string divide_by(std::string_view what, std::string const& kind, std::string const& names);
 /// Elements of a vector share a declaration: `k[2]` is declared as `k`.
 std::string declare_in(std::string const& name, std::string const& unit);
-/// Help for `1/50 [s]`, where a time of 1/50 is meant; unit: with its brackets.
+/// Help for `1/50 [s]`, where a time of 1/50 is meant.
 std::string number_by_quotient(std::string const& written, double number, std::string const& unit);
 /// unit: "g" or "mg", where an acceleration is meant.
 std::string gram_for_gravity(std::string const& unit);
