@@ -91,8 +91,8 @@ Diagnostic time_not_increasing(Cell const& cell, double before, double now, std:
   return error("E4014", mention,
                fmt::format("{}: time does not increase, {}{} comes after {}{}", place(cell), now, unit_after_number(unit), before,
                            unit_after_number(unit)),
-               now == before ? "if the row repeats the one before it, remove it; if the sampling was regular and the times were rounded, "
-                               "write `rate` or `step` in place of `time`"
+               now == before ? "if the row repeats the one before it, remove it; if the sampling was regular and the times were "
+                               "rounded, write `rate` or `step` in place of `time`"
                              : "sort the rows and remove repeated ones; if the file contains two runs, divide it into two files");
 }
 
