@@ -146,10 +146,6 @@ constexpr std::array<std::string_view, 6> start_words{"start", "init", "initval"
 constexpr std::array<std::string_view, 6> truncations{"truncated", "truncate",        "trunc",
                                                       "truncnorm", "truncatednormal", "truncated_normal"};
 
-}  // namespace
-
-namespace {
-
 /// How a distribution of another name is written here; empty where a guess is as good.
 std::string other_distribution(std::string const& small) {
   if (std::find(truncations.begin(), truncations.end(), small) != truncations.end())
