@@ -9,6 +9,7 @@
 #include "app/fit/exchanged_columns.hpp"
 #include "app/fit/experiment_checks.hpp"
 #include "app/fit/hierarchies.hpp"
+#include "app/fit/particle_comparison.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/written_model.hpp"
 #include "core/system/lazily.hpp"
@@ -282,6 +283,7 @@ constexpr FitCheckRow rows[] = {
     {"shared_parameters", false, &without_shared_parameters, &check_shared_parameters},
     {"solver_accuracy", false, &without_solver, &solver_accuracy},
     {"linearisation", false, &without_linearisation, &linearisation, true},
+    {"against_particles", false, &without_particle_comparison, &compare_with_particles, true, false, true},
     {"particles", false, &always, &particles, true, true},
     {"disturbance_terms", false, &without_terms, &disturbance_terms, true},
     {"finite_sums", false, &without_finite_sums, &functions},
@@ -293,14 +295,20 @@ constexpr FitCheckRow rows[] = {
     {"priors", false, &always, &priors},
 };
 
+bool concerns(FitCheckRow const& row, FinishedFit const& fit) {
+  Model const& model = fit.likelihood.model();
+  bool const by_particles = fit.what.filter == FilterRule::particle;
+  if ((row.of_filters && !model.filtered()) || (row.of_particles && !by_particles)) return false;
+  return !row.of_moments || (!by_particles && find_nonlinear_in_states(model));
+}
+
 }  // namespace
 
 std::span<FitCheckRow const> fit_check_rows() { return rows; }
 
 void run_fit_checks(FinishedFit& fit) {
   for (FitCheckRow const& row : rows) {
-    if (row.of_filters && !fit.likelihood.model().filtered()) continue;
-    if (row.of_particles && fit.what.filter != FilterRule::particle) continue;
+    if (!concerns(row, fit)) continue;
     std::string const skipped = fit.result.interrupted && !row.of_interrupted ? "the fit was interrupted" : row.inapplicable(fit);
     fit.report.checks.push_back({std::string(row.name), skipped});
     if (!skipped.empty() || row.run == nullptr) continue;

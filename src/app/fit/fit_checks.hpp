@@ -42,6 +42,8 @@ struct FitCheckRow {
   /// Of models with random states alone, and of fits by particles alone: no other fit mentions it.
   bool of_filters = false;
   bool of_particles = false;
+  /// Of filters that describe what is random by mean and covariance where this is not exact: no other fit mentions it.
+  bool of_moments = false;
 };
 
 /// In the order in which their findings are reported.

@@ -16,6 +16,8 @@
 
 namespace sysid {
 
+class ParticleTarget;
+
 /// The fitted rows of one experiment.
 struct FittedRows {
   Prediction prediction;
@@ -46,6 +48,11 @@ class FitLikelihood {
   /// The same with another filter of random states; null where none has one.
   virtual std::unique_ptr<Target> with_filter(FilterRule, std::vector<Experiment>, SolverSettings const&,
                                               ExecutionOptions const&) const {
+    return nullptr;
+  }
+  /// Estimates of the likelihood of these experiments by particles; null where there are none.
+  virtual std::shared_ptr<ParticleTarget const> by_particles(std::vector<Experiment>, SolverSettings const&,
+                                                             ExecutionOptions const&) const {
     return nullptr;
   }
   /// Log densities of the samples of these experiments that are scored, one series for each experiment and channel, with these

@@ -74,6 +74,12 @@ class IndependentLikelihood : public FitLikelihood {
                            execution);
   }
 
+  std::shared_ptr<ParticleTarget const> by_particles(std::vector<Experiment> experiments, SolverSettings const& solver,
+                                                     ExecutionOptions const& execution) const override {
+    return std::make_shared<ParticleTarget const>(particle_model(model(), solver.method), space_, std::move(experiments),
+                                                  fit_target_options(session_, what_, solver, execution));
+  }
+
   std::vector<std::vector<double>> log_densities(std::vector<Experiment> const& experiments, SolverSettings const& solver,
                                                  std::vector<double> const& sampled) const override {
     std::vector<std::vector<double>> all;

@@ -309,7 +309,7 @@ Findings linearisation_findings(SolverCheck const& check) {
       {FindingCode::linearisation_matters, severe ? Severity::error : Severity::warning, std::move(names),
        fmt::format("the linearisation of the filter changes the result: with `filter = unscented`, {}", what_happens(check, false)),
        "fit with `filter = unscented`, which does not linearise; if the result then still depends on the filter, the "
-       "disturbance is too large for a filter that describes the states by mean and covariance"}};
+       "disturbance is too large for a filter that describes the states by mean and covariance: use `filter = particle`"}};
 }
 
 SolverSettings fine_enough(SolverSettings const& solver, double move) {

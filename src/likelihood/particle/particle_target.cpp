@@ -55,6 +55,13 @@ std::unique_ptr<ParticleTarget> ParticleTarget::with_numbers(ParticleNumbers num
   return std::unique_ptr<ParticleTarget>(new ParticleTarget(*this, other));
 }
 
+double ParticleTarget::work() const {
+  double total = 0;
+  for (Simulator const& each : *simulators_)
+    total += work_per_sample(each.program(), each.schedule()) * each.schedule().last_summed();
+  return total;
+}
+
 ParticleFilter ParticleTarget::filter(int experiment, int particles) const {
   return {*model_, (*simulators_)[static_cast<std::size_t>(experiment)], particles};
 }

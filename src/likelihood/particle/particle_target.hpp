@@ -82,6 +82,8 @@ class ParticleTarget : public Target {
   /// Particles with which the log of an estimate at theta [P x 1] has about this sd, found from `repeats` estimates with each of a
   /// few numbers of particles; at most `most`.
   ParticleNeed needed(ConstLanes theta, StreamKey key, double sd = 1, int repeats = 32, int most = 1 << 16) const;
+  /// Instructions that one particle takes along all experiments, roughly.
+  double work() const;
   /// The same target with another number of particles.
   std::unique_ptr<ParticleTarget> with_particles(int particles) const;
 

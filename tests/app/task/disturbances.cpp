@@ -24,6 +24,18 @@ bool was_found(json const& summary, std::string const& code) {
   return false;
 }
 
+std::string cure_of_filter(json const& summary) {
+  for (json const& each : summary.at("findings"))
+    if (each.at("code") == "linearisation_matters") return each.at("help");
+  return {};
+}
+
+json check_record(json const& summary, std::string const& name) {
+  for (json const& each : summary.at("checks"))
+    if (each.at("name") == name) return each;
+  return {};
+}
+
 /// x' = -a x^3 + w, white noise of intensity q, sampled at 4 Hz.
 std::string sampled_well(double a, double q, std::uint64_t seed, double noise = 0.3) {
   Stream stream({seed, Purpose::test});
@@ -137,6 +149,78 @@ TEST_CASE("a fit says where the linearisation of its filter decides the result, 
   CaseRun const weak(with(extended, "normal(x, sd = 0.3)", "normal(x, sd = 0.003)"),
                      {{"d.csv", sampled_well(0.5, 0.02, 3, 0.003)}});
   CHECK_FALSE(was_found(weak.summary("post"), "linearisation_matters"));
+}
+
+// The sensor turns back where the state is low, and what is measured there says nothing of its sign.
+TEST_CASE("particles find that no filter by mean and covariance suits a sensor that is bent within the spread of the state") {
+  Stream stream({1, Purpose::test});
+  std::string record = "t,m\n";
+  double x = stream.normal();
+  for (int i = 0; i < 60; ++i) {
+    x = 0.8 * x + 0.6 * stream.normal();
+    record += fmt::format("{},{}\n", i, x + 0.5 * x * x + 0.15 * stream.normal());
+  }
+  std::string const text = R"(
+model bent {
+  time discrete 1 [s]
+  state x
+  initial x ~ normal(0, sd = 1)
+  parameter s ~ log_normal(median = 0.15, sd = 0.2)
+  disturbance w ~ normal(0, sd = 0.6)
+  x = 0.8*lag(x, 1) + w
+  observe m ~ normal(x + 0.5*x^2, sd = s)
+}
+data d { file "d.csv"; time t [s]; measure m = m }
+extended = fit bent to d with map, seed = 1
+unscented = fit bent to d with map, filter = unscented, seed = 1
+)";
+  CaseRun const run(text, {{"d.csv", record}});
+  for (char const* task : {"extended", "unscented"}) {
+    CAPTURE(task);
+    CHECK(was_found(run.summary(task), "linearisation_matters"));
+    CHECK(cure_of_filter(run.summary(task)).starts_with("fit with `mh` and `filter = particle`"));
+  }
+}
+
+// The gain of the noise has the mean 0, so that both filters see none of it.
+TEST_CASE("particles find what a disturbance does that a random state multiplies") {
+  Stream stream({1, Purpose::test});
+  std::string record = "t,m\n";
+  double v = stream.normal(), x = 0;
+  for (int i = 0; i < 60; ++i) {
+    double const before = v;
+    v = 0.8 * v + 0.6 * stream.normal();
+    x = 0.5 * x + before * stream.normal();
+    record += fmt::format("{},{}\n", i, x + 0.3 * stream.normal());
+  }
+  std::string const text = R"(
+model volatile {
+  time discrete 1 [s]
+  state v, x
+  initial v ~ normal(0, sd = 1), x = 0
+  parameter a ~ normal(0.5, sd = 0.1)
+  disturbance p ~ normal(0, sd = 0.6)
+  disturbance q ~ normal(0, sd = 1)
+  v = 0.8*lag(v, 1) + p
+  x = a*lag(x, 1) + lag(v, 1)*q
+  observe m ~ normal(x, sd = 0.3)
+}
+data d { file "d.csv"; time t [s]; measure m = m }
+post = fit volatile to d with map, filter = unscented, seed = 1
+)";
+  CaseRun const run(text, {{"d.csv", record}});
+  CHECK(was_found(run.summary("post"), "linearisation_matters"));
+}
+
+TEST_CASE("particles agree with the filter of a spring that hardens a little, and are not asked where it is exact") {
+  std::string const constants = with(without(shaken, "  parameter m [kg] ~ log_uniform(0.1, 10)\n"), "  m*y''", "  1 [kg]*y''");
+  std::string const task = "post = fit shaken to bench.train with map, seed = 1\n";
+  std::string const few = with(constants, "rows 1..300", "rows 1..60");
+  CaseRun const hardening(with(few, "k*y = x", "k*y + 1e6 [N/m^3]*y^3 = x") + task, {{"b.csv", shaken_record(5, 0.05, 600, 1e6)}});
+  CHECK(check_record(hardening.summary("post"), "against_particles").at("ran") == true);
+  CHECK_FALSE(was_found(hardening.summary("post"), "linearisation_matters"));
+  CaseRun const linear(few + task, {{"b.csv", shaken_record(5, 0.05, 600)}});
+  CHECK(check_record(linear.summary("post"), "against_particles").is_null());
 }
 
 TEST_CASE("an unmeasured force is estimated, and without it the parameters are surer than they may be") {
