@@ -21,8 +21,9 @@ namespace {
 
 constexpr int compared_places = 4, compared_estimates = 16;
 constexpr int fewest_compared = 64, most_compared = 8192;  // particles
-constexpr int fewest_rows = 40;                            // of an experiment
-constexpr double wanted_sd = 0.8;                          // of the log of an estimate
+constexpr int most_again = 2;
+constexpr int fewest_rows = 40;    // of an experiment
+constexpr double wanted_sd = 0.8;  // of the log of an estimate
 /// Instructions of all estimates, of one lane: from half a second to some seconds, as many particles along the whole record as ten
 /// for each draw. The filter that the draws were made with costs far more.
 constexpr double least_affordable = 1e9, most_affordable = 2e10, particles_per_draw = 10;
@@ -75,6 +76,12 @@ class ByParticles {
     }
     FilterRule const filter = fit_.what.filter;
     FilterComparison found = with(solver_, filter);
+    // Other places need more particles than the first: the same work on half of the rows.
+    for (int again = 0; again < most_again && found.holds() && !found.known() && rows_ >= 2 * fewest_rows; ++again) {
+      rows_ /= 2;
+      particles_ = std::min(2 * particles_, most_compared);
+      found = with(solver_, filter);
+    }
     bool const may_be_finer = fit_.likelihood.model().integrated() && !solver_.as_model && solver_.finer().within_limits();
     if (!found.holds() && may_be_finer) {
       FilterComparison const coarse = std::move(found);
