@@ -57,7 +57,10 @@ double FilterOffset::least() const { return known ? value - sure_errors * error 
 
 /// Of a log-normal estimate of that sd, the log of the mean is half the variance above the middle, and a few estimates show little
 /// of it; four times as much, and as many sds as no estimate lies away.
-double FilterOffset::most() const { return known ? value + sure_errors * error : value + 2 * sd * sd + rarely_exceeded * sd; }
+double FilterOffset::most() const {
+  if (!std::isfinite(sd)) return infinity;
+  return known ? value + sure_errors * error : value + 2 * sd * sd + rarely_exceeded * sd;
+}
 
 FilterOffset filter_offset(std::span<double const> estimates, double filter) {
   double const middle = log_of_mean(estimates);
