@@ -10,18 +10,18 @@ namespace sysid {
 namespace {
 
 constexpr int spacing = 8, per_octave = 8;
-constexpr double clear_lead = 20;  // of z^2: twice the logarithm of a likelihood ratio
-constexpr int most_waited = 100;   // rows
+constexpr double clear_lead = 20;     // of z^2: twice the logarithm of a likelihood ratio
+constexpr int most_waited = 100;      // rows
+constexpr double clearly_larger = 8;  // twice a logarithm of a likelihood ratio: of innovations that are larger than expected
 
-/// Whether a row is still kept at an age: the older, the wider apart.
+}  // namespace
+
 bool is_kept(std::int64_t row, std::int64_t age, int window) {
   if (age > window) return false;
   std::int64_t apart = spacing;
   while (age > apart * per_octave) apart *= 2;
   return row % apart == 0;
 }
-
-}  // namespace
 
 int most_candidates(int window) {
   // A row that is kept is looked at before the next is: of ages 0 to 64, then four in each octave.
@@ -57,6 +57,8 @@ void ChangeDetector::move(double const* transition) {
 void ChangeDetector::observe(Innovated const& sample) {
   std::vector<double> shift(static_cast<std::size_t>(parameters_));
   for (Candidate& each : candidates_) {
+    each.squares += sample.innovation * sample.innovation / sample.variance;
+    each.samples += 1;
     std::fill(shift.begin(), shift.end(), 0.0);
     for (int k = 0; k < size_; ++k)
       for (int j = 0; j < parameters_; ++j)
@@ -72,8 +74,34 @@ void ChangeDetector::observe(Innovated const& sample) {
   }
 }
 
+void ChangeDetector::set_back(std::span<double const> gain) {
+  for (Candidate& each : candidates_) {
+    // Of x = m + G (theta - mu) the error d of x becomes d + G (e - d'), where d' was that of theta and e is the whole jump.
+    for (int i = 0; i < states_; ++i)
+      for (int j = 0; j < parameters_; ++j)
+        for (int l = 0; l < parameters_; ++l) {
+          double const error = each.errors[static_cast<std::size_t>((states_ + l) * parameters_ + j)];
+          each.errors[static_cast<std::size_t>(i * parameters_ + j)] +=
+              gain[static_cast<std::size_t>(i * parameters_ + l)] * ((l == j ? 1 : 0) - error);
+        }
+    for (int l = 0; l < parameters_; ++l)
+      for (int j = 0; j < parameters_; ++j) each.errors[static_cast<std::size_t>((states_ + l) * parameters_ + j)] = l == j ? 1 : 0;
+    std::ranges::fill(each.information, 0.0);
+    std::ranges::fill(each.score, 0.0);
+    each.squares = each.samples = 0;
+  }
+}
+
+double ChangeDetector::against_threshold(Candidate const& candidate, double statistic) const {
+  if (candidate.samples < 2) return std::fabs(statistic);
+  double const left = (candidate.squares - statistic * statistic) / (candidate.samples - 1);
+  bool const larger = left > 1 && candidate.samples * (left - 1 - std::log(left)) > clearly_larger;
+  return larger ? std::fabs(statistic) / std::sqrt(left) : std::fabs(statistic);
+}
+
 std::optional<DetectedJump> ChangeDetector::detect() {
   Candidate const* found = nullptr;
+  explained_ = 0;
   DetectedJump best;
   std::vector<double> largest(static_cast<std::size_t>(parameters_));
   for (Candidate const& each : candidates_)
@@ -83,7 +111,9 @@ std::optional<DetectedJump> ChangeDetector::detect() {
       if (!(information * scales_[p] * scales_[p] > 25)) continue;
       double const z = each.score[p] / std::sqrt(information);
       if (std::fabs(z) > std::fabs(largest[p])) largest[p] = z;
+      explained_ = std::max(explained_, z * z);
       if (std::fabs(z) <= threshold_ || std::fabs(z) <= std::fabs(best.statistic)) continue;
+      if (against_threshold(each, z) <= threshold_) continue;
       found = &each;
       best.parameter = j;
       best.statistic = z;

@@ -34,6 +34,9 @@ struct DetectedJump {
 /// where M is the most pairs of a row and a parameter there can be: by the union bound the probability of an alarm at a row without
 /// a jump is at most `rate`. The first rows after a jump may be explained by several parameters: an alarm waits until the largest
 /// z^2 leads that of any other parameter by 20, a likelihood ratio of e^10, but no longer than 100 rows.
+///
+/// A jump leaves innovations of the size expected behind it. Where those after r stay clearly larger, as where a sensor has become
+/// noisier, z is divided by their rms before it is compared with the quantile, as in a t-test.
 class ChangeDetector {
  public:
   /// states: before the `parameters` among the entries. window: the oldest row looked back for.
@@ -51,18 +54,28 @@ class ChangeDetector {
   /// From this row on a jump may have come. means, variances: of the parameters here, [parameters].
   void keep(std::int64_t row, std::span<double const> means, std::span<double const> variances);
   void forget() { candidates_.clear(), waited_ = 0; }
+  /// The parameters of the filter were set back to what they were before all rows that are kept, its states along with them by the
+  /// regression of states on parameters: gain, [states x parameters] by rows. What samples said so far is dropped.
+  void set_back(std::span<double const> gain);
+  /// The largest z^2 of the last call of `detect`, 0 before the first.
+  double explained() const { return explained_; }
 
  private:
+  struct Candidate;
+  double against_threshold(Candidate const& candidate, double statistic) const;
+
   struct Candidate {
     std::int64_t row = 0;
     std::vector<double> errors;                                // [size x parameters]: d
     std::vector<double> information, score, means, variances;  // [parameters]: J, b
+    double squares = 0, samples = 0;                           // sum of e^2/S, and how many
   };
 
   int states_, parameters_, size_;
   int window_;
   int waited_ = 0;  // rows since the threshold was exceeded
   double threshold_;
+  double explained_ = 0;
   std::vector<double> scales_;
   std::vector<Candidate> candidates_;
   std::vector<double> scratch_;
@@ -70,5 +83,8 @@ class ChangeDetector {
 
 /// The most rows that are kept at a time.
 int most_candidates(int window);
+
+/// Whether a row is still kept at an age: the older, the wider apart.
+bool is_kept(std::int64_t row, std::int64_t age, int window);
 
 }  // namespace sysid

@@ -34,8 +34,9 @@ class TrackingWriter {
         result_.covariance.push_back(node.operation == Operation::leaf ? node.index : -1);
       }
     source_.initial.clear();
-    source_.parameters = result_.tracked + result_.moments;
-    for (int m = 0; m < result_.moments; ++m) source_.initial.push_back(graph_.leaf(LeafKind::parameter, result_.tracked + m));
+    int const before = result_.tracked + static_cast<int>(channels_.size());
+    source_.parameters = before + result_.moments;
+    for (int m = 0; m < result_.moments; ++m) source_.initial.push_back(graph_.leaf(LeafKind::parameter, before + m));
     add_transition();
     add_channels(moments.channels);
     add_records(moments.channels);
@@ -82,7 +83,7 @@ class TrackingWriter {
     SimulationSource& source = source_;
     source.integrator = method;
     source.map = !model_.integrated();
-    source.parameters = result_.tracked;
+    source.parameters = result_.tracked + static_cast<int>(model_.channels.size());
     source.inputs = static_cast<int>(model_.inputs.size());
     for (State const& state : model_.states) source.derivative.push_back(put(state.derivative));
     for (int j = 0; j < result_.tracked; ++j) {
@@ -92,7 +93,8 @@ class TrackingWriter {
     source.initial.assign(source.derivative.size(), graph_.constant(0));
     for (Channel const& channel : model_.channels) {
       NodeId const sd = put(channel.noise.arguments[1]);
-      channels_.push_back({put(channel.noise.arguments[0]), graph_.multiply(sd, sd)});
+      NodeId const factor = graph_.leaf(LeafKind::parameter, result_.tracked + static_cast<int>(channels_.size()));
+      channels_.push_back({put(channel.noise.arguments[0]), graph_.multiply(graph_.multiply(sd, sd), factor)});
     }
     for (Disturbance const& each : model_.disturbances) random_.noises.push_back({put(each.intensity), each.held});
     for (int j = 0; j < result_.tracked; ++j) random_.noises.push_back({graph_.leaf(LeafKind::parameter, j), false});

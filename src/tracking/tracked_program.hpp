@@ -23,7 +23,8 @@ struct TrackedParameter {
 
 /// Vectors of `size` are the states of the model, then the tracked parameters on their unbounded scales.
 struct TrackedProgram {
-  /// Parameters: the intensities of the random walks [tracked]; the moments at the first sample [moments].
+  /// Parameters: the intensities of the random walks [tracked]; what the noise variance of each channel is multiplied by
+  /// [channels]; the moments at the first sample [moments].
   std::shared_ptr<SimulationProgram const> program;
   Kernel values;  // unbounded [tracked] -> SI values [tracked], then their slopes [tracked]
   int states = 0, tracked = 0;

@@ -30,10 +30,13 @@ std::vector<double> moments_of(TrackedProgram const& program, StatePrior const& 
   return moments;
 }
 
-LaneArray parameters_of(TrackedProgram const& program, std::span<double const> intensities, std::span<double const> moments) {
-  LaneArray all(program.tracked + program.moments, 1);
+LaneArray parameters_of(TrackedProgram const& program, std::span<double const> intensities, std::span<double const> moments,
+                        std::span<double const> factors) {
+  int const channels = static_cast<int>(program.channels.size()), before = program.tracked + channels;
+  LaneArray all(before + program.moments, 1);
   for (int j = 0; j < program.tracked; ++j) all(j, 0) = intensities.empty() ? 0 : intensities[static_cast<std::size_t>(j)];
-  for (int m = 0; m < program.moments; ++m) all(program.tracked + m, 0) = moments[static_cast<std::size_t>(m)];
+  for (int c = 0; c < channels; ++c) all(program.tracked + c, 0) = factors.empty() ? 1 : factors[static_cast<std::size_t>(c)];
+  for (int m = 0; m < program.moments; ++m) all(before + m, 0) = moments[static_cast<std::size_t>(m)];
   return all;
 }
 
@@ -53,7 +56,7 @@ UserError diverged(Experiment const& experiment, std::int64_t row) {
                     fmt::format("the filter has no finite values at row {} of {}", row, experiment.name),
                     std::nullopt,
                     {},
-                    "the model diverges on these rows: check the record there, use a smaller --drift, or fit the model again"});
+                    "the model diverges on these rows: check the record there, or fit the model again"});
 }
 
 }  // namespace sysid

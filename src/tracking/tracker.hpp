@@ -10,6 +10,7 @@
 #include "data/experiment.hpp"
 #include "simulate/simulator.hpp"
 #include "tracking/change_detector.hpp"
+#include "tracking/noise_watch.hpp"
 #include "tracking/tracked_program.hpp"
 
 namespace sysid {
@@ -37,6 +38,11 @@ struct TrackingOptions {
   /// Samples too far from their prediction for any change of a parameter are left out. Not where predictions read measured samples:
   /// one that is left out would be missing in those of later rows.
   bool leaves_out = true;
+  /// Somewhere along a record: where the states begin again. Absent: they never do, and a filter that diverges is a UserError.
+  std::optional<StatePrior> anywhere = {};
+  /// [s] The usual time between rows, where they follow each other at one step; else 0. Behind one that is longer, and longer than
+  /// the one before, the states begin again.
+  double usual_step = 0;
 };
 
 /// A jump of a parameter, in SI; rows as of the experiment's file.
@@ -48,6 +54,24 @@ struct Alarm {
   double before = 0, before_sd = 0, after = 0, after_sd = 0;
   int other = -1;  // a parameter that explains it nearly as well
   double other_statistic = 0;
+};
+
+/// The noise of a channel has another size.
+struct NoiseAlarm {
+  int channel = 0;
+  std::int64_t row = 0, onset_row = 0;
+  double time = 0;
+  double statistic = 0;
+  double ratio = 1, now = 1;  // its sd, to that before and to that of the fit
+  bool correlated = false;
+};
+
+/// The states were lost, and begin again.
+struct Restart {
+  enum class Cause : std::uint8_t { gap, jump, divergence };
+  Cause cause = Cause::gap;
+  std::int64_t row = 0;       // the first one again
+  double time = 0, step = 0;  // step: to the row before
 };
 
 /// Estimates once the samples of a row are known, SI. Valid during the call it is handed to.
@@ -62,6 +86,8 @@ struct TrackedRow {
   int samples = 0;
   std::vector<double> left_out;  // per channel, how many expected sds off a sample was that was left out; else 0
   Alarm const* alarm = nullptr;
+  NoiseAlarm const* noise = nullptr;
+  Restart const* restart = nullptr;  // before this row
 };
 
 class Tracker {
@@ -73,7 +99,7 @@ class Tracker {
 
   /// Rows from index `from` of the experiment on, in order; each goes to `sink`. From the second call on index from - 1 is the row
   /// that came last. rows_before: of the file, which the experiment does not count: more than it can, of a record without an end.
-  /// UserError where the filter has no finite values.
+  /// Where the filter has no finite values it begins again; UserError where that helps nothing.
   void take(Experiment const& experiment, int from, Sink const& sink, std::int64_t rows_before = 0);
 
   ChangeDetector const& detector() const { return detector_; }
@@ -81,10 +107,24 @@ class Tracker {
  private:
   int take_some(Experiment const& experiment, int from, int to, Sink const& sink);
   std::int64_t row_of(Experiment const& experiment, int index) const { return rows_before_ + experiment.first_row + index; }
-  bool leaves_out(Experiment const& experiment, int index, double const* records);
+  enum class Judged : std::uint8_t { used, left_out, lost };
+  Judged judge(Experiment const& experiment, int index, double const* records);
+  bool is_finite(double const* records) const;
+  void observe(double const* records);
   bool read(Experiment const& experiment, int index, double const* records, Sink const& sink);
   void report(Experiment const& experiment, int index, double const* records, TrackedRow& row);
   void settle();
+  std::optional<Alarm> end_settling(Experiment const& experiment, int index);
+  std::optional<NoiseAlarm> respond_to_noise(Experiment const& experiment, int index);
+  std::int64_t row_after(std::int64_t counted) const;
+  TrackedPrior parameters_now() const;
+  void keep_good(double const* records);
+
+  // --- beginning again
+  bool may_begin_again() const;
+  void begin_again(Experiment const& experiment, int index, Restart::Cause cause);
+  /// The first row from `from` up to `to` behind a gap in time, else `to`.
+  int next_gap(Experiment const& experiment, int from, int to) const;
   Alarm respond(Experiment const& experiment, int index, DetectedJump const& jump);
   double& moment(int i, int j) { return moments_[static_cast<std::size_t>(program_.place(i, j))]; }
   double variance(int i) const { return moments_[static_cast<std::size_t>(program_.place(i, i))]; }
@@ -99,6 +139,15 @@ class Tracker {
   TrackedPrior prior_;
   TrackingOptions options_;
   ChangeDetector detector_;
+  NoiseWatch watch_;
+  std::vector<double> factors_, explained_;  // per channel: of its noise variance; of its last sample, as NoiseWatch::observe
+  std::vector<FarOffRun> runs_;              // per channel
+  TrackedPrior good_;                        // of rows whose innovations were of the size expected
+  double good_squared_ = 0, good_samples_ = 0;
+  bool fresh_ = true, opened_ = false;  // the next row is the first of a filter; that also asks for the parameters anew
+  std::int64_t begun_ = 0;              // rows taken when it began again
+  std::optional<Restart> restart_;
+  double last_step_ = 0;  // [s] between the rows that came last; 0: there was one
   std::vector<double> moments_;
   std::int64_t rows_ = 0, rows_before_ = 0;  // taken so far; as of take
   int settling_ = 0;                         // rows left
