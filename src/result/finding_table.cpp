@@ -155,6 +155,8 @@ constexpr FindingRow rows[] = {
     {FindingCode::draws_not_bounded, "draws_not_bounded", warning},
     {FindingCode::free_run_lost, "free_run_lost", warning_or_note},
     {FindingCode::parameter_changed, "parameter_changed", warning},
+    {FindingCode::noise_changed, "noise_changed", warning},
+    {FindingCode::filter_restarted, "filter_restarted", warning},
     {FindingCode::innovation_size, "innovation_size", warning},
 };
 

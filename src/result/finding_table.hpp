@@ -154,6 +154,8 @@ enum class FindingCode {
   draws_not_bounded,
   free_run_lost,
   parameter_changed,
+  noise_changed,
+  filter_restarted,
   innovation_size,
 };
 

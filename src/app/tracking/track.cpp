@@ -87,7 +87,7 @@ class Tracking {
         [&](TrackedRow const& row) {
           table_.add(row);
           gathered_.add(row);
-          if (row.alarm != nullptr) session_.notices << gathered_.alarm_line(*row.alarm) << '\n' << std::flush;
+          for (std::string const& line : gathered_.lines(row)) session_.notices << line << '\n' << std::flush;
         },
         rows_before);
   }
@@ -199,7 +199,7 @@ ExitCode track(Session& session, TrackOptions const& options) {
     report.timing.emplace_back("wall_seconds", wall.count());
     report.timing.emplace_back("rows_per_second", static_cast<double>(gathered.rows) / wall.count());
     keep_result(session, task, report, tracking.taken_over());
-    return gathered.alarms.empty() ? ExitCode::success : ExitCode::doubtful;
+    return gathered.changed() ? ExitCode::doubtful : ExitCode::success;
   } catch (Interrupted const&) {
     session.notices << fmt::format("{}: interrupted; nothing is kept\n", task.name);
     return ExitCode::interrupted;

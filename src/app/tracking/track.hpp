@@ -4,7 +4,8 @@
 
 namespace sysid {
 
-/// Writes track.csv, a page and figures into the folder of the output. Exit code 1: a parameter has changed.
+/// Writes track.csv, a page and figures into the folder of the output. Exit code 1: a parameter or the noise has changed, or the
+/// filter had to begin again.
 ExitCode track(Session& session, TrackOptions const& options);
 
 }  // namespace sysid

@@ -9,14 +9,14 @@
 #include "app/session/made_from.hpp"
 #include "app/session/repetition.hpp"
 #include "app/session/reporting.hpp"
+#include "app/tracking/track_findings.hpp"
 #include "core/text/number.hpp"
-#include "core/text/words.hpp"
 #include "model/filter_rule.hpp"
 
 namespace sysid {
 namespace {
 
-constexpr std::size_t most_kept_outliers = 100;
+constexpr std::size_t most_kept_outliers = 100, most_kept_restarts = 100;
 constexpr std::size_t most_shown = 300;  // and up to twice as many: all that a figure shows
 
 std::vector<std::string> channel_names(Model const& model) {
@@ -35,21 +35,6 @@ std::string with_sd(double value, double sd) {
 }
 
 namespace {
-
-std::string changed(double before, double after) {
-  if (before == 0 || (before > 0) != (after > 0)) return "changed";
-  return fmt::format("{} by {} %", std::fabs(after) < std::fabs(before) ? "fell" : "rose",
-                     significant(100 * std::fabs(after / before - 1), 2));
-}
-
-/// "`k` fell by 10 % after row 2950, from 1.000 ± 0.004 to 0.902 ± 0.009 N/m".
-std::string change_words(GatheredTrack const& gathered, Alarm const& alarm) {
-  std::size_t const q = gathered.states + static_cast<std::size_t>(alarm.parameter);
-  double const scale = gathered.units.scales[q];
-  return fmt::format("`{}` {} after row {}, from {} to {}{}", gathered.units.names[q], changed(alarm.before, alarm.after),
-                     alarm.onset_row, with_sd(alarm.before / scale, alarm.before_sd / scale),
-                     with_sd(alarm.after / scale, alarm.after_sd / scale), unit_after_number(gathered.units.units[q]));
-}
 
 ReportTable alarm_table(GatheredTrack const& gathered, double rate) {
   ReportTable table{
@@ -89,20 +74,6 @@ ReportTable parameter_table(GatheredTrack const& gathered) {
   return table;
 }
 
-/// The size of the innovations against what the filter expects; z: of the sum of their squares, which is chi-squared with one
-/// degree of freedom for each sample.
-struct InnovationSize {
-  double ratio, z;
-  /// The fit knows its noise to some per cent: less than a tenth is nothing.
-  bool odd() const { return std::fabs(z) > 4 && std::fabs(ratio - 1) > 0.1; }
-};
-
-InnovationSize innovation_size(GatheredTrack const& gathered) {
-  auto const n = static_cast<double>(gathered.samples);
-  if (n == 0) return {1, 0};
-  return {std::sqrt(gathered.squared / n), (gathered.squared - n) / std::sqrt(2 * n)};
-}
-
 ReportTable innovation_table(GatheredTrack const& gathered) {
   InnovationSize const size = innovation_size(gathered);
   return {"innovations",
@@ -115,62 +86,6 @@ ReportTable innovation_table(GatheredTrack const& gathered) {
                              : "smaller than expected"}}};
 }
 
-/// "3 samples far from the predictions were left out: d at row 450 (101 expected sds off), ...".
-Finding far_off_samples(GatheredTrack const& gathered) {
-  constexpr std::size_t most_told = 3;
-  constexpr double many = 0.01;
-  std::vector<std::string> told, names;
-  for (GatheredTrack::LeftOut const& each : gathered.left_out) {
-    if (told.size() < most_told)
-      told.push_back(
-          fmt::format("{} at row {} ({} expected sds off)", each.channel, each.row, significant(std::fabs(each.sds), 2)));
-    if (std::find(names.begin(), names.end(), each.channel) == names.end()) names.push_back(each.channel);
-  }
-  auto const more = gathered.left_out_samples - static_cast<std::int64_t>(told.size());
-  return {
-      FindingCode::samples_far_off, Severity::warning, std::move(names),
-      fmt::format("{} far from the predictions {} left out: {}{}", counted(gathered.left_out_samples, "sample"),
-                  gathered.left_out_samples == 1 ? "was" : "were", fmt::join(told, ", "),
-                  more > 0 ? fmt::format(" and {} more", more) : ""),
-      static_cast<double>(gathered.left_out_samples) > many * static_cast<double>(gathered.samples)
-          ? "so many are no single outliers: check the sensor and the units of the record, and whether the model and its noise are "
-            "those of these rows"
-          : "check the sensor at these rows"};
-}
-
-void add_findings(GatheredTrack const& gathered, Report& report) {
-  constexpr std::size_t most_told = 3;
-  InnovationSize const size = innovation_size(gathered);
-  report.verdict = fmt::format("no change found in {} rows", gathered.rows);
-  if (std::size_t const changes = gathered.alarms.size(); changes > 0) {
-    report.verdict = fmt::format("{} found in {} rows", counted(changes, "change"), gathered.rows);
-    std::vector<std::string> told, names;
-    for (std::size_t i = 0; i < std::min(changes, most_told); ++i) told.push_back(change_words(gathered, gathered.alarms[i]));
-    for (Alarm const& each : gathered.alarms) {
-      std::string const& name = gathered.units.names[gathered.states + static_cast<std::size_t>(each.parameter)];
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    }
-    report.findings.push_back(
-        {FindingCode::parameter_changed, Severity::warning, std::move(names),
-         fmt::format("{}{}", fmt::join(told, "; "), changes > most_told ? fmt::format("; and {} more", changes - most_told) : ""),
-         "look for the cause at these rows; to predict later rows, fit the rows after the last change and use that fit"});
-  }
-  if (gathered.left_out_samples > 0) {
-    report.verdict += fmt::format("; {} left out", counted(gathered.left_out_samples, "sample"));
-    report.findings.push_back(far_off_samples(gathered));
-  }
-  if (!size.odd()) return;
-  report.verdict += fmt::format("; the innovations are {} than expected", size.ratio > 1 ? "larger" : "smaller");
-  report.findings.push_back(
-      {FindingCode::innovation_size,
-       Severity::warning,
-       {},
-       fmt::format("the rms of the innovations is {} times what is expected (z = {:.1f}): sds and the rate of false alarms are not "
-                   "as stated",
-                   significant(size.ratio, 4), size.z),
-       "add a disturbance to the model, or fit its noise to rows like these"});
-}
-
 }  // namespace
 
 GatheredTrack::GatheredTrack(TrackedFit const& fit, TrackedUnits of)
@@ -178,6 +93,8 @@ GatheredTrack::GatheredTrack(TrackedFit const& fit, TrackedUnits of)
       channels(channel_names(fit.model())),
       states(fit.model().states.size()),
       tracked(fit.tracked.size()),
+      disturbed(!fit.model().disturbances.empty()),
+      usual_step(fit.tracking.usual_step),
       mean(units.names.size()),
       sd(mean) {}
 
@@ -200,6 +117,12 @@ void GatheredTrack::add(TrackedRow const& row) {
   last_row = row.row;
   if (!row.settling) squared += row.squared, samples += row.samples;
   if (row.alarm != nullptr) alarms.push_back(*row.alarm);
+  if (row.noise != nullptr) noises.push_back(*row.noise);
+  if (row.restart != nullptr) {
+    bool const gap = row.restart->cause == Restart::Cause::gap;
+    ++(gap ? all_gaps : all_restarts);
+    if (auto& kept_ones = gap ? gaps : restarts; kept_ones.size() < most_kept_restarts) kept_ones.push_back(*row.restart);
+  }
   for (std::size_t c = 0; c < row.left_out.size(); ++c) {
     if (row.left_out[c] == 0) continue;
     ++left_out_samples;
@@ -233,6 +156,17 @@ std::string GatheredTrack::alarm_line(Alarm const& alarm) const {
   return fmt::format("row {} (t = {} s): {} (z = {:.1f})", alarm.row, significant(alarm.time, 7), change_words(*this, alarm),
                      alarm.statistic);
 }
+
+std::vector<std::string> GatheredTrack::lines(TrackedRow const& row) const {
+  std::vector<std::string> all;
+  auto const head = [&] { return fmt::format("row {} (t = {} s): ", row.row, significant(row.time, 7)); };
+  if (row.restart != nullptr) all.push_back(head() + restart_words(*row.restart));
+  if (row.alarm != nullptr) all.push_back(alarm_line(*row.alarm));
+  if (row.noise != nullptr) all.push_back(head() + noise_words(*this, *row.noise));
+  return all;
+}
+
+bool GatheredTrack::changed() const { return !alarms.empty() || !noises.empty() || all_restarts > 0; }
 
 std::string GatheredTrack::name(std::size_t quantity) const {
   std::string const& unit = units.units[quantity];

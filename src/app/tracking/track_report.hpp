@@ -15,6 +15,10 @@ struct GatheredTrack {
   void add(TrackedRow const& row);
   /// "row 3001 (t = 30.0 s): `k` fell from 1.000 ± 0.004 to 0.902 ± 0.009 N/m after row 2950 (z = -11.2)"
   std::string alarm_line(Alarm const& alarm) const;
+  /// What there is to say of a row as it comes.
+  std::vector<std::string> lines(TrackedRow const& row) const;
+  /// Some parameter or noise has changed, or the filter was lost: a gap in time is neither.
+  bool changed() const;
   /// "k [N/m]", of a state or a tracked parameter.
   std::string name(std::size_t quantity) const;
 
@@ -28,6 +32,11 @@ struct GatheredTrack {
   std::int64_t first_row = 0, last_row = 0;
   double squared = 0;  // of the rows that did not settle
   std::vector<Alarm> alarms;
+  std::vector<NoiseAlarm> noises;
+  std::vector<Restart> gaps, restarts;  // the first hundred of each
+  std::int64_t all_gaps = 0, all_restarts = 0;
+  bool disturbed = false;  // the model has disturbances
+  double usual_step = 0;
   struct LeftOut {
     std::int64_t row;
     std::string channel;

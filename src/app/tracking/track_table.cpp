@@ -85,6 +85,10 @@ void TrackTable::add(TrackedRow const& row) {
   fmt::format_to(std::back_inserter(lines_), FMT_COMPILE(",{},"), row.samples);
   if (row.alarm != nullptr)
     lines_ += csv_field(units_.names[units_.names.size() - row.tracked + static_cast<std::size_t>(row.alarm->parameter)]);
+  else if (row.noise != nullptr)
+    lines_ += csv_field("noise of " + units_.channels[static_cast<std::size_t>(row.noise->channel)]);
+  else if (row.restart != nullptr)
+    lines_ += "restart";
   lines_ += '\n';
   if (follows_ || lines_.size() > enough) flush();
 }

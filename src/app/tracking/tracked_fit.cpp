@@ -12,6 +12,7 @@
 #include "app/session/stored_draws.hpp"
 #include "check/checked/task_kinds.hpp"
 #include "core/numeric/not_finite.hpp"
+#include "core/numeric/statistics.hpp"
 #include "core/system/files.hpp"
 #include "core/text/words.hpp"
 #include "data/format/open_record.hpp"
@@ -111,6 +112,17 @@ bool in_equations(Model const& model, int parameter) {
   for (Channel const& channel : model.channels)
     if (reads(model.graph, channel.noise.arguments[0], parameter)) return true;
   return false;
+}
+
+/// The step of rows that follow each other at one: nine in ten are within a tenth of the median.
+std::optional<double> one_step(std::vector<double> const& time) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
+  if (steps.empty()) return std::nullopt;
+  double const usual = median(steps);
+  auto const alike = std::ranges::count_if(steps, [&](double each) { return std::fabs(each - usual) <= 0.1 * usual; });
+  if (10 * static_cast<std::size_t>(alike) < 9 * steps.size()) return std::nullopt;
+  return usual;
 }
 
 class FitForTracking {
@@ -230,6 +242,10 @@ class FitForTracking {
     result_.states =
         states_along(result_.program, result_.solver, execution, experiment, first, result_.prior, result_.model().filtered());
     result_.step = experiment.time.size() > 1 ? mean_step(experiment.time) : 1;
+    result_.tracking.anywhere = result_.states;
+    // What drives the equations in a gap is not known; without inputs the filter goes through it.
+    if (result_.model().integrated() && !result_.model().inputs.empty())
+      result_.tracking.usual_step = one_step(experiment.time).value_or(0);
   }
 
   /// How far parameters drift, and what a large change of one is, on their unbounded scales.
