@@ -13,7 +13,7 @@ constexpr double largest = 4;  // that an innovation counts as
 constexpr double fewest_samples = 8, fewest_correlated = 64;
 constexpr double related = 2.5;           // sds of the correlation of white innovations
 constexpr double smallest_change = 1.44;  // of the variance
-constexpr double least_factor = 0.01;
+constexpr double least_factor = 0.05;     // at a time: where little of the variance is noise, it is hardly known
 
 constexpr std::size_t longest_run = 16, decided_at = 12;
 constexpr int fewest_far_off = 4;

@@ -13,6 +13,7 @@ namespace {
 constexpr double opening = 0.3;             // of a large change of a parameter: the sd that is added where the states were lost
 constexpr double longer = 1.5;              // than the usual step is a gap
 constexpr double looked_at = 64, calm = 2;  // samples; their mean square, in expected variances
+constexpr double most_noise = 1e6;          // of the variance of the fit's
 constexpr int settled_again = 3;            // lengths of the settling rows: a filter that begins again has seen as many
 
 }  // namespace
@@ -135,10 +136,12 @@ std::optional<NoiseAlarm> Tracker::respond_to_noise(Experiment const& experiment
   auto const change = watch_.detect(detector_.explained());
   if (!change) return std::nullopt;
   double& factor = factors_[static_cast<std::size_t>(change->channel)];
-  factor *= change->factor;
+  double const before = factor;
+  factor = std::clamp(factor * change->factor, 1 / most_noise, most_noise);
+  if (factor == before) return std::nullopt;
   NoiseAlarm alarm{
-      change->channel,   row_of(experiment, index), row_after(change->row), experiment.time[static_cast<std::size_t>(index)],
-      change->statistic, std::sqrt(change->factor), std::sqrt(factor),      change->correlated};
+      change->channel,   row_of(experiment, index),  row_after(change->row), experiment.time[static_cast<std::size_t>(index)],
+      change->statistic, std::sqrt(factor / before), std::sqrt(factor),      change->correlated};
   detector_.forget();
   watch_.forget();
   good_squared_ = good_samples_ = 0;

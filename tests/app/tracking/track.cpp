@@ -188,7 +188,7 @@ TEST_CASE("a sample that is far off is left out and named, and no parameter chan
   CHECK(beam.table()[151].find(",NaN,NaN,0,0,") != std::string::npos);
 }
 
-TEST_CASE("samples that stay far off are a change after two of them, also where other rows have none") {
+TEST_CASE("samples that stay far off are a change, also where other rows have none") {
   for (std::size_t const every : {1, 2}) {
     CAPTURE(every);
     // The sensor is read in another unit from row 901 on.
@@ -248,6 +248,36 @@ TEST_CASE("innovations that are larger than expected are a warning, and settling
   TrackResult const result = beam.run(options);
   CHECK(result.out.find("warning[innovation_size]: the rms of the innovations is ") != std::string::npos);
   CHECK(result.out.find("larger than expected") != std::string::npos);
+
+  // Without an order, they are noise.
+  auto const fresh = beam_rows(1500, 1000);
+  beam.rows = fresh;
+  Stream stream(StreamKey{6, Purpose::test, 1, 0});
+  for (std::size_t i = 700; i < beam.rows.size(); ++i) {
+    std::size_t const at = beam.rows[i].rfind(',');
+    std::string const sample = beam.rows[i].substr(at + 1);
+    double const noise = 17 * stream.normal();
+    if (sample.size() > 1) beam.rows[i] = fmt::format("{},{:.5f}\n", beam.rows[i].substr(0, at), std::stod(sample) + noise);
+  }
+  beam.write(990);
+  options.last_row = 990;
+  TrackResult const noisy = beam.run(options, "noisy");
+  CAPTURE(noisy.out);
+  CHECK(noisy.exit == 1);
+  CHECK(noisy.out.find("warning[noise_changed]: the noise of `displacement` rose to ") != std::string::npos);
+  CHECK(noisy.out.find("parameter_changed") == std::string::npos);
+
+  // Rows are missing, and the times show it.
+  beam.rows = fresh;
+  beam.rows.erase(beam.rows.begin() + 700, beam.rows.begin() + 707);
+  beam.write(980);
+  options.last_row = 980;
+  TrackResult const gap = beam.run(options, "gap");
+  CAPTURE(gap.out);
+  CHECK(gap.exit == 0);
+  CHECK(gap.out.find("warning[time_gap]: the time has a gap of 0.24") != std::string::npos);
+  CHECK(gap.out.find("before row 701") != std::string::npos);
+  CHECK(gap.out.find("parameter_changed") == std::string::npos);
 }
 
 TEST_CASE("an interruption ends a track that follows, with its results; one of a whole record leaves nothing") {
