@@ -79,7 +79,7 @@ void Tracker::begin_again(Experiment const& experiment, int index, Restart::Caus
   restart_ =
       Restart{cause, row_of(experiment, index), experiment.time[at], index > 0 ? experiment.time[at] - experiment.time[at - 1] : 0};
   prior_ = cause == Restart::Cause::gap && settling_ == 0 ? parameters_now() : cause == Restart::Cause::gap ? prior_ : good_;
-  opened_ = cause != Restart::Cause::gap;
+  opened_ = opened_ || cause != Restart::Cause::gap;
   TrackedPrior start = prior_;
   for (int j = 0; opened_ && j < program_.tracked; ++j)
     start.covariance(j, j) += std::pow(opening * options_.scales[static_cast<std::size_t>(j)], 2);

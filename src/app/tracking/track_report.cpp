@@ -104,7 +104,8 @@ void GatheredTrack::add(TrackedRow const& row) {
     return values;
   };
   if (rows == 0) first_row = row.row;
-  if (rows == 0 || row.settling) first_mean = declared(row.mean), first_sd = declared(row.sd);
+  settled = settled || (rows == 0 && row.settling);  // a filter that begins again later settles its states, too
+  if (rows == 0 || (settled && row.settling && !past_settling)) first_mean = declared(row.mean), first_sd = declared(row.sd);
   // What is reset behind the settling rows would look like a change in the figures.
   if (settled && !row.settling && !past_settling) {
     past_settling = true;
@@ -112,7 +113,6 @@ void GatheredTrack::add(TrackedRow const& row) {
     time.clear();
     for (std::size_t q = 0; q < mean.size(); ++q) mean[q].clear(), sd[q].clear();
   }
-  settled = settled || row.settling;
   ++rows;
   last_row = row.row;
   if (!row.settling) squared += row.squared, samples += row.samples;

@@ -169,7 +169,8 @@ std::string verdict_meaning(Report const& report) {
                        [](Finding const& each) { return each.code == FindingCode::parameter_changed; })
                ? "The parameters were moved where the rows show a change. The rows do not show its cause: the structure, its "
                  "surroundings or a sensor."
-               : "No change was found, but check the points below: with them the sds and alarms of the track are not as stated.";
+               : "No change of a parameter was found, but check the points below: with them the sds and alarms of the track are "
+                 "not as stated.";
   VerbWords const& words = verb_words(report);
   switch (grade(report)) {
     case Severity::error:
