@@ -9,7 +9,7 @@
 namespace sysid {
 namespace {
 
-constexpr double largest = 4;  // that an innovation counts as
+constexpr double most_counted = 4;  // that an innovation counts as
 constexpr double fewest_samples = 8, fewest_correlated = 64;
 constexpr double related = 2.5;           // sds of the correlation of white innovations
 constexpr double smallest_change = 1.44;  // of the variance
@@ -50,14 +50,14 @@ NoiseWatch::NoiseWatch(int channels, double rate, int window)
 
 void NoiseWatch::observe(int channel, double innovation, double explained) {
   auto const c = static_cast<std::size_t>(channel);
-  double const counted = std::clamp(innovation, -largest, largest);
+  double const counted = std::clamp(innovation, -most_counted, most_counted);
   for (Candidate& each : candidates_) {
     Sums& sums = each.channels[c];
     sums.samples += 1;
     sums.squares += counted * counted;
     sums.whole_squares += innovation * innovation;
     sums.explained += explained;
-    sums.large += std::fabs(innovation) > largest ? 1 : 0;
+    sums.large += std::fabs(innovation) > most_counted ? 1 : 0;
     sums.products += counted * last_[c].one;
     sums.second_products += counted * last_[c].two;
   }
