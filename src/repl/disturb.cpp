@@ -40,6 +40,13 @@ bool all_in(Source const& source, std::string const& model, std::vector<Disturbe
          });
 }
 
+Task const& fit_in_text(CheckedText const& checked, std::string const& name) {
+  auto const& tasks = checked.file.tasks;
+  auto const task = std::find_if(tasks.begin(), tasks.end(), [&](Task const& each) { return each.name == name; });
+  if (task == tasks.end()) throw InternalError("a fit that was run is not there");
+  return *task;
+}
+
 }  // namespace
 
 namespace command {
@@ -64,11 +71,9 @@ bool disturb(Context& context, std::string const& arguments) {
   bool const found = context.output.guarded(checked->source, [&] {
     std::ostream nowhere(nullptr);
     Session session(checked->source, checked->file, context.options, context.progress, nowhere, nowhere);
-    auto const& tasks = checked->file.tasks;
-    auto const task = std::find_if(tasks.begin(), tasks.end(), [&](Task const& each) { return each.name == from; });
-    if (task == tasks.end()) throw InternalError("a fit that was run is not there");
-    session.find_results_in(before, *task);
-    DisturbanceFound const disturbance = find_disturbance(session, *task);
+    Task const& task = fit_in_text(*checked, from);
+    session.find_results_in(before, task);
+    DisturbanceFound const disturbance = find_disturbance(session, task);
     equations = disturbance.equations;
     if (all_in(checked->source, model, equations))
       text = model_with_disturbances(checked->source, model, changed_model, equations, disturbance.sizes);
@@ -83,8 +88,14 @@ bool disturb(Context& context, std::string const& arguments) {
   if (!enter_statements(context, text) || !enter_statements(context, fit)) return false;
   Result const* after = context.results.find(name);
   if (after == nullptr || context.results.interrupted.contains(name)) return true;
-  context.output.answer(disturbance_words(before, after->folder, equations));
-  return true;
+  return context.output.guarded(checked->source, [&] {
+    std::ostream nowhere(nullptr);
+    Session session(checked->source, checked->file, context.options, context.progress, nowhere, nowhere);
+    Task const& task = fit_in_text(*checked, from);
+    session.find_results_in(before, task);
+    context.output.answer(disturbance_words(before, after->folder, equations, explained_shares(session, task, after->folder)));
+    return true;
+  });
 }
 
 }  // namespace command

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/comparison/compare.hpp"
+#include "app/disturbed/disturbance_advice.hpp"
 #include "app/disturbed/fit_disturbed.hpp"
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
@@ -31,25 +32,23 @@ std::optional<Estimate> estimate(OrderedJson const& summary, std::string const& 
 /// "0.9982 ± 0.0031".
 std::string with_sd(Estimate const& of) { return fmt::format("{} ± {}", significant(of.mean, 4), significant(of.sd, 2)); }
 
-/// What the fit with the disturbance says of a term that its equations lack; empty: nothing.
-std::string missing_term(OrderedJson const& with) {
-  std::string const code(word(FindingCode::disturbance_follows_states));
-  for (auto const& each : with.value("findings", OrderedJson::array()))
-    if (each.value("code", "") == code) return each.value("message", "");
-  return "";
+/// Of a summary, without notes.
+Findings findings_in(OrderedJson const& summary) {
+  Findings findings;
+  for (auto const& each : summary.value("findings", OrderedJson::array()))
+    if (auto const code = finding_code(each.value("code", "")); code && each.value("severity", "") != "note")
+      findings.push_back({*code, Severity::warning, {}, each.value("message", ""), ""});
+  return findings;
 }
 
 /// Which of both the record prefers. Nothing is said of an evidence that is not there.
-std::string preference(Comparison const& comparison, std::string const& missing) {
+std::string preference(Comparison const& comparison, FoundByBoth const& found, ExplainedShares const& shares) {
   if (comparison.fits.size() != 2 || !comparison.fits[0].log_bayes_factor || !comparison.fits[1].log_bayes_factor)
     return "one of the evidences is not known, so the models cannot be compared by their evidence; compare the residuals of both "
            "fits\n";
   double const factor = *comparison.fits[1].log_evidence - *comparison.fits[0].log_evidence;
   std::string const size = fmt::format("log Bayes factor {:+.1f}", factor);
-  if (factor >= 3 && !missing.empty())
-    return fmt::format("the disturbance stands in for a missing term ({}): add the term before you use either fit; {}: {}\n", size,
-                       "with the term, compare again with and without the disturbance", missing);
-  if (factor >= 3) return fmt::format("the record prefers the model with the disturbance: {}\n", size);
+  if (factor >= 3) return advice_on_disturbance(size, found, shares);
   if (factor <= -3) return fmt::format("the record prefers the model without the disturbance: {}\n", size);
   return fmt::format("the record does not decide between the two models: {}\n", size);
 }
@@ -96,11 +95,11 @@ std::string changes(OrderedJson const& without, OrderedJson const& with) {
 }  // namespace
 
 std::string disturbance_words(std::filesystem::path const& without, std::filesystem::path const& with,
-                              std::vector<DisturbedEquation> const& equations) {
+                              std::vector<DisturbedEquation> const& equations, ExplainedShares const& shares) {
   auto const before = OrderedJson::parse(read_whole_summary(without)), after = OrderedJson::parse(read_whole_summary(with));
   Comparison const comparison = compare({without, with});
-  std::string text =
-      comparison_text(comparison) + "\n" + preference(comparison, missing_term(after)) + sizes(after, equations) + "\n";
+  std::string text = comparison_text(comparison) + "\n" +
+                     preference(comparison, {findings_in(before), findings_in(after)}, shares) + sizes(after, equations) + "\n";
   return text + changes(before, after);
 }
 

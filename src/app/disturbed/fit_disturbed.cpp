@@ -97,7 +97,7 @@ class DisturbedFit {
       throw said_of(changed, error.diagnostic());
     }
     if (code == ExitCode::interrupted || code == ExitCode::usage) return code;
-    session_.out << "\n" << disturbance_words(plain, folder, found.equations);
+    session_.out << "\n" << disturbance_words(plain, folder, found.equations, explained_shares(session_, fit, folder));
     return code;
   }
 
@@ -119,6 +119,10 @@ DisturbanceFound find_disturbance(Session& session, Task const& fit) {
       std::any_of(diagnostics.all().begin(), diagnostics.all().end(), [](Diagnostic const& each) { return each.code == "E3306"; });
   for (DisturbedEquation& each : found.equations) each.memory = read && !each.discrete;
   return found;
+}
+
+ExplainedShares explained_shares(Session& session, Task const& fit, std::filesystem::path const& with) {
+  return {explained_share(session, fit, session.result_folder(fit)), explained_share(session, fit, with)};
 }
 
 ExitCode fit_with_disturbance(Source const& source, CheckedFile const& file, RunOptions const& options, Progress& progress,

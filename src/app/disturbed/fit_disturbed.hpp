@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/disturbed/changed_file.hpp"
+#include "app/disturbed/explained_share.hpp"
 #include "app/session/session.hpp"
 
 namespace sysid {
@@ -24,8 +25,13 @@ ExitCode fit_with_disturbance(Source const& source, CheckedFile const& file, Run
 /// Of a fit of which results are there.
 DisturbanceFound find_disturbance(Session& session, Task const& fit);
 
-/// The evidence of both fits, what the disturbance is, and what it changes. folders: of the results without and with it.
+/// The evidence of both fits, what the disturbance is, and what it changes. folders: of the results without and with it. The fit
+/// with it is not preferred, whatever its evidence, where a fault of the record, a missing term or what the equations explained
+/// stands behind the disturbance.
 std::string disturbance_words(std::filesystem::path const& without, std::filesystem::path const& with,
-                              std::vector<DisturbedEquation> const& equations);
+                              std::vector<DisturbedEquation> const& equations, ExplainedShares const& shares);
+
+/// At the draws of the fit itself and of those in `with`.
+ExplainedShares explained_shares(Session& session, Task const& fit, std::filesystem::path const& with);
 
 }  // namespace sysid

@@ -51,6 +51,18 @@ struct Pair {
     SilentProgress silent;
     return fit_with_disturbance(source, *file, options, silent, out, notices);
   }
+  /// After `run`.
+  ExplainedShares shares() {
+    Source source((folder.path() / "case.sysid").string(), plain);
+    Diagnostics diagnostics;
+    auto const file = load(source, diagnostics);
+    REQUIRE(file);
+    RunOptions options;
+    options.output = folder.path() / "results";
+    SilentProgress silent;
+    Session session(source, *file, options, silent, out, notices);
+    return explained_shares(session, file->tasks.front(), options.output / "post_with_disturbance");
+  }
   json summary(std::string const& task) const { return json::parse(read_file(folder.path() / "results" / task / "summary.json")); }
 };
 
@@ -69,6 +81,11 @@ TEST_CASE("a record with an unmeasured force prefers the disturbance, and the an
   double const rms = parameter(with, "unmeasured_rms").at("mean");
   CHECK(std::abs(rms - 0.05) < 0.015);
   CHECK(parameter(without, "k").at("sd").get<double>() < 0.5 * parameter(with, "k").at("sd").get<double>());
+  // By themselves the equations explain as much with the parameters of either fit.
+  ExplainedShares const shares = pair.shares();
+  REQUIRE((shares.without && shares.with));
+  CHECK(*shares.without > 0.95);
+  CHECK(*shares.with > 0.95);
   // The changed file lies beside its results; run from there it is that fit, and goes on to predictions.
   auto const path = pair.folder.path() / "results/post_with_disturbance/with_disturbance.sysid";
   CHECK(contains(pair.notices.str(), path.string()));
