@@ -6,6 +6,7 @@
 
 #include "core/numeric/statistics.hpp"
 #include "diagnostics/residuals/outliers.hpp"
+#include "diagnostics/residuals/start_far_off.hpp"
 #include "likelihood/parameter_space.hpp"
 #include "result/experiment_words.hpp"
 
@@ -118,9 +119,14 @@ Trend trend_of(ChannelResiduals const& of, Errors const& errors) {
 
 ChannelTests test_channel(ChannelResiduals const& of) {
   ChannelTests tested;
+  tested.start = start_far_off(of);
   tested.far = far_off(of);
   tested.unexplained = unexplained(of, spikes(of));
-  std::vector<double> const residuals = without(of.residuals, tested.far);
+  std::vector<double> residuals = without(of.residuals, tested.far);
+  if (tested.start) {
+    std::erase_if(tested.far, [](std::size_t place) { return place < samples_of_start; });
+    std::fill_n(residuals.begin(), std::min(samples_of_start, residuals.size()), std::nan(""));
+  }
   bool const ordered = of.model().dynamics != Dynamics::none;
   if (offset_can_be_added(of.model(), of.described())) {
     tested.offset = offset_test(residuals, ordered);

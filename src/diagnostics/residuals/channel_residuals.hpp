@@ -35,6 +35,7 @@ struct ChannelResiduals {
 
 /// What tests of a channel find; not yet what that means, which depends on how many are tested.
 struct ChannelTests {
+  std::optional<double> start;   // sds of the first sample, where the model begins far from it: the first ones are left out, too
   std::vector<std::size_t> far;  // samples far off, left out of the tests
   double unexplained = 0;        // nmse [%] without spikes
   OffsetTest offset;

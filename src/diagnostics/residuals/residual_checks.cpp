@@ -18,6 +18,7 @@
 #include "diagnostics/residuals/explained.hpp"
 #include "diagnostics/residuals/outliers.hpp"
 #include "diagnostics/residuals/residual_line.hpp"
+#include "diagnostics/residuals/start_far_off.hpp"
 #include "likelihood/output.hpp"
 #include "likelihood/trajectory.hpp"
 
@@ -188,9 +189,13 @@ void check_law(ChannelResiduals const& of, ChannelTests const& tested, int toget
   bool const far_alone =
       std::ranges::all_of(findings, [](Finding const& each) { return each.code == FindingCode::samples_far_off; });
   if (!far_alone) return;
-  std::vector<double> left;
-  for (std::size_t const place : of.places) left.push_back(of.residuals[place]);
-  ResidualLaw law = residual_law(left, of.predicted);
+  std::vector<double> left, predicted;
+  for (std::size_t i = 0; i < of.places.size(); ++i) {
+    if (tested.start && of.places[i] < samples_of_start) continue;
+    left.push_back(of.residuals[of.places[i]]);
+    predicted.push_back(of.predicted[i]);
+  }
+  ResidualLaw law = residual_law(left, predicted);
   if (heavy_tails || !findings.empty()) law.tail_p = 1;  // expected, or named sample by sample
   LawWords const words{of.names(),
                        of.name(),
@@ -220,6 +225,7 @@ FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Li
   bool const ordered = tested.white && !of.described().noise.row->discrete;
   bool const coloured = ordered && tested.white->fires(limits.white);
   bool const drifts = ordered && tested.unexplained > less_than_half && trend_p_value(of.residuals) < rare / limits.channels;
+  if (tested.start) findings.push_back(initial_of_states(of, *tested.start));
   check_share(of, tested, coloured ? "are correlated in time" : drifts ? "have a trend in time" : nullptr, findings);
   check_law(of, tested, limits.channels, text, shape);
   findings.insert(findings.end(), shape.begin(), shape.end());
