@@ -1,4 +1,4 @@
-// Rows that a frozen sensor wrote are left out by ranges, numbers at the end of a sensor's range as missing ones.
+// Rows that a frozen sensor wrote are left out by ranges or emptied, numbers at the end of a sensor's range as missing ones.
 #include "experiment/stuck_sensors.hpp"
 
 #include <fmt/format.h>
@@ -17,10 +17,16 @@
 namespace sysid {
 namespace {
 
-/// The rows of the task before and after these; the first of the equal samples is one that the sensor measured.
-std::string ranges_without(FrozenRun const& run, ExperimentData const& data, DataBlock const& block) {
+/// Of a short part the cells are emptied, so that the simulation goes on through it; else the rows of the task before and after are
+/// used. The first of the equal samples is one that the sensor measured.
+std::string samples_without(FrozenRun const& run, ExperimentData const& data, DataBlock const& block, std::string const& column) {
   constexpr int fewest = 10;
+  constexpr std::size_t small_part = 10;
   Experiment const& experiment = data.experiment;
+  if (run.samples * small_part < experiment.time.size())
+    return fmt::format("if so, empty the cells of column `{}` in rows {} to {} in the file: these samples are then not scored",
+                       column, experiment.first_row + static_cast<int>(run.first) + 1,
+                       experiment.first_row + static_cast<int>(run.last));
   auto const row = [&](std::size_t index) { return experiment.first_row + static_cast<int>(index); };
   auto const first = std::find(experiment.scored.begin(), experiment.scored.end(), 1);
   auto const last = std::find(experiment.scored.rbegin(), experiment.scored.rend(), 1);
@@ -90,7 +96,7 @@ Findings find_stuck_sensors(CheckedFile const& file, ExperimentData const& data,
                          "have been stuck",
                          subject, in_file.text(run->value), run->samples, experiment.first_row + static_cast<int>(run->first),
                          experiment.first_row + static_cast<int>(run->last)),
-             ranges_without(*run, data, block)});
+             samples_without(*run, data, block, column.column)});
     }
   return findings;
 }

@@ -63,6 +63,43 @@ TEST_CASE("a sensor that froze for half of the record is named by its rows, and 
   CHECK(messages(check_level(frozen, with(text, "to record", "to " + lines[2].str())), "sensor_stuck").empty());
 }
 
+TEST_CASE("a short part that chance cannot repeat is named by the cells to be emptied") {
+  auto const frozen = [](int row, double noise) { return row < 200 || row >= 215 ? noisy(row, noise) : 0.7351; };
+  CheckResult const result = check_level(frozen);
+  CHECK(messages(result, "sensor_stuck").size() == 1);
+  CHECK(stuck_help(result) ==
+        "if so, empty the cells of column `level` in rows 202 to 215 in the file: these samples are then not scored");
+  // As the help says.
+  auto const emptied = [&](int row, double noise) { return row > 200 && row < 215 ? std::nan("") : frozen(row, noise); };
+  CHECK(messages(check_level(emptied, with(stuck_text, "time t", "read missing = \"nan\"; time t")), "sensor_stuck").empty());
+}
+
+TEST_CASE("short runs that a converter, a pause or an end of the range explains are left alone") {
+  auto const held = [](int from, double step, double value) {
+    return
+        [=](int row, double noise) { return row < from || row >= from + 15 ? step * std::round(noisy(row, noise) / step) : value; };
+  };
+  CHECK(stuck(held(200, 1e-4, 0.7351)).size() == 1);
+  CHECK(stuck(held(200, 0.02, 0.74)).empty());  // in steps of nearly the size of the noise: samples repeat elsewhere
+  CHECK(stuck(held(0, 1e-4, 0.7351)).empty());  // begins the record
+  CHECK(stuck([&](int row, double noise) {      // rests again and again
+          return row % 100 >= 85 ? 0.7351 : noisy(row, noise);
+        })
+            .empty());
+}
+
+TEST_CASE("a few samples at an end of the range are clipped where no other sample repeats itself") {
+  auto const clipped = [](int row, double noise) {
+    double const level = noisy(row, noise);
+    return row >= 30 && row < 36 ? 3.4 : level;
+  };
+  auto const found = stuck(clipped);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].find("at its largest value, 3.4 mm, in 6 samples") != std::string::npos);
+  // Where a converter makes samples repeat, six equal ones at an end may be a peak.
+  CHECK(stuck([&](int row, double noise) { return 0.05 * std::round(clipped(row, noise) / 0.05); }).empty());
+}
+
 TEST_CASE("a part in the middle leaves a range on both sides") {
   auto const frozen = [](int row, double noise) { return row < 100 || row >= 160 ? noisy(row, noise) : 1.25; };
   std::string const help = stuck_help(check_level(frozen));

@@ -12,9 +12,10 @@ namespace sysid {
 namespace {
 
 constexpr std::size_t fewest_samples = 60;
-constexpr double most_repeated = 0.05;  // of the other samples
-constexpr double rough = 0.3;           // second differences by first ones: 1.7 of white noise
-constexpr double gentle = 0.2;          // of the usual difference: a motion that dies out
+constexpr double most_repeated = 0.05;     // of the other samples
+constexpr double rough = 0.3;              // second differences by first ones: 1.7 of white noise
+constexpr double gentle = 0.2;             // of the usual difference: a motion that dies out
+constexpr double hardly_repeated = 0.005;  // of the other samples: a few equal ones in a row are then no chance
 
 /// Without those that are missing.
 struct Present {
@@ -49,6 +50,7 @@ std::vector<EqualRun> equal_runs(std::vector<double> const& values) {
 struct Elsewhere {
   double difference = 0;  // the usual one of neighbours; 0 where the record repeats itself, or little of it is left
   double roughness = 0;   // second differences by first ones
+  double repeated = 0;    // the part of the samples that repeat the one before
 };
 Elsewhere elsewhere(std::vector<double> const& values, std::vector<EqualRun> const& runs) {
   std::vector<double> first, second;
@@ -63,9 +65,10 @@ Elsewhere elsewhere(std::vector<double> const& values, std::vector<EqualRun> con
     second.push_back(std::fabs(difference - (values[i - 1] - values[i - 2])));
   }
   if (first.size() < fewest_samples / 2) return {};
-  if (static_cast<double>(repeated) > most_repeated * static_cast<double>(first.size())) return {};
+  double const part_repeated = static_cast<double>(repeated) / static_cast<double>(first.size());
+  if (part_repeated > most_repeated) return {};
   double const usual = median(first);
-  return {usual, usual > 0 ? median(second) / usual : 0};
+  return {usual, usual > 0 ? median(second) / usual : 0, part_repeated};
 }
 
 /// The middle one of the differences just before a run; without those where the record stands at `end`, too.
@@ -101,25 +104,40 @@ bool cut_off(std::vector<double> const& values, std::vector<EqualRun> const& run
   return arrival >= steps * step && arrival >= gentle * rest.difference;
 }
 
+/// Whether a run is much longer than all others, and at neither end of the range: what stands there now and then does so again, and
+/// a short stop at an end has many reasons.
+bool stands_out(std::vector<double> const& values, std::vector<EqualRun> const& runs, EqualRun longest) {
+  constexpr std::size_t longer = 5;  // than the second longest
+  auto const [smallest, largest] = std::minmax_element(values.begin(), values.end());
+  double const value = values[longest.begin];
+  if (value == *smallest || value == *largest) return false;
+  return std::all_of(runs.begin(), runs.end(), [&](EqualRun const& run) {
+    return run.begin == longest.begin || longer * (run.end - run.begin) <= longest.end - longest.begin;
+  });
+}
+
 }  // namespace
 
 std::optional<FrozenRun> frozen_run(std::span<double const> values) {
-  constexpr std::size_t fewest = 20, part = 10;
+  constexpr std::size_t fewest = 10, fewest_of_many = 20, part = 10;
   Present const all = present(values);
   if (all.values.size() < fewest_samples) return std::nullopt;
   std::vector<EqualRun> const runs = equal_runs(all.values);
   EqualRun const longest =
       *std::max_element(runs.begin(), runs.end(), [](EqualRun a, EqualRun b) { return a.end - a.begin < b.end - b.begin; });
   std::size_t const samples = longest.end - longest.begin;
-  if (longest.begin == 0 || samples < fewest || samples * part < all.values.size()) return std::nullopt;
+  if (longest.begin == 0 || samples < fewest) return std::nullopt;
+  bool const large = samples >= fewest_of_many && samples * part >= all.values.size();
+  if (!large && !stands_out(all.values, runs, longest)) return std::nullopt;
   Elsewhere const rest = elsewhere(all.values, {longest});
+  if (!large && rest.repeated > hardly_repeated) return std::nullopt;
   if (rest.difference == 0 || rest.roughness < rough || difference_before(all.values, longest.begin) < gentle * rest.difference)
     return std::nullopt;
   return FrozenRun{all.places[longest.begin], all.places[longest.end - 1], samples, all.values[longest.begin]};
 }
 
 std::vector<ClippedSamples> clipped_samples(std::span<double const> values) {
-  constexpr std::size_t shortest = 3, fewest = 10, part = 50;
+  constexpr std::size_t shortest = 3, fewest = 10, part = 50, fewest_of_different = 5;
   Present const all = present(values);
   if (all.values.size() < fewest_samples) return {};
   auto const [smallest, largest] = std::minmax_element(all.values.begin(), all.values.end());
@@ -144,7 +162,10 @@ std::vector<ClippedSamples> clipped_samples(std::span<double const> values) {
       before.push_back(difference_before(all.values, run.begin, end));
       for (std::size_t i = run.begin; i < run.end; ++i) clipped.places.push_back(all.places[i]);
     }
-    if (clipped.places.size() < fewest || clipped.places.size() * part < all.values.size()) continue;
+    bool const many = clipped.places.size() >= fewest && clipped.places.size() * part >= all.values.size();
+    bool const no_chance =
+        clipped.places.size() >= fewest_of_different && rest.repeated <= hardly_repeated && rest.roughness >= rough;
+    if (!many && !no_chance) continue;
     if (rest.roughness < rough ? cut_off(all.values, there, rest, step_near(sorted, clipped.largest))
                                : median(before) >= gentle * rest.difference)
       ends.push_back(std::move(clipped));

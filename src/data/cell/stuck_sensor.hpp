@@ -16,8 +16,9 @@ struct FrozenRun {
 
 /// A tenth of the samples or more (20 at least) that are one number, in a record that is rough elsewhere, as noise makes it, and
 /// where no more than one sample in twenty repeats the one before it: so a slow signal in coarse steps, a switch or a count has
-/// none. Nothing where the run begins the record, which may be at rest, or where the motion dies out before it. values: NaN
-/// missing.
+/// none. Ten samples suffice where no more than one in 200 repeats the one before it, so that chance has no such run; where all
+/// other runs are a fifth as long at most; and where the number is neither the largest nor the smallest. Nothing where the run
+/// begins the record, which may be at rest, or where the motion dies out before it. values: NaN missing.
 std::optional<FrozenRun> frozen_run(std::span<double const> values);
 
 /// The largest or the smallest number, with the samples that stand there three and more in a row.
@@ -28,9 +29,10 @@ struct ClippedSamples {
 };
 
 /// The ends of the range, the upper one first, at which one sample in fifty or more (10 at least) stands in such runs, of a record
-/// that elsewhere is rough as the one above. A smooth one must be cut off three times or more, each time while it moves as fast as
-/// usual and in steps much larger than those of its numbers: a rounded peak is not. Runs that begin the record do not count, nor
-/// does 0, which is where many quantities end, nor what is straight between its stops.
+/// that elsewhere is rough as the one above; 5 samples suffice where no more than one in 200 elsewhere repeats the one before it. A
+/// smooth one must be cut off three times or more, each time while it moves as fast as usual and in steps much larger than those of
+/// its numbers: a rounded peak is not. Runs that begin the record do not count, nor does 0, which is where many quantities end, nor
+/// what is straight between its stops.
 std::vector<ClippedSamples> clipped_samples(std::span<double const> values);
 
 }  // namespace sysid
