@@ -92,6 +92,11 @@ TEST_CASE("a smoothed disturbance that is a term of the states is found, and the
   CHECK(names_term(findings(of, [](double x, double, double e) { return x * x + 0.1 * e; }), "*x^2,"));
   CHECK(names_term(findings(of, [](double, double v, double e) { return -0.3 * std::tanh(v / 0.1) + 0.1 * e; }), "*tanh(x'/"));
   CHECK(names_term(findings(of, [](double, double, double e) { return 1 + 0.3 * e; }), "the constant 0.9"));
+  auto const offset_is_offered = [&](auto const& disturbance) {
+    return findings(of, disturbance).front().help.find("if a sensor has an offset") != std::string::npos;
+  };
+  CHECK(offset_is_offered([](double, double, double e) { return 1 + 0.3 * e; }));
+  CHECK_FALSE(offset_is_offered([](double, double v, double e) { return v + 0.1 * e; }));
   CHECK(names_term(findings(of, [](double, double v, double e) { return v + 0.1 * e; }), "*x',"));
 }
 

@@ -243,6 +243,12 @@ Finding finding(Model const& model, Disturbance const& disturbance, Smoothed con
   std::string const times = found.term.text.empty() ? "" : "*" + found.term.text;
   std::string const shown = found.term.text.empty() ? fmt::format("the constant {}{}", significant(value, 3), bracket)
                                                     : fmt::format("{}{}{}", significant(value, 3), bracket, times);
+  // In a displacement of a linear system the two cannot be told apart.
+  std::string const offset = !found.term.text.empty()
+                                 ? ""
+                                 : "; if a sensor has an offset, it leaves such a constant as well: then add a "
+                                   "parameter to what `observe` predicts instead, as in `normal(y + offset, ...)`, "
+                                   "and compare the evidence of both";
   return {
       FindingCode::disturbance_follows_states,
       Severity::warning,
@@ -251,8 +257,8 @@ Finding finding(Model const& model, Disturbance const& disturbance, Smoothed con
                   "equation may lack this term",
                   disturbance.name, shown, 100 * found.followed.share, significant(std::abs(found.followed.standard_errors), 2)),
       fmt::format("add `{0}{1}` beside `{2}` in its equation, with `parameter {0}{3} ~ normal(0, sd = {4})`, and fit "
-                  "again; while a term is missing, the disturbance depends on the states, and the other parameters are biased",
-                  name, times, disturbance.name, bracket, shortest(round_number_above(3 * std::abs(value))))};
+                  "again; while a term is missing, the disturbance depends on the states, and the other parameters are biased{5}",
+                  name, times, disturbance.name, bracket, shortest(round_number_above(3 * std::abs(value))), offset)};
 }
 
 }  // namespace

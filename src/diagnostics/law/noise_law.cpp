@@ -30,13 +30,17 @@ std::optional<Finding> noise_law(ResidualLaw const& law, double limit, LawWords 
                     words.channel, words.names.front(), law.growth),
         cure_of_growth(words)};
   if (!law.heavy(limit)) return std::nullopt;
+  std::string const check =
+      words.largest.empty() ? "check the largest residuals" : fmt::format("check the largest residuals ({})", words.largest);
   return Finding{FindingCode::noise_law, Severity::warning, words.names,
                  fmt::format("the residuals of {} have heavier tails than normal noise (excess kurtosis {:.2g}): a few samples "
                              "have too much influence on the estimates",
                              words.channel, law.excess_kurtosis),
                  words.random_states
-                     ? "check the largest residuals; if they are measurements, the disturbance does not describe the motion there"
-                     : "check the largest residuals; if they are measurements, " + use_heavy_tails(words.heavy_tailed())};
+                     ? check +
+                           ": empty the cells that are no measurements; if all are, the disturbance does not describe "
+                           "the motion there"
+                     : check + "; if they are measurements, " + use_heavy_tails(words.heavy_tailed())};
 }
 
 }  // namespace sysid

@@ -16,6 +16,7 @@ struct LawWords {
   std::string channel;                                 // as messages name it
   bool random_states;                                  // which noise with heavy tails does not go with
   std::function<bool(std::string const& name)> taken;  // whether a name stands in the text; may be empty
+  std::string largest;                                 // "row 101, 5.2 sds; ...": the residuals far from most others, or none
   /// The statement of the channel's noise with heavy tails, and with a part that is proportional to the signal; nothing where it is
   /// not in the text.
   std::function<std::optional<std::string>()> heavy_tailed;

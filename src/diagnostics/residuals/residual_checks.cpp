@@ -180,6 +180,27 @@ FarOff far_off_in_growing_noise(ChannelResiduals const& of, std::vector<std::siz
   return still;
 }
 
+// "row 101, 5.2 sds; ...", the largest first: those beyond six sds of what most others have. Where such samples make an estimated
+// noise large they are not far off in its units.
+std::string largest_residuals(ChannelResiduals const& of, std::vector<double> const& left, std::size_t first) {
+  constexpr std::size_t most_named = 5;
+  std::vector<double> sizes;
+  for (double const each : left) sizes.push_back(std::fabs(each));
+  if (sizes.empty()) return "";
+  double const limit = far_off_sds * sd_of_mad * median(sizes);
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    if (sizes[i] > limit) places.push_back(i);
+  std::ranges::stable_sort(places, [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
+  std::vector<std::string> named;
+  for (std::size_t const place : places)
+    if (named.size() < most_named)
+      named.push_back(
+          fmt::format("row {}, {:.1f} sds", of.data().first_row + static_cast<int>(of.places[first + place]), sizes[place]));
+  if (places.size() > most_named) named.push_back("...");
+  return fmt::format("{}", fmt::join(named, "; "));
+}
+
 // Of residuals that the other tests take for noise, but for single samples: whether it has the law and the one size that the model
 // has. Noise that grows with the signal has such samples where the signal is large; heavy tails are another cure for them.
 void check_law(ChannelResiduals const& of, ChannelTests const& tested, int together, UserText const& text, Findings& findings) {
@@ -201,6 +222,7 @@ void check_law(ChannelResiduals const& of, ChannelTests const& tested, int toget
                        of.name(),
                        of.model().filtered(),
                        taken_names(of.model(), text.mentions),
+                       largest_residuals(of, left, of.places.size() - left.size()),
                        [&] { return text.heavy_tailed ? text.heavy_tailed(channel) : std::nullopt; },
                        [&](std::string const& relative) {
                          bool const interval = channel.unit && channel.unit->offset != 0;  // 0 degC is no zero

@@ -75,3 +75,17 @@ TEST_CASE("a start that is near, one with a distribution and a spike later on ar
   CHECK(finding_with(spike, FindingCode::initial_far_off) == nullptr);
   CHECK(finding_with(spike, FindingCode::samples_far_off) != nullptr);
 }
+
+TEST_CASE("heavy tails of an estimated noise are named by their rows") {
+  Stream stream({12, Purpose::test});
+  std::vector<double> residuals;
+  for (int i = 0; i < 200; ++i) residuals.push_back(0.7 * stream.normal());
+  residuals[52] = 5.8;
+  residuals[115] = -5.9;
+  residuals[178] = 5.7;
+  Findings const findings = findings_of_start("y = 0, y' = 0", residuals);
+  Finding const* const found = finding_with(findings, FindingCode::noise_law);
+  REQUIRE(found != nullptr);
+  INFO(found->help);
+  CHECK(found->help.find("row 116, 5.9 sds; row 53, 5.8 sds; row 179, 5.7 sds") != std::string::npos);
+}
