@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "app/average/average_tables.hpp"
+#include "app/average/member_doubt.hpp"
 #include "app/average/member_weights.hpp"
 #include "app/average/mixture_bands.hpp"
 #include "app/comparison/compare.hpp"
@@ -90,9 +91,8 @@ class PredictAverage {
       add_source(session_.result_folder(session_.file.tasks[static_cast<std::size_t>(what_.members[k].fit)]), report);
       for (std::size_t f = before; f < report.findings.size(); ++f) {
         Severity& severity = report.findings[f].severity;
-        // By a failed fit a weight may be small that should not be; a fit that counts with another has no part in anything.
-        severity = weighed_.members[k].counted.empty() ? std::max(severity, std::min(weighed(severity, k), Severity::warning))
-                                                       : Severity::note;
+        // A fit that counts with another has no part in anything.
+        severity = weighed_.members[k].counted.empty() ? doubt_of_member(severity, weights_[k]) : Severity::note;
       }
     }
     report.settings = {{"draws", static_cast<std::int64_t>(what_.draws)},
