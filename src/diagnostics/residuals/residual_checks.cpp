@@ -103,6 +103,7 @@ void check_line(ChannelResiduals const& of, ChannelTests const& tested, UserText
 
 std::string size_help(ChannelResiduals const& of, ChannelTests const& tested, bool larger, bool coloured, UserText const& text) {
   // An offset or an outlier makes residuals larger: it does not explain that they are small.
+  if (larger && tested.start) return "the first samples make the noise appear larger: give the initial values a distribution first";
   if (larger && !tested.far.empty()) return "a few outlying samples make the noise appear larger: check these first";
   if (char const* const first = tested.first_cure(); larger && first != nullptr) return first;
   if (of.noise_is_estimated())
