@@ -278,7 +278,8 @@ class DistributionChecker {
       conflict.wanted = in_words(wanted);
       auto const other =
           std::find_if(row.spellings.begin(), row.spellings.end(), [&](Spelling const& each) { return each.unit_power == found; });
-      conflict.help = other != row.spellings.end() ? as_other_spelling(given, *other) : errors::should_be_in("this", conflict.wanted);
+      conflict.help =
+          other != row.spellings.end() ? as_other_spelling(given, *other) : errors::should_be_in("this", conflict.wanted);
       fail(errors::units_differ({Occasion::Kind::distribution, std::string(given.spelling->name), variate_.name},
                                 std::move(conflict)));
       return true;
