@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t most_pairs = 6, search_starts = 8;
 constexpr int searched_draws = 256, search_rounds = 20;
-constexpr double explained_share = 0.05, better_by = 4, worth_a_search = 0.003;
+constexpr double share_explained_otherwise = 0.05, better_by = 4, worth_a_search = 0.003;
 constexpr std::uint64_t search_step = 7;  // of Purpose::start
 
 /// Of normal noise about the mean of each channel of each experiment, with the sd that fits; and the number of samples.
@@ -163,7 +163,7 @@ Findings check_exchanged_columns(FinishedFit& fit) {
     std::vector<ExchangedColumns> const exchanges = exchanged_columns(block, model);
     if (exchanges.size() > most_pairs) continue;
     ExchangedColumns const* best = nullptr;
-    double least = std::min(explained_share, stated / better_by);
+    double least = std::min(share_explained_otherwise, stated / better_by);
     for (ExchangedColumns const& exchange : exchanges) {
       std::vector<Experiment> experiments = read_otherwise(fit, each.use.data, exchange.block);
       if (experiments.empty() || (exchange.of_channel && has_one_tone(fit, experiments, each.use.data))) continue;
