@@ -77,7 +77,8 @@ void answered(std::string const& what, std::string const& text, std::string cons
 TEST_CASE("bytes that are no text") {
   answered("nul bytes", std::string(100'000, '\0'), "E1128");
   answered("a model between nul bytes", std::string(1, '\0') + oscillator(""), "E1115");
-  answered("no UTF-8", repeated("\xFF\xFE", 40'000), "E1115");
+  answered("no UTF-8", repeated("\x80\xFF", 40'000), "E1115");
+  answered("UTF-16", repeated("\xFF\xFE", 40'000), "E1128");
   answered("UTF-8 beyond Unicode", "model \xC0\x80\xED\xA0\x80\xF4\x90\x80\x80 {}\n", "E1115");
   answered("control characters in a text", "model m \"" + std::string(70'000, '\x01') + "\" {}", "E1115");
 }
