@@ -10,8 +10,10 @@ namespace sysid {
 namespace {
 
 constexpr int spacing = 8, per_octave = 8;
-constexpr double clear_lead = 20;     // of z^2: twice the logarithm of a likelihood ratio
-constexpr int most_waited = 100;      // rows
+constexpr double clear_lead = 20;  // of z^2: twice the logarithm of a likelihood ratio
+constexpr int most_waited = 100;   // rows
+/// As many samples as must agree: one or two far ones begin a louder noise as often as a change.
+constexpr double least_samples = 4;
 constexpr double clearly_larger = 8;  // twice a logarithm of a likelihood ratio: of innovations that are larger than expected
 
 }  // namespace
@@ -66,7 +68,9 @@ void ChangeDetector::observe(Innovated const& sample) {
     for (int j = 0; j < parameters_; ++j) {
       auto const p = static_cast<std::size_t>(j);
       each.information[p] += shift[p] * shift[p] / sample.variance;
-      each.score[p] += shift[p] * sample.innovation / sample.variance;
+      double const term = shift[p] * sample.innovation / sample.variance;
+      each.score[p] += term;
+      each.score_squares[p] += term * term;
     }
     for (int k = 0; k < size_; ++k)
       for (int j = 0; j < parameters_; ++j)
@@ -88,6 +92,7 @@ void ChangeDetector::set_back(std::span<double const> gain) {
       for (int j = 0; j < parameters_; ++j) each.errors[static_cast<std::size_t>((states_ + l) * parameters_ + j)] = l == j ? 1 : 0;
     std::ranges::fill(each.information, 0.0);
     std::ranges::fill(each.score, 0.0);
+    std::ranges::fill(each.score_squares, 0.0);
     each.squares = each.samples = 0;
   }
 }
@@ -114,6 +119,7 @@ std::optional<DetectedJump> ChangeDetector::detect() {
       explained_ = std::max(explained_, z * z);
       if (std::fabs(z) <= threshold_ || std::fabs(z) <= std::fabs(best.statistic)) continue;
       if (against_threshold(each, z) <= threshold_) continue;
+      if (each.score[p] * each.score[p] < least_samples * each.score_squares[p]) continue;
       found = &each;
       best.parameter = j;
       best.statistic = z;
@@ -147,7 +153,7 @@ void ChangeDetector::keep(std::int64_t row, std::span<double const> means, std::
   candidate.errors.assign(static_cast<std::size_t>(size_ * parameters_), 0.0);
   for (int j = 0; j < parameters_; ++j) candidate.errors[static_cast<std::size_t>((states_ + j) * parameters_ + j)] = 1;
   candidate.information.assign(static_cast<std::size_t>(parameters_), 0.0);
-  candidate.score = candidate.information;
+  candidate.score = candidate.score_squares = candidate.information;
   candidate.means.assign(means.begin(), means.end());
   candidate.variances.assign(variances.begin(), variances.end());
   candidates_.push_back(std::move(candidate));

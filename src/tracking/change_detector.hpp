@@ -68,6 +68,7 @@ class ChangeDetector {
     std::int64_t row = 0;
     std::vector<double> errors;                                // [size x parameters]: d
     std::vector<double> information, score, means, variances;  // [parameters]: J, b
+    std::vector<double> score_squares;                         // of the terms of the score, summed
     double squares = 0, samples = 0;                           // sum of e^2/S, and how many
   };
 
