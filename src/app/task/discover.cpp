@@ -109,6 +109,7 @@ class Discover {
     if (final_values) {
       Attempt& first = attempts.front();
       first.inner_sd = add_inner_spread(noisy, records_, method, first.inner, first.found);
+      if (session_.interrupted()) throw Interrupted();  // else it would say that they are not known
     }
     return attempts;
   }
