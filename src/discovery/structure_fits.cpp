@@ -65,6 +65,7 @@ std::string const& StructureFits::failure(std::size_t m) const {
 }
 
 double StructureFits::reached(std::size_t m) const {
+  if (!fits_[m].fit.finite) return -std::numeric_limits<double>::infinity();
   return fits_[m].fit.log_evidence + settings_.log_prior[m] + log_prior_of_inner(m);
 }
 
@@ -327,7 +328,7 @@ bool StructureFits::go_back() {
       fits_[m] = std::move(shorter_[m].back());
       shorter_[m].pop_back();
     }
-    if (fits_[m].fit.finite) fits_[m].failure.clear();
+    if (fits_[m].fit.finite && fits_[m].halved == halved_) fits_[m].failure.clear();
   }
   return true;
 }

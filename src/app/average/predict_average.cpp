@@ -121,14 +121,6 @@ class PredictAverage {
                        predicted.empty() ? std::string() : fmt::format(" ({})", predicted));
   }
 
-  /// The severity of what is wrong with the trajectories of a member, by its part in the average.
-  Severity weighed(Severity alone, std::size_t k) const {
-    if (weights_[k] < negligible_weight) return Severity::note;
-    constexpr double small = 0.1;
-    if (weights_[k] >= small) return alone;
-    return alone == Severity::error ? Severity::warning : Severity::note;
-  }
-
   /// Names of the members that predict one step from measured samples, or that run freely.
   std::vector<std::string> of_kind(bool one_step) const {
     std::vector<std::string> names;
@@ -244,7 +236,8 @@ class PredictAverage {
   void add_of_member(std::size_t k, Finding finding, Report& report) const {
     finding.message = fmt::format("with `{}`: {}", name(k), finding.message);
     finding.names.push_back(name(k));
-    if (Severity const severity = weighed(finding.severity, k); row_of(finding.code).severities.contains(severity))
+    if (Severity const severity = doubt_of_trajectories(finding.severity, weights_[k]);
+        row_of(finding.code).severities.contains(severity))
       finding.severity = severity;
     report.findings.push_back(std::move(finding));
   }

@@ -19,7 +19,7 @@ struct KnownFile {
 constexpr KnownFile known_files[] = {
     {"PK\x03\x04", "a spreadsheet or a zip archive", "save the sheet as CSV, or unpack the archive"},
     {"\xd0\xcf\x11\xe0", "a spreadsheet of old Excel", "save the sheet as CSV"},
-    {"BZh", "a bzip2 file", "unpack it; gzip files are read as they are"},
+    {"BZh91AY&SY", "a bzip2 file", "unpack it; gzip files are read as they are"},
     {"\xfd\x37zXZ", "an xz file", "unpack it; gzip files are read as they are"},
     {"\x28\xb5\x2f\xfd", "a zstd file", "unpack it; gzip files are read as they are"},
     {"PAR1", "a Parquet file", "write it as NetCDF or CSV: `to_csv` of pandas"},

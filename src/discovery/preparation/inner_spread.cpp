@@ -1,4 +1,4 @@
-// Differences over steps that lower the density by a fraction of one.
+// Differences over steps that lower the evidence by a factor of one to three.
 #include "discovery/preparation/inner_spread.hpp"
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 namespace sysid {
 namespace {
 
-constexpr double aimed_drop = 0.3, least_drop = 0.05, most_drop = 1;  // of the log density, on average of both sides
+constexpr double aimed_drop = 0.3, least_drop = 0.05, most_drop = 1;  // of log evidence, on average of both sides
 constexpr int most_trials = 14;
 constexpr double first_step = 1e-3;  // of the value
 
 /// At one value of the parameters, with the terms held.
 struct Nearby {
-  double log_density = 0;
+  double log_evidence = 0;
   std::vector<Eigen::VectorXd> coefficients;  // per equation
 };
 
@@ -61,8 +61,8 @@ class InnerSpread {
  private:
   std::optional<Nearby> at(std::vector<double> const& values) const {
     Nearby out;
-    for (std::size_t k = 0; k < values.size(); ++k) out.log_density += log_density(dictionary_.inner[k], values[k]);
-    if (!std::isfinite(out.log_density)) return std::nullopt;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (!std::isfinite(log_density(dictionary_.inner[k], values[k]))) return std::nullopt;
     regression::Discovery const near =
         regression::discover(with_inner(dictionary_.numbers, dictionary_.open, dictionary_.inner, values), experiments_, method_);
     if (near.interrupted) return std::nullopt;
@@ -73,7 +73,7 @@ class InnerSpread {
       auto const same = std::find_if(all.begin(), all.end(), [&](regression::Support const& each) { return each.terms == terms; });
       if (!found_.equations[e].found || !near.equations[e].found || same == all.end() || !std::isfinite(same->log_evidence))
         return std::nullopt;
-      out.log_density += same->log_evidence;
+      out.log_evidence += same->log_evidence;
       out.coefficients.push_back(same->coefficient);
     }
     return out;
@@ -87,7 +87,7 @@ class InnerSpread {
   }
 
   double drop(std::size_t k, Nearby const& here) const {
-    return here.log_density - (sides_[k][0].log_density + sides_[k][1].log_density) / 2;
+    return here.log_evidence - (sides_[k][0].log_evidence + sides_[k][1].log_evidence) / 2;
   }
 
   bool find_step(std::size_t k, Nearby const& here) {
@@ -103,7 +103,8 @@ class InnerSpread {
       sides_[k] = {*below, *above};
       steps_[k] = step;
       double const fallen = drop(k, here);
-      if (fallen >= least_drop && fallen <= most_drop) return true;
+      bool const both = std::max(below->log_evidence, above->log_evidence) < here.log_evidence;
+      if (both && fallen >= least_drop && fallen <= most_drop) return true;
       step *= fallen > 0 ? std::clamp(std::sqrt(aimed_drop / fallen), 0.1, 10.0) : 10;
     }
     return false;
@@ -115,7 +116,7 @@ class InnerSpread {
       for (double const b : {-1.0, 1.0}) {
         auto const near = moved(i, a * steps_[i], j, b * steps_[j]);
         if (!near) return std::nullopt;
-        sum -= a * b * near->log_density;
+        sum -= a * b * near->log_evidence;
       }
     return sum / (4 * steps_[i] * steps_[j]);
   }

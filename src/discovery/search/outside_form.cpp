@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "core/numeric/elementary.hpp"
@@ -19,18 +18,17 @@ constexpr std::size_t most_columns = 400;
 constexpr double within_bounds = 0.5;
 
 /// The state of the model whose rate an equation sets: the only derivative in it, with these terms, that is one order above a
-/// state. -1: none, or several, or one inside a term, where what a function does to the rate depends on the states.
+/// state. -1: none, or several, or one whose factor moves with the record, so that what a function does to the rate moves, too.
 int driven_state(WholeDictionary const& dictionary, Terms const& terms, std::size_t equation) {
   regression::Dictionary const& numbers = dictionary.source().dictionary.numbers;
   std::vector<regression::Term> const& own = numbers.equations[equation].terms;
-  std::vector<NodeId> roots = {numbers.equations[equation].known}, chosen;
+  std::vector<NodeId> roots = {numbers.equations[equation].known};
   for (regression::Term const& term : own)
     if (term.always) roots.push_back(term.expression);
   for (int const j : terms) {
     WholeDictionary::Column const& column = dictionary.columns()[static_cast<std::size_t>(j)];
-    if (column.equation == equation && !column.always) chosen.push_back(own[column.term].expression);
+    if (column.equation == equation && !column.always) roots.push_back(own[column.term].expression);
   }
-  roots.insert(roots.end(), chosen.begin(), chosen.end());
   std::vector<NodeId> const reached = numbers.graph.reachable(roots);
   std::vector<std::pair<int, int>> const& states = dictionary.model().states;
   int found = -1;
@@ -40,11 +38,13 @@ int driven_state(WholeDictionary const& dictionary, Terms const& terms, std::siz
     if (std::find(states.begin(), states.end(), std::pair(symbol.index, symbol.order)) != states.end()) continue;
     auto const state = std::find(states.begin(), states.end(), std::pair(symbol.index, symbol.order - 1));
     if (state == states.end() || found >= 0) return -1;
-    for (NodeId const term : chosen) {
-      std::vector<NodeId> const inside = numbers.graph.reachable(std::span(&term, 1));
-      if (term != symbol.leaf && std::find(inside.begin(), inside.end(), symbol.leaf) != inside.end()) return -1;
-    }
     found = static_cast<int>(state - states.begin());
+    Graph graph = numbers.graph;
+    std::vector<NodeId> factors;
+    for (NodeId const root : roots) factors.push_back(graph.differentiate(root, symbol.leaf));
+    for (NodeId const node : graph.reachable(factors))
+      if (std::any_of(numbers.symbols.begin(), numbers.symbols.end(), [&](auto const& each) { return each.leaf == node; }))
+        return -1;
   }
   return found;
 }
@@ -157,7 +157,7 @@ LinearisedMotion extended(LinearisedParts const& parts, std::vector<Eigen::Matri
 }
 
 /// Of all columns: those of the equation share its expected number of terms with the functions.
-std::vector<double> shared_odds(WholeDictionary const& dictionary, std::size_t equation, std::size_t inner,
+std::vector<double> shared_odds(WholeDictionary const& dictionary, std::size_t equation,
                                 std::vector<OutsideFunction> const& functions) {
   std::vector<double> weights, odds;
   for (WholeDictionary::Column const& each : dictionary.columns()) {
@@ -165,7 +165,6 @@ std::vector<double> shared_odds(WholeDictionary const& dictionary, std::size_t e
     bool const shares = each.equation == equation && !each.always;
     weights.push_back(shares ? simplicity(dictionary.source().dictionary.equations[equation].terms[each.term].tree) : 0.0);
   }
-  for (std::size_t k = 0; k < inner; ++k) weights.push_back(0), odds.push_back(0);
   for (OutsideFunction const& each : functions) weights.push_back(each.simplicity), odds.push_back(0);
   std::vector<double> const shared = log_odds_of(weights);
   for (std::size_t j = 0; j < odds.size(); ++j)
@@ -186,33 +185,27 @@ std::optional<OutsideEquation> outside_form(WholeDictionary const& dictionary, F
   Drive const drive(dictionary, conditions, *steps, noise_sd);
   std::vector<DictionaryEquation> const& equations = dictionary.source().dictionary.equations;
   std::vector<WholeDictionary::Column> const& own = dictionary.columns();
-  std::size_t const known = static_cast<std::size_t>(parts.at.size()), inner = known - own.size();
   std::optional<OutsideEquation> best;
   for (std::size_t e = 0; e < equations.size() && !interrupted(); ++e) {
     int const driven = driven_state(dictionary, lead.terms, e);
     if (driven < 0) continue;
     std::vector<OutsideFunction> const functions = outside_functions(states, terms_of_states(dictionary, e, states));
-    if (functions.empty() || known + functions.size() > most_columns) continue;
-    LinearisedMotion const motion = extended(parts, drive.columns(functions, driven), shared_odds(dictionary, e, inner, functions));
-    auto const with_inner = [&](Terms terms) {  // those that the leading structure reads
-      for (std::size_t j = own.size(); j < known; ++j)
-        if (motion.usable(static_cast<int>(j))) terms.push_back(static_cast<int>(j));
-      return terms;
-    };
+    if (functions.empty() || own.size() + functions.size() > most_columns) continue;
+    LinearisedMotion const motion = extended(parts, drive.columns(functions, driven), shared_odds(dictionary, e, functions));
     Terms others;
     for (int const j : lead.terms)
       if (own[static_cast<std::size_t>(j)].equation != e || own[static_cast<std::size_t>(j)].always) others.push_back(j);
     std::size_t const most = std::max<std::size_t>(lead.terms.size() - others.size(), 2);
-    std::vector<Terms> from = built_up(motion, with_inner(others), most);
-    for (Terms const& each : near) from.push_back(with_inner(each));
-    from.push_back(with_inner(lead.terms));
+    std::vector<Terms> from = built_up(motion, others, most);
+    from.insert(from.end(), near.begin(), near.end());
+    from.push_back(lead.terms);
     std::erase_if(from, [&](Terms const& terms) {
       return std::any_of(terms.begin(), terms.end(), [&](int j) { return !motion.usable(j); });
     });
     WeighedTerms const* outside = nullptr;
     WeighedTerms const* inside = nullptr;
     std::vector<WeighedTerms> const weighed = best_terms(motion, from);
-    auto const is_outside = [&](int j) { return j >= static_cast<int>(known); };
+    auto const is_outside = [&](int j) { return j >= static_cast<int>(own.size()); };
     for (WeighedTerms const& each : weighed) {
       WeighedTerms const*& place = std::any_of(each.terms.begin(), each.terms.end(), is_outside) ? outside : inside;
       if (place == nullptr) place = &each;
@@ -228,9 +221,9 @@ std::optional<OutsideEquation> outside_form(WholeDictionary const& dictionary, F
                          .samples = parts.settings.samples};
     for (int const j : outside->terms) {
       auto const column = static_cast<std::size_t>(j);
-      if (!is_outside(j) && (column >= own.size() || own[column].equation != e)) continue;
+      if (!is_outside(j) && own[column].equation != e) continue;
       form.text += (form.text.empty() ? equations[e].text + ": " : ", ") +
-                   (is_outside(j) ? functions[column - known].text : equations[e].terms[own[column].term].text);
+                   (is_outside(j) ? functions[column - own.size()].text : equations[e].terms[own[column].term].text);
     }
     best = std::move(form);
   }

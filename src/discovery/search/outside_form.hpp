@@ -20,8 +20,7 @@ struct LinearisedParts {
 
 /// With one or more of `outside_functions`, by the linearised motion about a fit; one equation after the other is given the
 /// functions. A function that drives an equation moves the states that follow by the steps from sample to sample, with its mean
-/// over each interval that of its ends. Nothing where a channel measures no state. parts: with the parameters inside terms, which
-/// are in every set; their columns follow those of the dictionary. noise_sd: per channel of the model, as
+/// over each interval that of its ends. Nothing where a channel measures no state. noise_sd: per channel of the model, as
 /// the slopes were divided by.
 std::optional<OutsideEquation> outside_form(WholeDictionary const& dictionary, FittedTerms const& lead,
                                             FitConditions const& conditions, LinearisedParts const& parts,

@@ -60,7 +60,7 @@ class Searcher {
   std::optional<OutsideEquation> outside() const {
     if (interrupted_()) return std::nullopt;
     std::vector<double> noise;
-    LinearisedParts const parts = linearised(noise, true);
+    LinearisedParts const parts = linearised(noise);
     std::vector<Terms> near;
     for (WeighedTerms const& each : now_.near)
       if (near.size() < most_near) near.push_back(each.terms);
@@ -79,17 +79,12 @@ class Searcher {
     double near_offset = 0;              // of their scores against those of fits
   };
 
-  // About the leading structure, by every coefficient of the dictionary, and where asked by the parameters inside its terms.
-  LinearisedParts linearised(std::vector<double>& noise, bool with_inner) const {
+  // About the leading structure, by every coefficient of the dictionary.
+  LinearisedParts linearised(std::vector<double>& noise) const {
     Terms all;
     for (std::size_t j = 0; j < dictionary_.columns().size(); ++j) all.push_back(static_cast<int>(j));
-    std::vector<ValidatedModel::Inner> const inner = with_inner ? dictionary_.model().inner : std::vector<ValidatedModel::Inner>();
-    SegmentSimulation const simulation =
-        with_inner ? dictionary_.simulation_with_inner(all, now_.conditions) : dictionary_.simulation(all, now_.conditions);
-    ShootingPoint point{dictionary_.coefficients_of_all(now_.lead), now_.lead.fit.point.starts};
-    point.coefficients.conservativeResize(std::ssize(all) + std::ssize(inner));
-    for (std::size_t i = 0; i < inner.size(); ++i)
-      point.coefficients(std::ssize(all) + static_cast<Eigen::Index>(i)) = inner[i].start;
+    SegmentSimulation const simulation = dictionary_.simulation(all, now_.conditions);
+    ShootingPoint const point{dictionary_.coefficients_of_all(now_.lead), now_.lead.fit.point.starts};
     SegmentDifferences differences(simulation, point);
     std::vector<SegmentSlopes> const slopes = differences.at(point, most_probes);
     noise = noise_of(simulation, squares_of(simulation, slopes), 0);
@@ -105,13 +100,11 @@ class Searcher {
       settings.log_odds.push_back(each.log_odds);
       settings.always.push_back(each.always ? 1 : 0);
     }
-    settings.log_odds.resize(settings.log_odds.size() + inner.size(), 0);
-    settings.always.resize(settings.log_odds.size(), 1);
     return {weighted(simulation, slopes, noise), point.coefficients, std::move(settings)};
   }
   LinearisedMotion linearised() const {
     std::vector<double> noise;
-    LinearisedParts parts = linearised(noise, false);
+    LinearisedParts parts = linearised(noise);
     return LinearisedMotion(parts.slopes, parts.at, std::move(parts.settings));
   }
 

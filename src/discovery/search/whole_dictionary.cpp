@@ -86,10 +86,13 @@ std::optional<std::size_t> WholeDictionary::channel_of(std::pair<int, int> const
 }
 
 std::optional<std::vector<int>> WholeDictionary::states_of_channels() const {
-  std::vector<int> out(model_.channels.size(), -1);
-  for (std::size_t x = 0; x < model_.states.size(); ++x)
-    if (auto const channel = channel_of(model_.states[x])) out[*channel] = static_cast<int>(x);
-  if (std::find(out.begin(), out.end(), -1) != out.end()) return std::nullopt;
+  std::vector<int> out;
+  for (std::size_t const c : model_.channels) {
+    regression::Channel const& channel = source_.dictionary.numbers.channels[c];
+    auto const state = std::find(model_.states.begin(), model_.states.end(), std::pair(channel.state, channel.order));
+    if (state == model_.states.end()) return std::nullopt;
+    out.push_back(static_cast<int>(state - model_.states.begin()));
+  }
   return out;
 }
 
@@ -129,12 +132,6 @@ Eigen::VectorXd WholeDictionary::coefficients_of(Terms const& terms, FittedTerms
 
 SegmentSimulation WholeDictionary::simulation(Terms const& terms, FitConditions const& conditions) const {
   return simulation(terms, {}, {}, conditions, records_, segments(conditions.halved));
-}
-
-SegmentSimulation WholeDictionary::simulation_with_inner(Terms const& terms, FitConditions const& conditions) const {
-  SegmentSimulation::Settings with_inner = settings(terms, {}, {}, conditions);
-  for (ValidatedModel::Inner const& each : model_.inner) with_inner.fitted.push_back(each.parameter);
-  return SegmentSimulation(model_.compiled, records_, segments(conditions.halved), std::move(with_inner));
 }
 
 SegmentSimulation WholeDictionary::simulation(FittedTerms const& fitted, std::vector<Segment> const& parts,

@@ -63,8 +63,6 @@ class WholeDictionary {
 
   /// Of the terms that are fitted; all others are out.
   SegmentSimulation simulation(Terms const& terms, FitConditions const& conditions) const;
-  /// Of these and of the parameters inside terms, which follow.
-  SegmentSimulation simulation_with_inner(Terms const& terms, FitConditions const& conditions) const;
   /// Of starts alone, over other segments: coefficients are held at those of a fit.
   SegmentSimulation simulation(FittedTerms const& fitted, std::vector<Segment> const& parts, FitConditions const& conditions,
                                std::vector<Experiment> const& records) const;

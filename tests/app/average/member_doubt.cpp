@@ -14,3 +14,10 @@ TEST_CASE("a fit with warnings and next to no weight is a note of the average, a
   CHECK(doubt_of_member(Severity::error, 0.05) == Severity::warning);
   CHECK(doubt_of_member(Severity::error, 3.2e-37) == Severity::warning);
 }
+
+TEST_CASE("trajectories of a member with little weight are no error of the average") {
+  CHECK(doubt_of_trajectories(Severity::error, 0.5) == Severity::error);
+  CHECK(doubt_of_trajectories(Severity::error, 0.05) == Severity::warning);
+  CHECK(doubt_of_trajectories(Severity::warning, 0.05) == Severity::note);
+  CHECK(doubt_of_trajectories(Severity::error, 0.005) == Severity::note);
+}

@@ -151,6 +151,24 @@ TEST_CASE("by the regression alone, of a difference equation, where the record i
         doctest::Approx(std::sqrt(covariance(2, 2))).epsilon(0.03).scale(0));
 }
 
+TEST_CASE("a value at the edge of its prior has no sd by curvature, and the report says so") {
+  Stream input({4, Purpose::input, 0, 0}), noise({4, Purpose::noise, 0, 0});
+  std::string csv = "u,y\n";
+  double y = 0;
+  for (int i = 0; i < 300; ++i) {
+    double const u = std::abs(input.normal());
+    csv += fmt::format("{:.15g},{:.15g}\n", u, y);
+    y = 0.7 * y + 2 * u / (0.5 + u) + 0.02 * noise.normal();
+  }
+  Found const found(csv,
+                    "time discrete\ninput u\nstate y = y\nparameter K ~ uniform(0.01, 0.2)\ntarget = y\n"
+                    "terms = lag(y, 1), lag(u, 1)/(K + lag(u, 1))\n",
+                    "step 1 [s]; input u = u; measure y = y\n", "spike_slab, ");
+  json const& K = found.summary.at("discovery").at("inside_terms").at(0);
+  CHECK(K.at("regression").get<double>() > 0.19);
+  CHECK(K.at("regression_sd").is_null());
+}
+
 TEST_CASE("a record that no value explains ends with the findings of any other") {
   std::string csv = "t,x\n";
   for (int i = 0; i < 60; ++i) csv += fmt::format("{},1\n", i);
