@@ -31,6 +31,11 @@ bool begins_with_verb(Gap const& gap) {
   std::size_t const verb = gap.statement.size() > 2 && gap.statement[1].is("=") ? 2 : 0;
   return gap.statement.size() > verb && words::contains(words::verbs, gap.statement[verb].text);
 }
+/// `sd = 30 %`, up to the sign.
+bool is_share_as_sd(Gap const& gap) {
+  return found(gap, "%") && gap.at >= 3 && gap.before()->kind == TokenKind::number && gap.before(2)->is("=") &&
+         gap.before(3)->is("sd");
+}
 
 constexpr std::array<Situation, 41> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
@@ -76,9 +81,9 @@ constexpr std::array<Situation, 41> situations{{
     {[](Gap const& g) { return g.wanted == wanted::item && found_kind(g, TokenKind::number); },
      "a name begins with a letter or `_`"},
     {[](Gap const& g) { return found(g, "=") && g.at == 0; }, "an equation has two sides: `left = right`"},
-    {[](Gap const& g) { return found(g, "%") && g.begins_with("parameter") && g.find("~") < g.at; },
+    {[](Gap const& g) { return g.begins_with("parameter") && is_share_as_sd(g); },
      "a share of the mean is a product: of 30 % and a mean of 0.03, `sd = 0.3*0.03`"},
-    {[](Gap const& g) { return found(g, "%") && g.begins_with("observe") && g.find("~") < g.at; },
+    {[](Gap const& g) { return g.begins_with("observe") && is_share_as_sd(g); },
      "a share of the signal is a product, and needs a floor: `sd = 0.05*abs(y) + sigma`"},
     {[](Gap const& g) { return found(g, "%") && g.before() != nullptr && g.before()->kind == TokenKind::number; },
      "a percentage is written `1 [percent]`"},

@@ -19,9 +19,9 @@ constexpr std::array<std::string_view, 8> start_words{"start", "init", "initial"
 constexpr std::array<std::string_view, 3> definitions{"let", "derive", "constant"};
 
 std::string no_start(std::string_view rest) {
-  bool const truncates = words::contains(truncations, rest.substr(0, rest.find(' ')));
-  for (std::string_view const bound : {"lower", "upper", "min", "max", "bounds"})
-    if (truncates || rest.find(bound) < 3) return "bounds are arguments of the prior: `normal(0, sd = 1, lower = 0, upper = 1)`";
+  bool bounds = words::contains(truncations, rest.substr(0, rest.find(' ')));
+  for (std::string_view const bound : {"lower", "upper", "min", "max", "bounds"}) bounds = bounds || rest.find(bound) < 3;
+  if (bounds) return "bounds are arguments of the prior: `normal(0, sd = 1, lower = 0, upper = 1)`";
   return fmt::format("remove `{}`: a parameter has no start value, the search begins at draws of the prior", rest);
 }
 
@@ -51,11 +51,20 @@ std::string bracketed_unit(Gap const& gap, std::size_t from, std::size_t end) {
   return end_of_unit(gap.statement, from) == end ? fmt::format("[{}]", gap.text(from, end)) : std::string();
 }
 
+/// The comma behind the first argument of the call that opens there, or what closes it: not one of a call inside.
+std::size_t first_comma(Gap const& gap, std::size_t opener) {
+  std::size_t const close = gap.closing(opener);
+  std::size_t at = opener + 1;
+  while (at < close && !gap.statement[at].is(","))
+    at = (gap.statement[at].is("(") || gap.statement[at].is("[") ? gap.closing(at) : at) + 1;
+  return std::min(at, close);
+}
+
 /// `normal(20, sd = 5)T(0, 100)`: the prior with its bounds inside.
 std::string truncation(Gap const& gap, std::size_t tilde) {
   if (!gap.found_word() || gap.next() == nullptr || !(gap.next()->is("(") || gap.next()->is("["))) return {};
   if (!words::contains(truncations, gap.found->text)) return {};
-  std::size_t const opener = gap.at + 1, close = gap.closing(opener), comma = gap.find(",", opener);
+  std::size_t const opener = gap.at + 1, close = gap.closing(opener), comma = first_comma(gap, opener);
   if (gap.statement[tilde + 1].is("uniform") || gap.statement[tilde + 1].is("log_uniform"))
     return fmt::format("remove `{}`: the arguments of `{}` are its bounds", gap.rest(), gap.statement[tilde + 1].text);
   std::string_view const lower = gap.text(opener + 1, std::min(comma, close)),
@@ -82,8 +91,8 @@ std::string behind_distribution(Gap const& gap) {
     return fmt::format("`per experiment` comes after the name: `{} per experiment{}{} ~ {}`", gap.text(0, name_end),
                        name_end < tilde ? " " : "", gap.text(name_end, tilde), prior);
   }
-  std::size_t const comma = gap.find(",", tilde);
-  if (gap.begins_with("observe") && (gap.found->is("+") || gap.found->is("-")) && comma < gap.at)
+  std::size_t const comma = first_comma(gap, tilde + 2);
+  if (gap.begins_with("observe") && (gap.found->is("+") || gap.found->is("-")) && comma < gap.at && gap.statement[comma].is(","))
     return fmt::format("what is measured stands inside: `{} {}{}`", gap.text(tilde + 1, comma), gap.rest(),
                        gap.text(comma, gap.at));
   if (!parameter) return fmt::format("remove `{}`", gap.rest());
@@ -167,13 +176,15 @@ std::string behind_declared(Gap const& gap) {
       return fmt::format("bounds are arguments of the prior, `normal(0, sd = 1, lower = 0)`: remove `{}`",
                          gap.text(gap.statement[1].is("real") ? 1 : gap.at, end + 1));
   }
-  if (parameter && (gap.found->is(">") || gap.found->is("<")) && gap.find("~") < gap.statement.size() &&
-      gap.statement.back().is(")")) {
-    std::size_t const tilde = gap.find("~"), end = std::min(gap.find("["), tilde);
+  bool const bound = gap.found->is(">") || gap.found->is("<") || gap.found->is(">=") || gap.found->is("<=");
+  if (parameter && bound && gap.find("~") < gap.statement.size() && gap.statement.back().is(")")) {
+    // Behind the number the unit of the parameter, unless it has one before.
+    std::size_t const tilde = gap.find("~"), end = gap.find("[") < gap.at ? tilde : std::min(gap.find("[", gap.at), tilde);
     return fmt::format("bounds are arguments of the prior: `{} {}, {} = {})`", gap.text(0, gap.at),
-                       gap.text(end, gap.statement.size() - 1), gap.found->is(">") ? "lower" : "upper", gap.text(gap.at + 1, end));
+                       gap.text(end, gap.statement.size() - 1), gap.found->text.front() == '>' ? "lower" : "upper",
+                       gap.text(gap.at + 1, end));
   }
-  if (parameter && (gap.found->is(">") || gap.found->is("<") || gap.found->is(">=") || gap.found->is("<=")))
+  if (parameter && bound)
     return fmt::format("bounds are arguments of a prior: `{} ~ normal(0, sd = 1, {} = {})`", gap.text(0, gap.at),
                        gap.found->text.front() == '>' ? "lower" : "upper", gap.text(gap.at + 1, gap.statement.size()));
   if (gap.found->kind == TokenKind::text)

@@ -274,8 +274,8 @@ class Scanner {
     bool const behind_name = begin > 0 && words::continues_name(text_[begin - 1]);
     if (command.empty() || (behind_name && !notation::is_command(command))) {
       at_ = name;  // `N\m`
-      bool const ends_line = peek() == '\n' || peek() == '\r';
-      if (ends_line || begin + 1 == text_.size())
+      std::size_t const next = text_.find_first_not_of(" \t", at_);
+      if (next == std::string_view::npos || text_[next] == '\n' || text_[next] == '\r')
         return mistake(
             errors::no_meaning(from(begin), "the character `\\`",
                                "remove it: a line ends inside parentheses, or after an operator or a comma, and goes on"));
