@@ -117,7 +117,8 @@ std::string or_rate(Names const& spellings, std::string const& value) {
 /// `0.01^2` as the second argument of a normal distribution is a variance, as in most books, and `1/0.01^2` a precision.
 std::string by_its_form(Names const& spellings, ast::Expression const& value) {
   auto const* binary = std::get_if<ast::Box<ast::Binary>>(&value.node);
-  bool const quotient = binary != nullptr && (*binary)->symbol == "/";
+  auto const* above = binary == nullptr || (*binary)->symbol != "/" ? nullptr : std::get_if<ast::Number>(&(*binary)->left->node);
+  bool const quotient = above != nullptr && above->value == 1 && !above->unit;
   if (quotient) binary = std::get_if<ast::Box<ast::Binary>>(&(*binary)->right->node);
   auto const* exponent = binary == nullptr ? nullptr : std::get_if<ast::Number>(&(*binary)->right->node);
   bool const square = exponent != nullptr && (*binary)->symbol == "^" && exponent->value == 2 && !exponent->unit;
@@ -202,11 +203,20 @@ Diagnostic argument_twice(Span second, Span first, std::string const& spelling, 
 
 namespace {
 
+/// A number of 1 or more without a name and a unit; a name or a small number is likelier a width.
+bool may_be_degrees_of_freedom(ast::Argument const& argument) {
+  auto const* number = std::get_if<ast::Number>(&argument.value.node);
+  return !argument.name && number != nullptr && !number->unit && number->value >= 1;
+}
+
 /// `student_t(y, sigma)`, `student_t(y, sd = sigma)`: the second argument is what few expect.
 std::string with_degrees_of_freedom(ast::Call const& call) {
   if (call.function.text != "student_t" || call.arguments.size() != 2 || call.arguments[0].name) return {};
   ast::Argument width = call.arguments[1];
   if (width.name && width.name->text == "degrees_of_freedom") return {};
+  if (may_be_degrees_of_freedom(width))
+    return fmt::format("its width comes after the degrees of freedom: write `student_t({}, {}, scale = ...)`",
+                       unparse(call.arguments[0].value), unparse(width.value));
   if (!width.name) width.name = ast::Name{call.span, "scale"};
   return fmt::format("the degrees of freedom come second, 1 for a Cauchy distribution: write `student_t({}, 4, {} = {})`",
                      unparse(call.arguments[0].value), width.name->text, unparse(width.value));

@@ -31,7 +31,7 @@ constexpr ForeignFunction foreign_functions[] = {
     {"pow", 2, "{A}^{B}", with_power},
     {"power", 2, "{A}^{B}", with_power},
     {"cube", 1, "{A}^3", with_power},
-    {"cbrt", 1, "sign({a})*abs({a})^(1/3)", no_such},
+    {"cbrt", 1, "(sign({a})*abs({a})^(1/3))", no_such},
     {"exp2", 1, "2^{A}", with_power},
     {"exp10", 1, "10^{A}", with_power},
     {"log2", 1, "(log({a})/log(2))", no_such},
