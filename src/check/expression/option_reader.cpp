@@ -51,8 +51,7 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
         values.set(name, static_cast<std::int64_t>(*value));
       break;
     case SettingKind::real:
-      // The one setting that is a time: a bare number is in seconds.
-      if (auto const value = number(argument.value, name, unit_of(name == "wall_time" ? "s" : ""), row.minimum, row.maximum)) {
+      if (auto const value = number(argument.value, name, unit_of(row.unit), row.minimum, row.maximum)) {
         if (*value > 0 && *value < row.least_positive)
           diagnostics_.add(errors::option_range_or_zero(argument.value.span, name, *value, row.least_positive, row.maximum));
         values.set(name, *value);
@@ -166,7 +165,7 @@ void OptionReader::start(ast::Option const& option, StartRule& rule) {
           diagnostics_.add(errors::unknown_argument(*argument.name, "estimated", {"rows"}));
         } else if (given) {
           diagnostics_.add(errors::stated_twice(argument.span, *given, errors::named("rows")));
-        } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true)) {
+        } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true, time_for_rows())) {
           rule.rows = static_cast<int>(*rows);
         }
         if (!given) given = argument.span;

@@ -40,6 +40,10 @@ class OptionReader {
     Unit unit;
     std::string help;
   };
+  /// Of a number of rows: a time.
+  static OtherPlace time_for_rows() {
+    return {unit_of("s"), "write a pure number: a number of rows is a time multiplied by the rate, as 500 for 10 s at 50 Hz"};
+  }
   /// A number known before the run, SI. unit: absent where nothing is declared, and anything goes.
   std::optional<double> number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit, double least,
                                double most, bool whole = false, std::optional<OtherPlace> const& elsewhere = std::nullopt);

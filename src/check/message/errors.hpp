@@ -183,6 +183,8 @@ Diagnostic option_without_name(ast::Expression const& option, std::string const&
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);
 Diagnostic option_kind(Span span, std::string const& option, Subject const& wanted, std::string const& example);
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most);
+/// Of a bare number that was hardly meant in radians.
+Diagnostic angle_beyond_turn(ast::Expression const& given, std::string const& option);
 /// Of an option whose 0 stands for something else.
 Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most);
 Diagnostic option_choice(Span span, std::string const& option, std::string const& given, Names const& choices);

@@ -221,10 +221,8 @@ Diagnostic list_here(Span span) {
 
 namespace {
 
-std::string without_wrong_unit(Unit const& given, Unit const& wanted) {
+std::string without_wrong_unit(Unit const& wanted) {
   if (!wanted.dimensionless()) return "correct the unit, or remove it";
-  if (given.dimension == unit_atom("s").value().dimension)
-    return "write a pure number: a number of rows is a time multiplied by the rate, as 500 for 10 s at 50 Hz";
   if (!wanted.text.empty() && wanted.text != "-") return fmt::format("write a share, as `1 [{}]`", wanted.text);
   return "remove the unit";
 }
@@ -241,7 +239,7 @@ std::string cycles_in_words(Unit const& given, Unit const& wanted) {
 Diagnostic number_of_other_kind(Span span, Subject const& what, Unit const& given, Unit const& wanted) {
   return about(what.names,
                error("E2014", span, fmt::format("{} is {}, but this is {}", what.words, measure(wanted), measure(given)),
-                     without_wrong_unit(given, wanted)));
+                     without_wrong_unit(wanted)));
 }
 
 Diagnostic number_in_cycles(Span span, Subject const& what, Unit const& given, Unit const& wanted) {

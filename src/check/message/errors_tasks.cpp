@@ -234,10 +234,16 @@ Diagnostic option_range(Span span, std::string const& option, double given, doub
                             : least == 0               ? std::string("not be negative")
                             : least > 0                ? std::string("be positive")
                                                        : std::string("be finite");
+  return about({option}, error("E6005", span, fmt::format("`{}` must {}, but is {}", option, range, given),
+                               "choose a number that satisfies this"));
+}
+
+Diagnostic angle_beyond_turn(ast::Expression const& given, std::string const& option) {
+  std::string const number = unparse(given);
   return about({option},
-               error("E6005", span, fmt::format("`{}` must {}, but is {}", option, range, given),
-                     option == "phase" ? fmt::format("a number without a unit is in radians: write `{} [deg]` for degrees", given)
-                                       : "choose a number that satisfies this"));
+               error("E6005", given.span,
+                     fmt::format("`{}` without a unit is in radians, and {} radians are more than a turn", option, number),
+                     fmt::format("write `{0} [deg]` for degrees, `{0} [rad]` for radians", number)));
 }
 
 Diagnostic option_range_or_zero(Span span, std::string const& option, double given, double least, double most) {

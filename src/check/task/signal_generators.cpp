@@ -49,6 +49,14 @@ std::vector<std::string> arguments_of(SignalRow const& row) {
   return names;
 }
 
+// `90` where an angle is wanted. What has a unit, or is computed from pi, is meant as it is written.
+bool is_bare_angle_beyond_turn(ast::Expression const& tree) {
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return is_bare_angle_beyond_turn(*(*unary)->operand);
+  constexpr double turn = 6.3;
+  auto const* number = std::get_if<ast::Number>(&tree.node);
+  return number != nullptr && !number->unit && std::abs(number->value) > turn;
+}
+
 }  // namespace
 
 std::vector<std::string> signal_names() {
@@ -98,11 +106,12 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
     } else {
       std::optional<Unit> const unit = place->unit == "input" ? input.unit : unit_of(place->unit);
       bool const is_width = name == "sd" || name == "amplitude";
-      // 90 is no phase in radians.
-      constexpr double turn = 6.3;
-      double const least = name == "phase" ? -turn : name == "mean" || name == "value" ? -1e300 : 0;
-      auto const value = is_width ? reader.width(argument.value, name, unit)
-                                  : reader.number(argument.value, name, unit, least, name == "phase" ? turn : 1e300);
+      bool const is_angle = place->unit == "rad";
+      double const least = is_angle || name == "mean" || name == "value" ? -1e300 : 0;
+      auto const value =
+          is_width ? reader.width(argument.value, name, unit) : reader.number(argument.value, name, unit, least, 1e300);
+      if (value && is_angle && is_bare_angle_beyond_turn(argument.value))
+        diagnostics.add(errors::angle_beyond_turn(argument.value, name));
       if (value) result.arguments[name] = *value;
     }
   }

@@ -184,7 +184,7 @@ void TaskChecker::steps_ahead(ast::Option const& option, std::span<int const> mo
   if (call.function.text != "steps" || call.arguments.size() != 1 || call.arguments[0].name)
     return diagnostics_.add(
         errors::option_kind(option.span, "prediction", {"a rule, or a number of rows ahead"}, "prediction = steps(10)"));
-  auto const rows = options_.number(call.arguments[0].value, "steps", Unit{}, 1, 1e6, true);
+  auto const rows = options_.number(call.arguments[0].value, "steps", Unit{}, 1, 1e6, true, OptionReader::time_for_rows());
   if (!rows || models.empty()) return;
   if (models.size() != 1 || !tree_.others.empty()) return diagnostics_.add(errors::steps_ahead_of_several(option.span));
   if (corrected.empty())

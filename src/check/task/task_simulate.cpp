@@ -122,7 +122,8 @@ void TaskChecker::simulate_noise(TaskChecker& checker, ast::Option const& option
 }
 
 void TaskChecker::simulate_samples(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {
-  checker.options_.whole(option, key_of(option), 2, 1e8, options.task.samples);
+  auto const rows = checker.options_.number(option.value, key_of(option), Unit{}, 2, 1e8, true, OptionReader::time_for_rows());
+  if (rows) options.task.samples = static_cast<int>(*rows);
 }
 
 void TaskChecker::simulate_spacing(TaskChecker& checker, ast::Option const& option, SimulateOptions& options) {

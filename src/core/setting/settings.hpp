@@ -22,12 +22,13 @@ enum class SettingKind {
 struct SettingRow {
   std::string_view name;
   SettingKind kind;
-  std::string_view fallback;  // the default, as the user would write it
-  double minimum;             // smallest allowed number, inclusive (integer, real, each of numbers)
-  double maximum;             // largest allowed number, inclusive
-  std::string_view choices;   // for a word: "adaptive spherical", separated by blanks
-  std::string_view summary;   // one line for `sysid list` and the docs
-  double least_positive = 0;  // of a real whose 0 stands for something else: no smaller number above 0
+  std::string_view fallback;   // the default, as the user would write it
+  double minimum;              // smallest allowed number, inclusive (integer, real, each of numbers)
+  double maximum;              // largest allowed number, inclusive
+  std::string_view choices;    // for a word: "adaptive spherical", separated by blanks
+  std::string_view summary;    // one line for `sysid list` and the docs
+  double least_positive = 0;   // of a real whose 0 stands for something else: no smaller number above 0
+  std::string_view unit = {};  // of a real: that of a number without one
 };
 
 using SettingValue = std::variant<std::int64_t, double, std::string, bool, std::vector<double>>;
