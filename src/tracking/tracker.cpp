@@ -267,9 +267,8 @@ Alarm Tracker::respond(Experiment const& experiment, int index, DetectedJump con
   }
   int const entry = program_.states + jump.parameter;
   std::tie(alarm.after, alarm.after_sd) = value_of(jump.parameter, moments_[static_cast<std::size_t>(entry)], variance(entry));
-  detector_.forget();
-  watch_.forget();
-  for (FarOffRun& each : runs_) each.clear();
+  good_ = parameters_now();
+  forget();
   return alarm;
 }
 

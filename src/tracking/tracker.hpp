@@ -119,6 +119,7 @@ class Tracker {
   std::int64_t row_after(std::int64_t counted) const;
   TrackedPrior parameters_now() const;
   void keep_good(double const* records);
+  void forget();
 
   // --- beginning again
   bool may_begin_again() const;

@@ -54,6 +54,15 @@ void Tracker::keep_good(double const* records) {
   good_squared_ = good_samples_ = 0;
 }
 
+/// Where the filter has been changed, what rows before said of it no longer counts.
+void Tracker::forget() {
+  detector_.forget();
+  watch_.forget();
+  good_squared_ = good_samples_ = 0;
+  std::ranges::fill(left_out_in_a_row_, 0);
+  for (FarOffRun& each : runs_) each.clear();
+}
+
 bool Tracker::may_begin_again() const {
   return options_.anywhere && program_.states > 0 && rows_ - begun_ > settled_again * options_.settling_rows;
 }
@@ -89,12 +98,8 @@ void Tracker::begin_again(Experiment const& experiment, int index, Restart::Caus
   begun_ = rows_;
   block_ = 32;
   left_out_row_ = 0;
-  detector_.forget();
-  watch_.forget();
-  good_squared_ = good_samples_ = 0;
-  std::ranges::fill(left_out_in_a_row_, 0);
+  forget();
   std::ranges::fill(row_.left_out, 0);
-  for (FarOffRun& each : runs_) each.clear();
 }
 
 /// What the rows say of parameters that were asked for anew is kept where it contradicts what they were.
@@ -126,7 +131,7 @@ std::optional<Alarm> Tracker::end_settling(Experiment const& experiment, int ind
   std::tie(alarm.before, alarm.before_sd) = value_of(changed, prior_.mean(changed), prior_.covariance(changed, changed));
   std::tie(alarm.after, alarm.after_sd) = value_of(changed, now.mean(changed), now.covariance(changed, changed));
   good_ = now;
-  detector_.forget();
+  forget();
   return alarm;
 }
 
@@ -142,11 +147,7 @@ std::optional<NoiseAlarm> Tracker::respond_to_noise(Experiment const& experiment
   NoiseAlarm alarm{
       change->channel,   row_of(experiment, index),  row_after(change->row), experiment.time[static_cast<std::size_t>(index)],
       change->statistic, std::sqrt(factor / before), std::sqrt(factor),      change->correlated};
-  detector_.forget();
-  watch_.forget();
-  good_squared_ = good_samples_ = 0;
-  std::ranges::fill(left_out_in_a_row_, 0);
-  for (FarOffRun& each : runs_) each.clear();
+  forget();
   return alarm;
 }
 

@@ -153,6 +153,47 @@ TEST_CASE("a change while the states settle is found behind these rows, and call
   CHECK(all.stiffness == doctest::Approx(90).epsilon(0.03));
 }
 
+TEST_CASE("rows that are lost soon after a change begin again with the parameters as they are since then") {
+  MadeOscillator made;
+  made.rows = 1200;
+  made.change_after = 500;
+  Model const model = model_of(oscillator_text);
+  TrackedProgram const program = oscillator_program(model, made.sigma);
+  Experiment const whole = made.experiment();
+  Tracker without_loss = tracker_of(program, whole, true);
+  Followed const before = follow_rows(without_loss, slice(whole, 0, 800, 0));
+  REQUIRE(before.alarms.size() == 1);
+  int const lost_at = static_cast<int>(before.alarms[0].row - whole.first_row) + 20;
+  Tracker tracker = tracker_of(program, whole, true);
+  Followed const all = follow_rows(tracker, without_rows(whole, lost_at, false));
+  REQUIRE(all.restarts.size() == 1);
+  CHECK(all.restarts[0].cause == Restart::Cause::jump);
+  CHECK(all.restarts[0].row <= lost_at + 40);
+  CHECK(all.alarms.size() == 1);
+  CHECK(std::abs(all.stiffness - 90) < 4 * all.stiffness_sd);
+}
+
+TEST_CASE("where the filter has no finite values the states begin again at that row") {
+  MadeOscillator made;
+  made.rows = 900;
+  Model const model = model_of(oscillator_text);
+  TrackedProgram const program = oscillator_program(model, made.sigma);
+  Experiment const whole = made.experiment();
+  Experiment experiment = whole;
+  std::vector<double> x;
+  for (int i = 0; i < made.rows; ++i) x.push_back(i == 600 ? 1e308 : whole.inputs[0].sample(i));
+  experiment.inputs.clear();
+  experiment.inputs.emplace_back(InputRule::zero_order, experiment.time, x);
+  Tracker tracker = tracker_of(program, whole, true);
+  Followed const all = follow_rows(tracker, experiment);
+  CHECK(all.rows == made.rows);
+  CHECK(all.alarms.empty());
+  REQUIRE(all.restarts.size() == 1);
+  CHECK(all.restarts[0].cause == Restart::Cause::divergence);
+  CHECK(all.restarts[0].row == experiment.first_row + 601);
+  CHECK(std::abs(all.stiffness - 100) < 4 * all.stiffness_sd);
+}
+
 TEST_CASE("single samples that are far off are no noise, and no lost states") {
   FarOffRun run;
   for (int i = 0; i < 40; ++i) {
