@@ -64,29 +64,46 @@ void NoiseWatch::observe(int channel, double innovation, double explained) {
   last_[c] = {counted, last_[c].one};
 }
 
-std::optional<NoiseChange> NoiseWatch::detect(double explained) const {
-  NoiseChange best;
-  Sums const* found = nullptr;
-  for (Candidate const& each : candidates_)
-    for (std::size_t c = 0; c < each.channels.size(); ++c) {
-      Sums const& sums = each.channels[c];
-      if (sums.samples < fewest_samples || !(sums.squares > 0)) continue;
-      double const mean = sums.squares / sums.samples;
-      double const statistic = sums.samples * (mean - 1 - std::log(mean));
-      if (statistic <= threshold_ || statistic <= explained || statistic <= best.statistic) continue;
-      found = &sums;
-      best.channel = static_cast<int>(c);
-      best.row = each.row;
-      best.statistic = statistic;
-    }
-  if (found == nullptr) return std::nullopt;
-  double const product = std::max(std::fabs(found->products), std::fabs(found->second_products));
-  best.correlated = product * std::sqrt(found->samples) > related * found->squares;
-  if (best.correlated && found->samples < fewest_correlated) return std::nullopt;
+double NoiseWatch::statistic_of(Sums const& sums) {
+  if (sums.samples < fewest_samples || !(sums.squares > 0)) return 0;
+  double const mean = sums.squares / sums.samples;
+  return sums.samples * (mean - 1 - std::log(mean));
+}
+
+/// Nothing of correlated samples that are few, and of too small a change.
+std::optional<NoiseChange> NoiseWatch::change_of(Sums const& sums) {
+  NoiseChange change;
+  change.statistic = statistic_of(sums);
+  double const product = std::max(std::fabs(sums.products), std::fabs(sums.second_products));
+  change.correlated = product * std::sqrt(sums.samples) > related * sums.squares;
+  if (change.correlated && sums.samples < fewest_correlated) return std::nullopt;
   // Where many are large they are no outliers, and count in full.
-  double const squares = 8 * found->large >= found->samples ? found->whole_squares : found->squares;
-  best.factor = std::max(least_factor, (squares - found->explained) / (found->samples - found->explained));
-  if (best.factor < smallest_change && best.factor > 1 / smallest_change) return std::nullopt;
+  double const squares = 8 * sums.large >= sums.samples ? sums.whole_squares : sums.squares;
+  change.factor = std::max(least_factor, (squares - sums.explained) / (sums.samples - sums.explained));
+  if (change.factor < smallest_change && change.factor > 1 / smallest_change) return std::nullopt;
+  return change;
+}
+
+/// Of each channel its likeliest row is judged: another row of one whose samples are correlated may look white by chance, but what
+/// is said of one channel hides no change of another.
+std::optional<NoiseChange> NoiseWatch::detect(double explained) const {
+  std::optional<NoiseChange> best;
+  double const least = std::max(threshold_, explained);
+  for (std::size_t c = 0; c < last_.size(); ++c) {
+    Candidate const* likeliest = nullptr;
+    double largest = least;
+    for (Candidate const& each : candidates_)
+      if (double const statistic = statistic_of(each.channels[c]); statistic > largest) {
+        likeliest = &each;
+        largest = statistic;
+      }
+    if (likeliest == nullptr || (best && largest <= best->statistic)) continue;
+    std::optional<NoiseChange> const change = change_of(likeliest->channels[c]);
+    if (!change) continue;
+    best = change;
+    best->channel = static_cast<int>(c);
+    best->row = likeliest->row;
+  }
   return best;
 }
 

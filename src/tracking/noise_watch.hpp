@@ -55,6 +55,9 @@ class NoiseWatch {
     double large = 0;  // squares above the limit
     double products = 0, second_products = 0;
   };
+  static double statistic_of(Sums const& sums);
+  static std::optional<NoiseChange> change_of(Sums const& sums);
+
   struct Candidate {
     std::int64_t row = 0;
     std::vector<Sums> channels;

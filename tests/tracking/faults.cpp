@@ -228,3 +228,30 @@ TEST_CASE("a change of the noise goes before one of a parameter only where it ex
   CHECK(!change->correlated);
   CHECK(!watch.detect(2 * change->statistic));
 }
+
+TEST_CASE("a channel whose innovations are related hides no louder noise of another") {
+  Stream stream(StreamKey{3, Purpose::test, 3, 0});
+  NoiseWatch watch(2, 1e-5, 2048);
+  for (int i = 0; i < 48; ++i) {
+    watch.keep(i);
+    watch.observe(0, 3.9 * std::cos(0.1 * i), 0);
+    watch.observe(1, 2.5 * stream.normal(), 0);
+  }
+  auto const change = watch.detect(0);
+  REQUIRE(change);
+  CHECK(change->channel == 1);
+  CHECK(!change->correlated);
+}
+
+TEST_CASE("a change of the noise that is too small to matter hides no larger one of another channel") {
+  Stream stream(StreamKey{3, Purpose::test, 4, 0});
+  NoiseWatch watch(2, 1e-5, 2048);
+  for (int i = 0; i < 2000; ++i) {
+    watch.keep(i);
+    watch.observe(0, 1.15 * stream.normal(), 0);
+    watch.observe(1, (i < 1950 ? 1 : 2) * stream.normal(), 0);
+  }
+  auto const change = watch.detect(0);
+  REQUIRE(change);
+  CHECK(change->channel == 1);
+}
