@@ -203,6 +203,15 @@ TEST_CASE("single samples that are far off are no noise, and no lost states") {
   FarOffRun lost;
   for (int i = 0; i < 12; ++i) lost.add(30 * std::cos(0.3 * i));
   CHECK(lost.is_smooth());
+  // Of 16 values without an order the correlation has an sd of 1/4.
+  Stream stream(StreamKey{3, Purpose::test, 2, 0});
+  int smooth = 0;
+  for (int i = 0; i < 1000; ++i) {
+    FarOffRun noise;
+    for (int k = 0; k < 16; ++k) noise.add(20 * stream.normal());
+    smooth += noise.is_smooth();
+  }
+  CHECK(smooth < 50);
   NoiseWatch watch(1, 1e-5, 2048);
   for (int i = 1; i <= 64; ++i) {
     watch.keep(i - 1);
