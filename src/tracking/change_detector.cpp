@@ -115,11 +115,13 @@ std::optional<DetectedJump> ChangeDetector::detect() {
       double const information = each.information[p];
       if (!(information * scales_[p] * scales_[p] > 25)) continue;
       double const z = each.score[p] / std::sqrt(information);
-      if (std::fabs(z) > std::fabs(largest[p])) largest[p] = z;
+      bool const exceeds = std::fabs(z) > threshold_;
+      if (exceeds && against_threshold(each, z) <= threshold_) continue;
+      // Of a change whose samples are still few it is not yet known that it is one; a louder noise waits for that.
       explained_ = std::max(explained_, z * z);
-      if (std::fabs(z) <= threshold_ || std::fabs(z) <= std::fabs(best.statistic)) continue;
-      if (against_threshold(each, z) <= threshold_) continue;
-      if (each.score[p] * each.score[p] < least_samples * each.score_squares[p]) continue;
+      if (exceeds && each.score[p] * each.score[p] < least_samples * each.score_squares[p]) continue;
+      if (std::fabs(z) > std::fabs(largest[p])) largest[p] = z;
+      if (!exceeds || std::fabs(z) <= std::fabs(best.statistic)) continue;
       found = &each;
       best.parameter = j;
       best.statistic = z;

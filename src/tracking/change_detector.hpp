@@ -57,7 +57,7 @@ class ChangeDetector {
   /// The parameters of the filter were set back to what they were before all rows that are kept, its states along with them by the
   /// regression of states on parameters: gain, [states x parameters] by rows. What samples said so far is dropped.
   void set_back(std::span<double const> gain);
-  /// The largest z^2 of the last call of `detect`, 0 before the first.
+  /// The largest z^2 of the last call of `detect`, without those that a louder noise explains; 0 before the first.
   double explained() const { return explained_; }
 
  private:
