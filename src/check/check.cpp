@@ -16,7 +16,7 @@
 #include "check/model/unused.hpp"
 #include "check/task/candidates.hpp"
 #include "check/task/tasks.hpp"
-#include "syntax/walk.hpp"
+#include "syntax/find_model.hpp"
 
 namespace sysid {
 namespace {

@@ -9,8 +9,8 @@
 #include "repl/tasks.hpp"
 #include "repl/words.hpp"
 #include "syntax/entry.hpp"
+#include "syntax/find_model.hpp"
 #include "syntax/parse.hpp"
-#include "syntax/walk.hpp"
 
 namespace sysid::repl {
 namespace {

@@ -1,6 +1,5 @@
-// Every expression inside an expression or a statement, the outer one first; the model of a name in a file.
+// Every expression inside an expression or a statement, the outer one first.
 #pragma once
-#include <string_view>
 #include <type_traits>
 #include <variant>
 
@@ -88,13 +87,6 @@ void each_reference(ast::Equation const& equation, Visit const& visit) {
 template <class Visit>
 void each_reference(ast::ModelStatement const& statement, Visit const& visit) {
   each_top_expression(statement, [&](ast::Expression const& top) { each_reference(top, visit); });
-}
-
-/// Null where the file has no such model.
-inline ast::Model const* find_model(ast::File const& tree, std::string_view name) {
-  for (ast::Item const& item : tree.items)
-    if (auto const* model = std::get_if<ast::Model>(&item); model != nullptr && model->name.text == name) return model;
-  return nullptr;
 }
 
 }  // namespace sysid

@@ -151,6 +151,23 @@ TEST_CASE("cycles are not taken for radians, nor metres for a time") {
   CHECK(messages(block("rate 9 [s]")).find("error[E2014]: the sampling rate is in [Hz], but this is in [s]") != std::string::npos);
 }
 
+TEST_CASE("a column of angles says so, and one that says how it counts is converted") {
+  std::string const beam = "model m {\nparameter k [mrad] ~ normal(1, sd = 1)\nobserve tilt [mrad] ~ normal(k, sd = 1)\n}\n";
+  auto const said = [&](std::string const& unit) {
+    return messages(beam + block("time t\nmeasure tilt = y [" + unit + "]") + "fit m to d with mh\n");
+  };
+  CHECK(errors_in(said("mm/m")) == 0);
+  CHECK(errors_in(said("mrad")) == 0);
+  CHECK(errors_in(said("-")) == 1);
+}
+
+TEST_CASE("a quotient is read as a number with the unit behind it only where that unit fits") {
+  CHECK(messages(block("step 1/50 [s]")).find("`0.02 [s]`") != std::string::npos);
+  std::string const other = messages(block("step 1/50 [m]"));
+  CHECK(errors_in(other) == 1);
+  CHECK(other.find("0.02") == std::string::npos);
+}
+
 TEST_CASE("the derivative of an input is refused where the data hold it, wherever it stands") {
   for (char const* use :
        {"y' = x'", "let slope = x'\ny' = slope", "y' = x\nobserve second ~ normal(x', sd = 1)", "y' = x\nderive slope = x'"}) {

@@ -76,3 +76,61 @@ TEST_CASE("a spread in the unit of another power is refused where the dimension 
   for (char const* const noise : {"variance = s^2", "precision = 1/s^2", "sd = s", "sd = 0.1", "variance = 0.01"})
     CHECK(errors_in(with(std::string("observe other [deg] ~ normal(phi, ") + noise + ")")) == 0);
 }
+
+TEST_CASE("a minus before a converting factor stays before the rest") {
+  for (auto const& [statement, cure] : {std::pair("derive a [rpm] = -60*f", "write `-2*pi*f`"),
+                                        {"derive a [deg] = -phi*180/pi", "write `-phi`"},
+                                        {"derive a [ms] = -(1000*T)", "write `-T`"},
+                                        {"derive a [rpm] = -60/T", "write `-2*pi/T`"}}) {
+    CAPTURE(statement);
+    std::string const said = with(statement);
+    CHECK(said.find("warning[E2214]") != std::string::npos);
+    CHECK(said.find(cure) != std::string::npos);
+  }
+}
+
+TEST_CASE("numbers that a formula may have of its own are no conversions") {
+  for (char const* const statement :
+       {"derive a = 0.11*phi*180/pi + loss", "derive a [-] = phi*180/pi", "derive a = if phi*180/pi > 15 then 1 else 0",
+        "observe other [-] ~ normal(phi*180/pi, sd = 1)",   // the number of degrees is wanted
+        "derive a [rev/s] = 1/T",                           // nothing to convert
+        "derive a [min] = 0.5*f*T*T/30",                    // 1/60 by chance
+        "derive a [kN] = 0.001*200 [GPa]*1 [cm^2]*phi"}) {  // a strain
+    CAPTURE(statement);
+    std::string const said = with(statement);
+    CHECK(errors_in(said) == 0);
+    CHECK(said.find("E2214") == std::string::npos);
+  }
+}
+
+TEST_CASE("a small number that keeps a quotient finite is clear beside an angle") {
+  CHECK(with("derive a = phi/(abs(phi) + 1e-6)").find("E2213") == std::string::npos);
+}
+
+TEST_CASE("a spread in another unit of a share is no power of it") {
+  std::string const shares =
+      "parameter p [ppm] ~ half_normal(sd = 5)\nparameter q [percent] ~ half_normal(sd = 5)\nparameter e [mm/m] ~ normal(0, sd = ";
+  CHECK(errors_in(with(shares + "p)")) == 0);
+  CHECK(errors_in(with("parameter p [microstrain] ~ half_normal(sd = 5)\nobserve other [mm/m] ~ normal(loss, sd = p)")) == 0);
+  std::string const said = with(shares + "p)\nobserve other [percent] ~ normal(loss, variance = q)");
+  CHECK(said.find("write `sd = q`, or `variance = q^2`") != std::string::npos);
+}
+
+TEST_CASE("what is declared as a pure number takes an angle, a share of the noise does not") {
+  auto const simulated = [](std::string const& options) {
+    return messages(
+        "model m {\ninput u [-]\nstate y [-]\ninitial y = 0\nparameter r [1/s] = 1\nparameter phi0 [-] ~ normal(0, sd = 1)\ny' = "
+        "-r*y + r*u + "
+        "r*sin(phi0)\n"
+        "observe level ~ normal(y, sd = 0.1)\n}\ns = simulate m with values(phi0 = 30 [deg]), samples = 10, rate = 9, file = "
+        "\"a.csv\", " +
+        options + "\n");
+  };
+  CHECK(errors_in(simulated("input u = constant(value = 10 [deg])")) == 0);
+  CHECK(errors_in(simulated("input u = sine(amplitude = 1 [deg], frequency = 1 [Hz])")) == 0);
+  std::string const said = simulated("input u = constant(value = 1), noise = 10 [deg]");
+  CHECK(said.find("error[E2014]") != std::string::npos);
+  std::string const count = simulated("input u = constant(value = 1), seed = 10 [deg]");
+  CHECK(count.find("number of radians") != std::string::npos);
+  CHECK(count.find("remove the unit") == std::string::npos);
+}

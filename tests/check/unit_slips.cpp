@@ -90,3 +90,21 @@ TEST_CASE("revolutions in other words are `rev`") {
   }
   CHECK(test::messages("model m {\nparameter c [rev/min] = 1\nobserve d ~ normal(c, sd = 1)\n}\n").empty());
 }
+
+TEST_CASE("a mass is declared as its weight only where it is needed as nothing else") {
+  auto const with = [](std::string const& statements) {
+    return test::messages(
+        "model m {\ninput u [lbf]\nstate z [ft]\ninitial z = 0, z' = 0\nparameter me [lb] ~ log_uniform(1, 10)\n"
+        "parameter L [ft] ~ log_uniform(1, 10)\nobserve d ~ normal(z, sd = 1)\n" +
+        statements + "\n}\n");
+  };
+  std::string const weight = "declare `me` in [lbf]";
+  CHECK(with("10 [lb]*z'' + me*sin(z/L) = u").find(weight) != std::string::npos);
+  for (char const* const statements : {"me*z'' + me*sin(z/L) = u", "constant g [m/s^2] = 9.81\n10 [lb]*z'' + me*sin(z/L) = u",
+                                       "derive both [lb] = 2*me\n10 [lb]*z'' + me*sin(z/L) = u"}) {
+    CAPTURE(statements);
+    std::string const said = with(statements);
+    CHECK(test::errors_in(said) == 1);
+    CHECK(said.find(weight) == std::string::npos);
+  }
+}

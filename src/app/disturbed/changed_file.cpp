@@ -8,8 +8,8 @@
 #include <functional>
 #include <set>
 
+#include "syntax/find_model.hpp"
 #include "syntax/parse.hpp"
-#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/text/diagnostic.hpp"
+#include "syntax/find_model.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"

@@ -7,8 +7,8 @@
 #include "app/preflight/check_file.hpp"
 #include "core/text/without_index.hpp"
 #include "core/text/words.hpp"
+#include "syntax/find_model.hpp"
 #include "syntax/unparse.hpp"
-#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {

@@ -22,10 +22,10 @@
 #include "report/file/stored_files.hpp"
 #include "report/file/task_folder.hpp"
 #include "report/page/terminal.hpp"
+#include "syntax/find_model.hpp"
 #include "syntax/inserted.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/unparse.hpp"
-#include "syntax/walk.hpp"
 #include "typeset/fixed_values.hpp"
 #include "typeset/typeset.hpp"
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/text/without_index.hpp"
+#include "syntax/find_model.hpp"
 #include "syntax/parse.hpp"
 #include "syntax/walk.hpp"
 

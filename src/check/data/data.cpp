@@ -58,13 +58,16 @@ class DataChecker {
     std::string help;
   };
 
-  /// `1/50 [s]`: the unit belongs to the 50 alone.
-  std::string quotient_of_number(ast::Expression const& tree) {
+  /// `1/50 [s]`: the unit belongs to the 50 alone. Empty where that unit is not `wanted` either.
+  std::string quotient_of_number(ast::Expression const& tree, errors::Subject const& what, Unit const& wanted) {
     auto const* quotient = std::get_if<ast::Box<ast::Binary>>(&tree.node);
     if (quotient == nullptr || (*quotient)->symbol != "/") return {};
     auto const* below = std::get_if<ast::Number>(&(*quotient)->right->node);
     auto const* above = std::get_if<ast::Number>(&(*quotient)->left->node);
     if (below == nullptr || above == nullptr || !below->unit || above->unit || below->value == 0) return {};
+    Diagnostics unsaid;
+    auto const unit = check_unit(*below->unit, unsaid);
+    if (!unit || refuse_number(tree.span, what, *unit, wanted)) return {};
     return errors::number_by_quotient(unparse(tree), above->value / below->value, unparse(*below->unit));
   }
 
@@ -75,7 +78,7 @@ class DataChecker {
     if (value->kind == Typed::Kind::known)
       if (auto refused = refuse_number(tree.span, what, value->unit, unit)) {
         if (elsewhere && !refuse_number(tree.span, what, value->unit, elsewhere->unit)) refused->help = elsewhere->help;
-        if (std::string const whole = quotient_of_number(tree); !whole.empty()) refused->help = whole;
+        if (std::string const whole = quotient_of_number(tree, what, unit); !whole.empty()) refused->help = whole;
         diagnostics_.add(std::move(*refused));
         return std::nullopt;
       }
@@ -307,9 +310,9 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
   auto const compare_units = [&](ColumnUse const& column, Quantity const& declared, errors::Subject const& what) {
     if (!column.unit || !declared.unit) return;
     std::string const wanted = declared.unit->text_or_dimension();
-    // A column of degrees that says no unit would be read as radians.
+    // A column in [-] for a channel in [deg] would be read as radians; one in [mm/m] says how it counts.
     bool const unsaid_angle = declared.unit->dimensionless() && declared.unit->radian.numerator == 1 && declared.unit->scale != 1 &&
-                              column.unit->dimensionless() && column.unit->radian.numerator == 0;
+                              column.unit->dimensionless() && column.unit->radian.numerator == 0 && column.unit->scale == 1;
     if (column.unit->dimension != declared.unit->dimension || zero_against_difference(*column.unit, *declared.unit) || unsaid_angle)
       diagnostics.add(errors::unit_mismatch(column.span, what, column.unit->text, wanted));
     else if (cycles_against_radians(*column.unit, *declared.unit))

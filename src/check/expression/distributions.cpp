@@ -247,6 +247,12 @@ class DistributionChecker {
     return power.empty() ? written : fmt::format("{}, or `{} = {}`", written, given.spelling->name, power);
   }
 
+  static std::string power_of_text(std::string const& unit, int exponent) {
+    if (exponent == 0) return "-";
+    if (exponent == 1 || unit.empty()) return unit;
+    return fmt::format("{}^{}", unit.find_first_of(" */^") == std::string::npos ? unit : "(" + unit + ")", exponent);
+  }
+
   /// Of `sigma^2`, whose unit is a pure number where that of sigma is.
   Unit unit_with_power(ast::Expression const& tree, Unit const& otherwise) const {
     auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
@@ -254,7 +260,10 @@ class DistributionChecker {
     if (exponent == nullptr || exponent->unit || (*binary)->symbol != "^" || exponent->value != 2) return otherwise;
     Diagnostics unsaid;
     auto const base = scope_.with(unsaid).expression(*(*binary)->left);
-    return base && base->kind == Typed::Kind::known ? power(base->unit, {2, 1}) : otherwise;
+    if (!base || base->kind != Typed::Kind::known) return otherwise;
+    Unit square = power(base->unit, {2, 1});
+    square.text = power_of_text(base->unit.text, 2);
+    return square;
   }
 
   /// The same where the dimension does not tell: `variance = sigma` of a sigma in [deg].
@@ -267,11 +276,10 @@ class DistributionChecker {
     for (int const found : {1, 2, -2}) {
       Unit const unit = power(*variate_.unit, {found, 1});
       if (found == wanted || std::fabs(given_unit.scale / unit.scale - 1) > 1e-9 || given_unit.radian != unit.radian) continue;
-      auto const in_words = [&](int exponent) {
-        bool const atom = variate_.unit->text.find_first_of(" */^") == std::string::npos;
-        std::string const base = atom ? variate_.unit->text : "(" + variate_.unit->text + ")";
-        return exponent == 0 ? "-" : exponent == 1 ? variate_.unit->text : fmt::format("{}^{}", base, exponent);
-      };
+      auto const in_words = [&](int exponent) { return power_of_text(variate_.unit->text, exponent); };
+      // An angle tells its power by its radians. Of a share only the text does: 1 [ppm] is an sd of what is in [mm/m] as well as
+      // its square.
+      if (variate_.unit->radian.numerator == 0 && given_unit.text != in_words(found)) continue;
       UnitConflict conflict;
       conflict.primary = {given.span, "[" + in_words(found) + "]"};
       conflict.found = in_words(found);

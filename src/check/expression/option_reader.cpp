@@ -51,7 +51,7 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
         values.set(name, static_cast<std::int64_t>(*value));
       break;
     case SettingKind::real:
-      if (auto const value = number(argument.value, name, unit_of(row.unit), row.minimum, row.maximum)) {
+      if (auto const value = pure_number(argument.value, name, unit_of(row.unit), row.minimum, row.maximum)) {
         if (*value > 0 && *value < row.least_positive)
           diagnostics_.add(errors::option_range_or_zero(argument.value.span, name, *value, row.least_positive, row.maximum));
         values.set(name, *value);
@@ -64,7 +64,7 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
       auto const* list = std::get_if<ast::Box<ast::List>>(&argument.value.node);
       std::vector<double> all;
       for (ast::Expression const& item : list == nullptr ? std::vector{argument.value} : (*list)->items)
-        if (auto const value = number(item, name, Unit{}, row.minimum, row.maximum)) all.push_back(*value);
+        if (auto const value = pure_number(item, name, Unit{}, row.minimum, row.maximum)) all.push_back(*value);
       values.set(name, std::move(all));
       break;
     }
@@ -85,7 +85,22 @@ void OptionReader::setting(ast::Argument const& argument, SettingRow const& row,
 std::optional<double> OptionReader::number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit,
                                            double least, double most, bool whole, std::optional<OtherPlace> const& elsewhere) {
   auto const value = scope_.expression(tree);
-  return value ? number_of(*value, tree.span, name, unit, least, most, whole, elsewhere) : std::nullopt;
+  if (!value || (whole && refused_angle(*value, tree.span, name, unit))) return std::nullopt;
+  return number_of(*value, tree.span, name, unit, least, most, whole, elsewhere);
+}
+
+std::optional<double> OptionReader::pure_number(ast::Expression const& tree, std::string const& name, Unit const& unit,
+                                                double least, double most) {
+  auto const value = scope_.expression(tree);
+  if (!value || refused_angle(*value, tree.span, name, unit)) return std::nullopt;
+  return number_of(*value, tree.span, name, unit, least, most, false, std::nullopt);
+}
+
+bool OptionReader::refused_angle(Typed const& value, Span place, std::string const& name, std::optional<Unit> const& unit) {
+  bool const angle = unit && unit->dimensionless() && unit->radian.numerator == 0 && value.kind == Typed::Kind::known &&
+                     value.unit.dimensionless() && value.unit.radian.numerator != 0;
+  if (angle) diagnostics_.add(errors::number_of_other_kind(place, errors::named(name), value.unit, *unit));
+  return angle;
 }
 
 std::optional<double> OptionReader::width(ast::Expression const& tree, std::string const& name, std::optional<Unit> unit,
@@ -100,13 +115,6 @@ std::optional<double> OptionReader::width(ast::Expression const& tree, std::stri
 std::optional<double> OptionReader::number_of(Typed const& value, Span place, std::string const& name,
                                               std::optional<Unit> const& unit, double least, double most, bool whole,
                                               std::optional<OtherPlace> const& elsewhere) {
-  // A number of degrees is no share and no count, though the SI has all three as pure numbers.
-  bool const angle = unit && unit->dimensionless() && unit->radian.numerator == 0 && value.kind == Typed::Kind::known &&
-                     value.unit.dimensionless() && value.unit.radian.numerator != 0;
-  if (angle) {
-    diagnostics_.add(errors::number_of_other_kind(place, errors::named(name), value.unit, *unit));
-    return std::nullopt;
-  }
   if (unit && value.kind == Typed::Kind::known)
     if (auto refused = refuse_number(place, errors::named(name), value.unit, *unit)) {
       if (elsewhere && !refuse_number(place, errors::named(name), value.unit, elsewhere->unit)) refused->help = elsewhere->help;
@@ -165,7 +173,7 @@ void OptionReader::start(ast::Option const& option, StartRule& rule) {
           diagnostics_.add(errors::unknown_argument(*argument.name, "estimated", {"rows"}));
         } else if (given) {
           diagnostics_.add(errors::stated_twice(argument.span, *given, errors::named("rows")));
-        } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true, time_for_rows())) {
+        } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true)) {
           rule.rows = static_cast<int>(*rows);
         }
         if (!given) given = argument.span;

@@ -47,6 +47,10 @@ class OptionReader {
   /// A number known before the run, SI. unit: absent where nothing is declared, and anything goes.
   std::optional<double> number(ast::Expression const& tree, std::string const& name, std::optional<Unit> const& unit, double least,
                                double most, bool whole = false, std::optional<OtherPlace> const& elsewhere = std::nullopt);
+  /// The same of a share, a weight or a setting, which is no angle, though the SI has degrees as pure numbers as well. What a file
+  /// declares in [-] may be one. A setting may have a unit.
+  std::optional<double> pure_number(ast::Expression const& tree, std::string const& name, Unit const& unit, double least,
+                                    double most);
   /// A number >= 0 that is a difference of two, such as an sd: of temperatures it has no zero point, so that 0.5 [degC] is 0.5 K.
   std::optional<double> width(ast::Expression const& tree, std::string const& name, std::optional<Unit> unit, double least = 0);
   void whole(ast::Option const& option, std::string const& name, double least, double most, int& place);
@@ -71,6 +75,8 @@ class OptionReader {
  private:
   std::optional<double> number_of(Typed const& value, Span place, std::string const& name, std::optional<Unit> const& unit,
                                   double least, double most, bool whole, std::optional<OtherPlace> const& elsewhere);
+  /// With a diagnostic: an angle where a pure number is no angle.
+  bool refused_angle(Typed const& value, Span place, std::string const& name, std::optional<Unit> const& unit);
   std::optional<bool> yes_or_no(ast::Expression const& tree, std::string const& name);
   void setting(ast::Argument const& argument, SettingRow const& row, Settings& place);
   // owner: the verb, or what the verb's task has settings of.

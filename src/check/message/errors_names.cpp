@@ -221,9 +221,11 @@ Diagnostic list_here(Span span) {
 
 namespace {
 
-std::string without_wrong_unit(Unit const& wanted) {
+std::string without_wrong_unit(Unit const& given, Unit const& wanted) {
   if (!wanted.dimensionless()) return "correct the unit, or remove it";
   if (!wanted.text.empty() && wanted.text != "-") return fmt::format("write a share, as `1 [{}]`", wanted.text);
+  if (given.dimensionless() && given.radian.numerator != 0)
+    return "write a pure number: of an angle in [deg] or [rad] it is the number of radians";
   return "remove the unit";
 }
 
@@ -239,7 +241,7 @@ std::string cycles_in_words(Unit const& given, Unit const& wanted) {
 Diagnostic number_of_other_kind(Span span, Subject const& what, Unit const& given, Unit const& wanted) {
   return about(what.names,
                error("E2014", span, fmt::format("{} is {}, but this is {}", what.words, measure(wanted), measure(given)),
-                     without_wrong_unit(wanted)));
+                     without_wrong_unit(given, wanted)));
 }
 
 Diagnostic number_in_cycles(Span span, Subject const& what, Unit const& given, Unit const& wanted) {

@@ -7,7 +7,7 @@
 
 #include "check/expression/option_reader.hpp"
 #include "check/message/errors.hpp"
-#include "syntax/walk.hpp"
+#include "syntax/find_model.hpp"
 
 namespace sysid {
 namespace {
@@ -115,7 +115,7 @@ class CandidatesChecker {
   std::optional<double> probability(ast::Expression const& tree) {
     auto const [place, fresh] = seen_.emplace(tree.span.begin, std::nullopt);
     if (!fresh) return place->second;
-    auto const value = reader_.number(tree, "probability", Unit{}, -1e300, 1e300);
+    auto const value = reader_.pure_number(tree, "probability", Unit{}, -1e300, 1e300);
     if (!value) return std::nullopt;
     if (*value > 0 && *value <= 1) return place->second = value;
     diagnostics_.add(errors::not_a_probability(tree.span, *value));

@@ -73,7 +73,7 @@ class DistanceChecker {
         diagnostics_.add(errors::stated_twice(argument.span, place->second, errors::named(argument.name->text)));
         continue;
       }
-      if (auto const value = reader_.number(argument.value, argument.name->text, Unit{}, 0, 1e300)) {
+      if (auto const value = reader_.pure_number(argument.value, argument.name->text, Unit{}, 0, 1e300)) {
         rule_.weights[k] = *value;
         if (*value > 0) rule_.weighted.push_back(rule_.channels[k]);
       }

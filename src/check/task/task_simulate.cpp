@@ -117,7 +117,7 @@ void TaskChecker::simulate_noise(TaskChecker& checker, ast::Option const& option
   options.noise = option.span;
   if (as_word(option.value) == "model")
     options.task.noise_fraction = -1;
-  else if (auto const value = checker.options_.number(option.value, key_of(option), unit_of("percent"), 0, 1e6))
+  else if (auto const value = checker.options_.pure_number(option.value, key_of(option), unit_of("percent"), 0, 1e6))
     options.task.noise_fraction = *value;
 }
 

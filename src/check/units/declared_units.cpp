@@ -155,12 +155,23 @@ std::string DeclaredUnits::named(Dimension const& dimension, std::vector<std::st
   return text;
 }
 
-std::string DeclaredUnits::by_weight(ast::Expression const& odd, Dimension const& missing) const {
+std::string DeclaredUnits::by_weight(ast::Expression const& odd, Wanted const& wanted) const {
   static Dimension const acceleration = unit_atom("g_n").value().dimension;
-  if (missing != acceleration) return {};
+  if (wanted.missing != acceleration) return {};
+  for (DeclaredUnit const& each : declared_)
+    if (!each.moves && each.unit.dimension == acceleration) return {};
+  auto const is_read = [](std::vector<std::string> const& names, std::string const& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  auto const needs_mass = [&](std::string const& name) {
+    return std::any_of(wanted.agreeing.begin(), wanted.agreeing.end(),
+                       [&](auto* each) { return is_read(names_in(*each), name); }) ||
+           std::any_of(roles_.begin(), roles_.end(),
+                       [&](auto const& each) { return each.first != place_ && is_read(each.second.reads, name); });
+  };
   std::vector<std::string> const names = names_in(odd);
   for (DeclaredUnit const& each : declared_)
-    if (std::find(names.begin(), names.end(), each.name) != names.end())
+    if (is_read(names, each.name) && !needs_mass(each.name))
       if (std::string const force = with_force_for_mass(each.unit.text); !force.empty())
         return errors::declare_in(each.name, force);
   return {};
@@ -172,7 +183,7 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
   std::vector<std::string> but;
   if (pure && odd != nullptr) but = names_in(*odd);
   if (odd != nullptr && !pure)
-    if (std::string weight = by_weight(*odd, missing); !weight.empty()) return weight;
+    if (std::string weight = by_weight(*odd, wanted); !weight.empty()) return weight;
   if (odd != nullptr && !pure) {
     // A number in the place of a coefficient: nothing else in the product could carry its unit.
     ast::Expression const* number = bare_factor(*odd);

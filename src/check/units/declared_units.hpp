@@ -44,11 +44,12 @@ class DeclaredUnits {
 
   /// What is wanted where a unit is not as it should be.
   struct Wanted {
-    std::string unit;          // as the text would have it
-    Dimension missing;         // the factor that the expression lacks
-    bool pure = false;         // a pure number is wanted
-    bool of_a_number = false;  // the expression is one
-    bool is_term = false;      // of a sum or an equation, whose coefficient is its own
+    std::string unit;                                   // as the text would have it
+    Dimension missing;                                  // the factor that the expression lacks
+    bool pure = false;                                  // a pure number is wanted
+    bool of_a_number = false;                           // the expression is one
+    bool is_term = false;                               // of a sum or an equation, whose coefficient is its own
+    std::vector<ast::Expression const*> agreeing = {};  // what is in this unit beside the expression
   };
   /// How an expression could be mended ("multiply it by a length, such as `y`"); odd: null where it is a declaration. Names are
   /// those that may stand in its place.
@@ -63,11 +64,11 @@ class DeclaredUnits {
   std::string frequency_in(ast::Expression const& tree) const;
 
  private:
-  // A pound or a kilogram in place of its weight.
-  std::string by_weight(ast::Expression const& odd, Dimension const& missing) const;
+  // A pound or a kilogram in place of its weight; empty where `g` may have been forgotten, or the mass is needed elsewhere.
+  std::string by_weight(ast::Expression const& odd, Wanted const& wanted) const;
   std::string by_inverse(ast::Expression const& odd, Dimension const& missing) const;
-  // The term as it is declared, with another factor; in_text: it is an expression, no declaration; but: names that it must not be.
-  /// what: is to be changed, "this" or "this term".
+  // The term as it is declared, with another factor. what: is to be changed, "this" or "this term"; in_text: it is an expression,
+  // no declaration; but: names that the factor must not be.
   std::string factor_cure(std::string_view what, Wanted const& wanted, bool in_text, std::vector<std::string> const& but) const;
   // The one coefficient of a term, in the unit that it should have been declared in; nothing where something else is likelier.
   std::optional<DeclaredUnit> declared_otherwise(ast::Expression const& odd, Dimension const& missing, bool is_term) const;

@@ -85,18 +85,16 @@ bool terms_alike(Groups const& groups, std::span<UnitOperand const> operands) {
          });
 }
 
-/// In radians where it counts in degrees or turns, in the sense of the SI.
+/// A pure number to the SI that the unit tells from other pure numbers, as [deg] and [rev] do.
 bool is_angle(Unit const& unit) { return unit.dimensionless() && (unit.radian.numerator != 0 || unit.hertz.numerator != 0); }
 bool is_scaled(Unit const& unit) { return unit.offset == 0 && std::fabs(unit.scale - 1) > 0.01; }
 
-/// A bare number where a unit is dimensionless: what it is counted in is no longer what stands beside it.
-ast::Number const* bare_number(ast::Expression const& tree, bool& negative) {
-  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) {
-    negative = !negative;
-    return (*unary)->symbol == "-" ? bare_number(*(*unary)->operand, negative) : nullptr;
-  }
+/// A number as it is written, to which a unit can be added: `30`, `-30`.
+bool is_bare(ast::Expression const& tree) {
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node))
+    return (*unary)->symbol == "-" && is_bare(*(*unary)->operand);
   auto const* number = std::get_if<ast::Number>(&tree.node);
-  return number == nullptr || number->unit ? nullptr : number;
+  return number != nullptr && !number->unit;
 }
 
 }  // namespace
@@ -146,14 +144,13 @@ void UnitCheck::hint_cycles(std::span<UnitOperand const> operands) {
     }
 }
 
-bool UnitCheck::converted_angle(UnitOperand const& operand) {
+bool UnitCheck::converted_angle(UnitOperand const& operand, bool in_function) {
   if (operand.tree == nullptr || !is_angle(operand.value.unit)) return false;
-  for (double const factor : {std::numbers::pi / 180, 180 / std::numbers::pi})
-    if (auto const taken = taken_from_product(*operand.tree, factor)) {
-      report(errors::angle_converted(operand.value.span, taken->factor, taken->rest));
-      return true;
-    }
-  return false;
+  auto taken = taken_from_product(*operand.tree, std::numbers::pi / 180);
+  // Elsewhere the number of degrees may be wanted: a coefficient per degree, a table of degrees.
+  if (!taken && in_function) taken = taken_from_product(*operand.tree, 180 / std::numbers::pi);
+  if (taken) report(errors::angle_converted(operand.value.span, taken->factor, taken->sign + taken->rest));
+  return taken.has_value();
 }
 
 // `1000*y` in [mm], `60*fn` in [rpm].
@@ -171,11 +168,12 @@ bool UnitCheck::hint_converted_twice(std::span<UnitOperand const> operands) {
         taken = cycles;
       }
       if (taken) {
-        report(errors::converted_twice({each.value.span, ""}, unit_label(*declared), taken->factor, words(unit), taken->rest));
+        report(errors::converted_twice({each.value.span, ""}, unit_label(*declared), taken->factor, words(unit),
+                                       taken->sign + taken->rest));
         return true;
       }
     }
-    if (converted_angle(each)) return true;
+    if (converted_angle(each, false)) return true;
   }
   return false;
 }
@@ -192,9 +190,12 @@ void UnitCheck::hint_bare_numbers(std::span<UnitOperand const> operands) {
     if (each.tree == nullptr || each.value.kind != Typed::Kind::literal) continue;
     auto const value = graph_->constant_value(each.value.node);
     if (!value || *value == 0 || std::isinf(*value)) continue;
-    if (angle ? to_rational(*value / std::numbers::pi).has_value() : std::fabs(*value) <= 1) continue;
-    bool negative = false;
-    bool const number = bare_number(*each.tree, negative) != nullptr;
+    // `abs(phi) + 1e-6` keeps a quotient finite.
+    constexpr double regulariser = 1e-3;
+    bool const clear =
+        angle ? std::fabs(*value) < regulariser || to_rational(*value / std::numbers::pi).has_value() : std::fabs(*value) <= 1;
+    if (clear) continue;
+    bool const number = is_bare(*each.tree);
     auto const* name = std::get_if<ast::Reference>(&each.tree->node);
     report(errors::number_beside(each.value.span, unit_label(*scaled), angle, unparse(*each.tree), words(scaled->value.unit),
                                  number            ? ""
@@ -257,11 +258,15 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   auto const cure = std::find_if(occasion.cures.begin(), occasion.cures.end(), [&](auto const& each) {
     return terms_alike(groups, operands) && each.first == dimension_of(operands[shown]);
   });
+  std::vector<ast::Expression const*> agreeing_trees;
+  for (std::size_t const i : right)
+    if (operands[i].tree != nullptr && i != shown) agreeing_trees.push_back(operands[i].tree);
   bool const of_a_number = dimension_of(operands[shown]) == Dimension{} && wanted.offset == 0;
   bool const is_term = occasion.kind == Occasion::Kind::terms;
   conflict.help = cure != occasion.cures.end()
                       ? cure->second
-                      : declared_.cure(operands[shown].tree, {conflict.wanted, missing_.back(), false, of_a_number, is_term});
+                      : declared_.cure(operands[shown].tree,
+                                       {conflict.wanted, missing_.back(), false, of_a_number, is_term, std::move(agreeing_trees)});
   // [g] is the gram.
   static Dimension const acceleration = unit_atom("g_n").value().dimension;
   bool const gram = conflict.wanted == "g" && dimension_of(operands[shown]) == acceleration;
@@ -278,7 +283,7 @@ bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, b
   if (!is_known(argument)) return true;
   Unit const& unit = argument.value.unit;
   if (unit.dimensionless()) {
-    if (angle && converted_angle(argument)) return true;
+    if (angle && converted_angle(argument, true)) return true;
     if (angle && unit.hertz.numerator != 0 && unit.radian.numerator == 0)
       report(errors::cycles_in_angle(argument.value.span, function));
     return true;

@@ -85,7 +85,8 @@ class UnitCheck {
   void hint_cycles(std::span<UnitOperand const> operands);
   // True with a warning: a factor in the text does what the unit does by itself.
   bool hint_converted_twice(std::span<UnitOperand const> operands);
-  bool converted_angle(UnitOperand const& operand);
+  // in_function: an argument of one that takes an angle.
+  bool converted_angle(UnitOperand const& operand, bool in_function);
   void hint_bare_numbers(std::span<UnitOperand const> operands);
   Label unit_label(UnitOperand const& operand) const;
   void remember(UnitOperand const& operand, std::string why = {});

@@ -158,8 +158,8 @@ Diagnostic number_beside(Span number, Label other, bool angle, std::string const
 Diagnostic converted_twice(Label shown, Label declared, std::string const& factor, std::string const& unit,
                            std::string const& written) {
   return at(Severity::warning, "E2214", std::move(shown), {std::move(declared)},
-            fmt::format("`{}` converts to [{}], as the unit itself does", factor, unit),
-            fmt::format("write `{}`: the unit [{}] converts", written, unit));
+            fmt::format("`{}` is of the size of a conversion to [{}], which the unit itself does", factor, unit),
+            fmt::format("write `{}`, unless `{}` is a factor of the formula itself", written, factor));
 }
 Diagnostic angle_converted(Span shown, std::string const& factor, std::string const& written) {
   return at(Severity::warning, "E2214", {shown, "an angle with a unit"}, {},

@@ -28,7 +28,7 @@ struct SettingRow {
   std::string_view choices;    // for a word: "adaptive spherical", separated by blanks
   std::string_view summary;    // one line for `sysid list` and the docs
   double least_positive = 0;   // of a real whose 0 stands for something else: no smaller number above 0
-  std::string_view unit = {};  // of a real: that of a number without one
+  std::string_view unit = {};  // of a real: in which a bare number counts, as "s"; empty: a pure number
 };
 
 using SettingValue = std::variant<std::int64_t, double, std::string, bool, std::vector<double>>;
