@@ -119,9 +119,11 @@ std::optional<DetectedJump> ChangeDetector::detect() {
       if (exceeds && against_threshold(each, z) <= threshold_) continue;
       // Of a change whose samples are still few it is not yet known that it is one; a louder noise waits for that.
       explained_ = std::max(explained_, z * z);
-      if (exceeds && each.score[p] * each.score[p] < least_samples * each.score_squares[p]) continue;
-      if (std::fabs(z) > std::fabs(largest[p])) largest[p] = z;
-      if (!exceeds || std::fabs(z) <= std::fabs(best.statistic)) continue;
+      // The samples that agree: 1 where one of them is all of the score. Few weigh little as a rival, and give no alarm.
+      double const agreeing = each.score_squares[p] > 0 ? each.score[p] * each.score[p] / each.score_squares[p] : 0;
+      double const rival = z * std::sqrt(std::min(1.0, agreeing / least_samples));
+      if (std::fabs(rival) > std::fabs(largest[p])) largest[p] = rival;
+      if (!exceeds || agreeing < least_samples || std::fabs(z) <= std::fabs(best.statistic)) continue;
       found = &each;
       best.parameter = j;
       best.statistic = z;
