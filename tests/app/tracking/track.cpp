@@ -203,7 +203,10 @@ TEST_CASE("samples that stay far off are a change, also where other rows have no
     options.first_row = 501;
     TrackResult const result = beam.run(options);
     CAPTURE(result.out);
-    CHECK(result.out.find("parameter_changed") != std::string::npos);
+    // Not always a parameter: the gain of a sensor moves none of them as much as it enlarges the innovations.
+    bool const changed = result.out.find("parameter_changed") != std::string::npos;
+    CHECK((changed || result.out.find("noise_changed") != std::string::npos));
+    CHECK(result.out.find("check the sensor") != std::string::npos);
     CHECK(result.out.find("innovation_size") != std::string::npos);
   }
 }
