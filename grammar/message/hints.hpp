@@ -43,9 +43,11 @@ std::string_view written(Token const& first, Token const& last);
 /// One past the last of the tokens from `from` on that are a unit on paper, `N s/m^2`; `from` where there is none.
 std::size_t end_of_unit(std::span<Token const> statement, std::size_t from);
 
-/// Help about statements of a model, and about those of the other blocks and tasks; empty where nothing is known.
+/// Help about statements of a model, about those of the other blocks and tasks, and among these of a data block; empty where
+/// nothing is known.
 std::string hint_in_model(Gap const& gap);
 std::string hint_in_block(Gap const& gap);
+std::string hint_in_data(Gap const& gap);
 
 /// `[N/mm]` where the words of a unit were found without brackets, or empty.
 std::string unit_without_brackets(Gap const& gap);
