@@ -162,12 +162,16 @@ constexpr words::ForeignWord reading_settings[] = {
 
 }  // namespace
 
+std::string setting_of_reading(std::string_view word) {
+  std::string_view const setting = words::translated(reading_settings, word);
+  return setting.empty() ? std::string() : fmt::format("how the file is read is written after `read`: `read {}`", setting);
+}
+
 std::string place_of_statement(std::string_view word, bool with_tilde) {
   constexpr std::array<std::string_view, 5> of_noise{"noise", "sd", "sigma", "std", "error"};
   if (words::contains(of_noise, word))
     return "the noise of a channel is written in the model, `observe CHANNEL ~ normal(y, sd = 0.1)`: remove this line";
-  if (std::string_view const setting = words::translated(reading_settings, word); !setting.empty())
-    return fmt::format("how the file is read is written after `read`: `read {}`", setting);
+  if (std::string setting = setting_of_reading(word); !setting.empty()) return setting;
   bool const of_model = words::contains(words::model_statements, word) && !words::contains(words::data_statements, word);
   bool const binds = word == "observe" || word == "parameter";  // with `=` they name a column and a value
   return of_model && (with_tilde || !binds) ? fmt::format("`{}` belongs in a model: move this line there", word) : std::string();

@@ -40,6 +40,8 @@ Diagnostic number_out_of_range(Span number, std::string_view text);
 Diagnostic unknown_statement(Token const& word, std::string_view place, std::span<std::string_view const> known);
 /// E1109: `equation m*y'' = x`.
 Diagnostic equation_with_keyword(Token const& word);
+/// Help about a word that names a setting of `read`, in this or another program; empty for other words.
+std::string setting_of_reading(std::string_view word);
 /// Help about a word in a data block that begins a statement of a model; with_tilde: its line has a `~`. Empty for other words.
 std::string place_of_statement(std::string_view word, bool with_tilde);
 /// Help about a word that other languages compute or show results with; empty for other words.

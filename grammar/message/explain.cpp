@@ -222,6 +222,7 @@ class Failure {
     if (found().is("hold")) diagnostic.help = "the rule comes after the column of its input: `input x = force [N] hold linear`";
     if (has(".."))
       diagnostic.help = fmt::format("a range of rows has a name: `split {}{}`", has("=") ? "" : "train = ", gap().rest());
+    if (std::string const meant = instead_of_data_statement(gap()); !meant.empty()) diagnostic.help = meant;
     if (std::string place = errors::place_of_statement(found().text, has("~")); !place.empty()) diagnostic.help = std::move(place);
     return diagnostic;
   }

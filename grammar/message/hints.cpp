@@ -37,7 +37,7 @@ bool is_share_as_sd(Gap const& gap) {
          gap.before(3)->is("sd");
 }
 
-constexpr std::array<Situation, 41> situations{{
+constexpr std::array<Situation, 42> situations{{
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "~"); },
      "a parameter has a prior or a value: `parameter m [kg] ~ log_uniform(0.1, 10)`, `parameter m [kg] = 1`"},
     {[](Gap const& g) { return g.begins_with("parameter") && found(g, "in"); },
@@ -52,6 +52,7 @@ constexpr std::array<Situation, 41> situations{{
      "a model has a name: `model oscillator {`"},
     {[](Gap const& g) { return g.wanted == wanted::name && g.begins_with("model") && found(g, ")"); },
      "a model without arguments has no parentheses: `model oscillator {`"},
+    {[](Gap const& g) { return g.wanted == "`experiment`"; }, "write `per experiment`: each data block is an experiment"},
     {[](Gap const& g) { return g.begins_with("split"); }, "rows are written `split train = rows 1..500`"},
     {[](Gap const& g) { return g.wanted == "a text in quotes" || (found(g, "'") && g.begins_with("file")); },
      "a text is written in double quotes on one line: `file \"measured.csv\"`"},
@@ -186,6 +187,19 @@ std::string decimal_comma(Gap const& gap) {
   return right->text.size() == 3 ? fmt::format("{}; digits are not grouped: `{}{}`", decimal, left->text, right->text) : decimal;
 }
 
+/// `observe "angle" [deg]`, `normal(phi, sd = [sigma])`: a name in quotes or in brackets.
+std::string dressed_name(Gap const& gap) {
+  if (gap.wanted == wanted::name && found_kind(gap, TokenKind::text) && gap.at == 1 && gap.found->text.size() > 2 &&
+      (words::contains(words::model_statements, gap.statement[0].text) ||
+       words::contains(words::data_statements, gap.statement[0].text)))
+    return fmt::format("write the name without quotes: `{} {}`", gap.statement[0].text,
+                       gap.found->text.substr(1, gap.found->text.size() - 2));
+  bool const argument = gap.wanted == "an argument" && gap.next(4) != nullptr && gap.next()->is("=") && gap.next(2)->is("[");
+  if (argument && gap.next(3)->kind != TokenKind::symbol && gap.next(4)->is("]"))
+    return fmt::format("write it without brackets: `{} = {}`", gap.found->text, gap.next(3)->text);
+  return {};
+}
+
 /// What lacks one sign: the statement with it.
 std::string repaired_statement(Gap const& gap) {
   Token const* const before = gap.before();
@@ -305,6 +319,9 @@ std::string instead_of_product(Gap const& gap) {
                                     : std::string();
     return depth == 0 ? grouped : grouped.empty() ? comma : comma + "; " + grouped;
   }
+  bool const imaginary = left->kind == TokenKind::number && left->span.end == gap.found->span.begin &&
+                         (gap.found->is("i") || gap.found->is("j")) && !gap.declares(gap.found->text);
+  if (imaginary) return "there are no complex numbers: write an equation for the real and one for the imaginary part";
   // In an equation a number stands before a name more often than before a unit.
   bool const declaration = words::contains(words::model_statements, gap.statement[0].text) ||
                            words::contains(words::data_statements, gap.statement[0].text) || begins_with_verb(gap);
@@ -329,6 +346,7 @@ std::string hint(Gap const& gap) {
   if (gap.wanted == wanted::end_of_statement && gap.before() != nullptr)
     if (std::string const unit = unit_without_brackets(gap); !unit.empty())
       return fmt::format("a unit is written in brackets: `{} {}`", gap.before()->text, unit);
+  if (std::string name = dressed_name(gap); !name.empty()) return name;
   if (std::string const digits = grouped_digits(gap); !digits.empty())
     return fmt::format("digits are not grouped: write `{}`", digits);
   if (gap.begins_with("parameter") && gap.statement.size() > 1 && words::contains(types, gap.statement[1].text) && gap.at == 2)

@@ -48,6 +48,8 @@ std::size_t end_of_unit(std::span<Token const> statement, std::size_t from);
 std::string hint_in_model(Gap const& gap);
 std::string hint_in_block(Gap const& gap);
 std::string hint_in_data(Gap const& gap);
+/// What is meant by a statement of a data block that begins with another word; empty where nothing is known.
+std::string instead_of_data_statement(Gap const& gap);
 
 /// `[N/mm]` where the words of a unit were found without brackets, or empty.
 std::string unit_without_brackets(Gap const& gap);

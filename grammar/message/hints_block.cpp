@@ -51,9 +51,10 @@ std::string in_candidates(Gap const& gap) {
     return fmt::format("a probability is written as a number: `{} probability {:g}`", model,
                        std::stod(std::string(gap.before()->text)) / 100);
   if (!here || gap.statement[0].kind != TokenKind::word) return {};
+  if (gap.statement[0].is("model") && is_word(gap.found)) return "remove `model`: a candidate is the name of a model alone";
   for (std::size_t i = 1; i < std::min<std::size_t>(4, gap.statement.size()); ++i)
-    if (gap.statement[i].kind == TokenKind::number &&
-        (gap.found->is("=") || is_number(gap.found) || gap.found->is("p") || gap.found->is("prob") || gap.found->is("weight")))
+    if (gap.statement[i].kind == TokenKind::number && (gap.found->is("=") || is_number(gap.found) || gap.found->is("p") ||
+                                                       gap.found->is("prob") || gap.found->is("prior") || gap.found->is("weight")))
       return fmt::format("the prior probability of a candidate is written `{} probability {}`", model, gap.statement[i].text);
   return {};
 }
@@ -85,6 +86,7 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
     return fmt::format("list the data without brackets: `{}`", gap.text(gap.at + 1, gap.closing(gap.at)));
   if (gap.wanted == "the name of a data block" && found.kind == TokenKind::text)
     return "name a data block: `to DATA`; the CSV file is named inside that block";
+  if (gap.wanted == "the name of a data block" && found.is("*")) return "name each data block: `to DATA, OTHER_DATA`";
   if (!ends || gap.before() == nullptr) return {};
   std::size_t const with = std::min(gap.find("with"), gap.statement.size());
   if (gap.wanted == wanted::preposition_or_end && found.is("=") && gap.at == verb + 2 && gap.next() != nullptr)
@@ -102,12 +104,16 @@ std::string in_task_head(Gap const& gap, std::size_t verb) {
                        found.is(",") ? gap.text(gap.at + 1, with) : gap.text(gap.at - 1, gap.at + 2));
   bool const part = (found.is("[") || found.is("(")) && is_word(gap.next()) && gap.closing(gap.at) == gap.at + 2;
   if (gap.wanted == wanted::with_or_end && part)
-    return fmt::format("a range of the data is written `{}.{}`", gap.before()->text, gap.next()->text);
+    return gap.before()->is("data") ? fmt::format("name the data block alone: `{}`", gap.next()->text)
+                                    : fmt::format("a range of the data is written `{}.{}`", gap.before()->text, gap.next()->text);
   if (found.is(".") && gap.at + 2 <= gap.statement.size())
     return fmt::format("a range has no ranges of its own: remove `{}`", gap.text(gap.at, gap.at + 2));
-  if ((found.is("and") || found.is("&")) && is_word(gap.next()))
+  bool const joined = (found.is("and") || found.is("&") || found.is("+")) && is_word(gap.next());
+  bool const apart = gap.wanted == wanted::with_or_end && is_word(gap.found) && gap.next() != nullptr && gap.next()->is("with");
+  if (joined || apart)
     return fmt::format("separate data by commas: `{}, {}`",
-                       gap.text(gap.find("to") < gap.at ? gap.find("to") + 1 : gap.at - 1, gap.at), gap.text(gap.at + 1, with));
+                       gap.text(gap.find("to") < gap.at ? gap.find("to") + 1 : gap.at - 1, gap.at),
+                       gap.text(joined ? gap.at + 1 : gap.at, with));
   constexpr std::array<std::string_view, 5> spans{"for", "over", "until", "next", "during"};
   if (is_word(gap.found) && words::contains(spans, found.text))
     return fmt::format(
@@ -173,6 +179,9 @@ std::string in_options(Gap const& gap) {
   if (side_by_side && is_number(gap.before()) && gap.before()->span.end == found.span.begin &&
       (found.is("k") || found.is("K") || found.is("M")))
     return fmt::format("write `{}e{}`", gap.before()->text, found.is("M") ? 6 : 3);
+  if (found.is("..") && is_number(gap.before()) && is_number(gap.next()))
+    return fmt::format("a range of rows is named in the data block: `split part = rows {}`, and used as `DATA.part`",
+                       gap.text(gap.at - 1, gap.at + 2));
   if (found.is("=") && gap.find("and") < gap.at) return "separate options by commas in place of `and`";
   if (gap.wanted == wanted::equals && gap.before(2) != nullptr && gap.before(2)->is("input"))
     return fmt::format("the signal of an input is written `input {} = {}`", gap.before()->text,

@@ -17,13 +17,26 @@ namespace {
 constexpr std::array<std::string_view, 4> heads{"file", "time", "rate", "step"};
 
 /// What other programs do to a column.
-constexpr std::array<std::string_view, 24> column_functions{"detrend",  "demean",  "filter",   "filtfilt", "smooth",   "diff",
-                                                            "cumsum",   "abs",     "log",      "log10",    "sqrt",     "exp",
-                                                            "sin",      "cos",     "mean",     "scale",    "zscore",   "normalize",
-                                                            "gradient", "lowpass", "highpass", "movmean",  "resample", "decimate"};
+constexpr std::array<std::string_view, 26> column_functions{
+    "offset", "downsample", "detrend",  "demean",  "filter",   "filtfilt", "smooth",   "diff",    "cumsum",
+    "abs",    "log",        "log10",    "sqrt",    "exp",      "sin",      "cos",      "mean",    "scale",
+    "zscore", "normalize",  "gradient", "lowpass", "highpass", "movmean",  "resample", "decimate"};
+
+/// What stands before the number of a column.
+constexpr std::array<std::string_view, 4> counts_columns{"column", "col", "field", "index"};
+constexpr std::array<std::string_view, 4> arithmetic{"*", "/", "+", "-"};
+constexpr std::array<std::string_view, 6> beginnings{"start", "from", "begin", "after", "since", "skip"};
+constexpr char const* part_of_record =
+    "to use a part of the record, name its rows, `split part = rows 101..500`, and use `DATA.part`";
 
 bool is_name(Token const* token) { return token != nullptr && token->kind == TokenKind::word; }
 bool is_numeral(Token const* token) { return token != nullptr && token->kind == TokenKind::number; }
+
+/// `time column 1 [s]`, `measure d = 3 [mm]`: what stands before the column, and what stands behind its number.
+std::string counted_column(Gap const& gap, std::string_view before) {
+  return fmt::format("a column is named, not counted: write its name from the header of the file, `{} NAME{}{}`", before,
+                     gap.next() == nullptr ? "" : " ", gap.text(gap.at + 1, gap.statement.size()));
+}
 
 /// `input f = test.force`, `time run(1)`: the name of a column that is not a word, up to a blank or its unit.
 std::string in_name_of_column(Gap const& gap) {
@@ -38,6 +51,18 @@ std::string in_name_of_column(Gap const& gap) {
     ++end;
   return fmt::format("the name of a column is written in quotes unless it is a single word: `{} \"{}\"`", gap.text(0, gap.at - 1),
                      gap.text(gap.at - 1, end));
+}
+
+/// `time step 0.02 [s]`, `time column 1 [s]`, `time t [s] + 3`.
+std::string behind_time(Gap const& gap) {
+  if (gap.wanted != wanted::end_of_statement) return {};
+  if (gap.at == 2 && is_numeral(gap.found) && words::contains(counts_columns, gap.before()->text))
+    return counted_column(gap, "time");
+  bool const unit = gap.next() != nullptr && gap.next()->is("[");
+  if (gap.at == 2 && is_numeral(gap.found) && unit) return fmt::format("rows at equal steps are written `step {}`", gap.rest());
+  if (gap.before()->is("]") && words::contains(arithmetic, gap.found->text))
+    return fmt::format("a column is used as it is, with the unit of its numbers: remove `{}`", gap.rest());
+  return {};
 }
 
 /// `rate = 100 [Hz]`, `file("a.csv")`, `time [s] t`: statements without a sign.
@@ -62,10 +87,13 @@ std::string in_head(Gap const& gap) {
   if (gap.begins_with("time") && gap.at == 2)
     if (std::string const unit = gap.found->is("in") ? unit_without_brackets(gap) : std::string(); !unit.empty())
       return fmt::format("a unit is written in brackets: `time {} {}`", gap.before()->text, unit);
-  constexpr std::array<std::string_view, 6> starts{"start", "from", "begin", "after", "since", "skip"};
-  if (gap.wanted == wanted::end_of_statement && gap.at > 1 && words::contains(starts, gap.found->text))
-    return fmt::format("remove `{}`; to use a part of the record, name its rows, `split part = rows 101..500`, and use `DATA.part`",
-                       gap.rest());
+  if (gap.wanted == wanted::end_of_statement && gap.at > 1 && words::contains(beginnings, gap.found->text))
+    return fmt::format("remove `{}`; {}", gap.rest(), part_of_record);
+  if (std::string const setting = errors::setting_of_reading(gap.found->text);
+      gap.wanted == wanted::end_of_statement && !setting.empty())
+    return setting;
+  if (gap.begins_with("time"))
+    if (std::string help = behind_time(gap); !help.empty()) return help;
   if (gap.begins_with("time") && gap.at == 2) return in_name_of_column(gap);
   if (gap.begins_with("time") && gap.at == 1 && is_numeral(gap.found))
     return fmt::format("name the column; put it in quotes if it is not a single word: `time \"{}\"`", gap.found->text);
@@ -143,13 +171,11 @@ std::string in_column(Gap const& gap) {
   }
   if (equals >= gap.at) return {};
   if (std::string help = in_name_of_column(gap); !help.empty()) return help;
-  constexpr std::array<std::string_view, 4> operators{"*", "/", "+", "-"};
-  bool const operates = words::contains(operators, gap.found->text), behind_unit = operates && gap.before()->is("]");
+  bool const operates = words::contains(arithmetic, gap.found->text), behind_unit = operates && gap.before()->is("]");
   bool const counted = gap.wanted == wanted::column && is_numeral(gap.found) &&
                        (gap.next() == nullptr || gap.next()->is("[") || gap.next()->is("hold"));
-  if (counted)
-    return fmt::format("a column is named, not counted: write its name from the header of the file, `{} {} = NAME{}{}`", word, name,
-                       gap.next() == nullptr ? "" : " ", gap.text(gap.at + 1, gap.statement.size()));
+  bool const by_word = gap.at == equals + 2 && is_numeral(gap.found) && words::contains(counts_columns, gap.before()->text);
+  if (counted || by_word) return counted_column(gap, fmt::format("{} {} =", word, name));
   bool const computed = gap.wanted == wanted::column ? !gap.found->is("[") : operates && (gap.at == equals + 2 || behind_unit);
   if (computed) {
     std::string_view column = behind_unit ? gap.text(equals + 1, gap.at) : std::string_view();
@@ -179,8 +205,20 @@ std::string in_column(Gap const& gap) {
   return {};
 }
 
+/// `read decimal ","`, `read encoding = utf-8`.
+std::string in_reading(Gap const& gap) {
+  if (!gap.begins_with("read") || gap.found == nullptr) return {};
+  if (gap.wanted == wanted::equals && gap.at == 2) return fmt::format("write `{} = {}`", gap.text(0, 2), gap.rest());
+  bool const hyphen = gap.wanted == wanted::end_of_statement && gap.found->is("-") && is_name(gap.before());
+  if (hyphen && is_numeral(gap.next())) return fmt::format("write it as one word: `{}{}`", gap.text(0, gap.at), gap.next()->text);
+  return {};
+}
+
 std::string in_split(Gap const& gap) {
   if (!gap.begins_with("split") || gap.found == nullptr) return {};
+  bool const range = gap.next() != nullptr && (gap.next()->is("..") || gap.next()->is("-") || gap.next()->is("to"));
+  if (gap.wanted == "`rows`" && (gap.found->is("time") || (is_numeral(gap.found) && !range)))
+    return "a range is written by the numbers of its rows, which `sysid data FILE` counts: `split train = rows 1..500`";
   if (gap.found->is("and") || (gap.found->is("=") && gap.find("and") < gap.at)) {
     std::size_t const both = gap.find("and");
     return fmt::format("separate ranges by commas: `{}, {}`", gap.text(0, both), gap.text(both + 1, gap.statement.size()));
@@ -190,10 +228,38 @@ std::string in_split(Gap const& gap) {
   return {};
 }
 
+/// `angle = phi [deg]`, `added = 0.5 [kg]`, `angle [deg] = phi`: a column or a value without its keyword.
+std::string without_keyword(Gap const& gap) {
+  std::string_view const name = gap.found->text;
+  Token const *sign = gap.next(), *value = gap.next(2);
+  if (sign == nullptr || value == nullptr) return {};
+  if (sign->is("=") && is_numeral(value)) return fmt::format("a value of this record is written `constant {}`", gap.rest());
+  if (sign->is("=") && (is_name(value) || value->kind == TokenKind::text))
+    return fmt::format("a column is measured or an input: `measure {0}`, `input {0} hold linear`", gap.rest());
+  std::size_t const close = sign->is("[") ? gap.closing(1) : gap.statement.size();
+  if (close + 2 < gap.statement.size() && gap.statement[close + 1].is("="))
+    return fmt::format("a column is measured or an input, and its unit comes last: `measure {} = {} {}`", name,
+                       gap.statement[close + 2].text, gap.text(1, close + 1));
+  return {};
+}
+
 }  // namespace
 
+std::string instead_of_data_statement(Gap const& gap) {
+  if (gap.found == nullptr || gap.at != 0) return {};
+  std::string const word(gap.found->text);
+  if (word == "sheet") return "a file holds one table: save the sheet as CSV";
+  if (words::contains(beginnings, word)) return part_of_record;
+  if (words::contains(column_functions, word))
+    return "a column is used as it is: filter or thin the record before, and write a factor or an offset in the model";
+  bool const rows = gap.find("..") < gap.statement.size();
+  bool const guessed = rows || !words::translated(words::foreign_data_statements(), word).empty() ||
+                       !did_you_mean(word, words::list(words::data_statements)).empty();
+  return guessed ? std::string() : without_keyword(gap);
+}
+
 std::string hint_in_data(Gap const& gap) {
-  for (auto const look : {&in_head, &in_column, &in_split})
+  for (auto const look : {&in_head, &in_column, &in_reading, &in_split})
     if (std::string help = look(gap); !help.empty()) return help;
   return {};
 }

@@ -107,10 +107,24 @@ std::string behind_distribution(Gap const& gap) {
   return gap.found->is(",") || gap.found_word() ? no_start(gap.rest()) : std::string();
 }
 
+/// `~ 10^uniform(-3, 0)`.
+std::string power_of_uniform(Gap const& gap) {
+  bool const ten = gap.wanted.starts_with("a distribution") && gap.found_is("10") && gap.next(3) != nullptr;
+  if (!ten || !gap.next()->is("^") || !gap.next(2)->is("uniform") || !gap.next(3)->is("(")) return {};
+  std::size_t const opener = gap.at + 3, close = gap.closing(opener), comma = first_comma(gap, opener);
+  if (comma >= close || close >= gap.statement.size()) return {};
+  auto const power = [&](std::size_t from, std::size_t end) {
+    constexpr std::size_t signed_number = 2;
+    return fmt::format(fmt::runtime(end - from > signed_number ? "10^({})" : "10^{}"), gap.text(from, end));
+  };
+  return fmt::format("write `log_uniform({}, {})`", power(opener + 1, comma), power(comma + 1, close));
+}
+
 /// `~ pm.Normal(0, 1)`, `~ flat`: a distribution with a module before it, or without parentheses.
 std::string at_distribution(Gap const& gap) {
   if (gap.wanted == wanted::tilde && gap.begins_with("observe") && gap.found == nullptr && gap.at >= 2)
     return fmt::format("write the distribution of the data around the model: `{} ~ normal(y, sd = sigma)`", gap.text(0, gap.at));
+  if (std::string whole = power_of_uniform(gap); !whole.empty()) return whole;
   if (!gap.wanted.starts_with("a distribution") || !gap.found_word()) return {};
   if (gap.next() != nullptr && gap.next()->is(".")) return fmt::format("write the distribution without `{}.`", gap.found->text);
   return gap.next() == nullptr && gap.found->is("flat") ? "write `flat()`" : "";
@@ -197,11 +211,27 @@ std::string behind_declared(Gap const& gap) {
   return {};
 }
 
+/// `[m^1/2]`, `phi[2]`, `[1000 kg]`.
+std::string number_in_unit(Gap const& gap) {
+  Token const *line = gap.before(), *above = gap.before(2), *sign = gap.before(3);
+  if (line == nullptr) return {};
+  if (line->is("/") && sign != nullptr && sign->is("^"))
+    return fmt::format("a fraction as a power has parentheses: `[{}({}/{})]`", gap.text(gap.find("[") + 1, gap.at - 2), above->text,
+                       gap.found->text);
+  bool const alone = line->is("[") && gap.next() != nullptr && gap.next()->is("]");
+  bool const behind_name = gap.at == 3 && words::contains(words::model_statements, gap.statement[0].text);
+  if (alone && behind_name && !gap.found->is("0") && gap.found->text.find_first_of(".eE") == std::string_view::npos)
+    return fmt::format("a size is written in parentheses: `{}({})`; a pure number has the unit `[-]`", gap.statement[1].text,
+                       gap.found->text);
+  return alone ? "a pure number has the unit `[-]`" : "a unit has a prefix in place of a number: `[mm]`, `[kN]`";
+}
+
 /// Inside the brackets of a unit.
 std::string in_unit(Gap const& gap) {
   if (gap.wanted != "a unit" || gap.found == nullptr) return {};
   if (gap.found->kind == TokenKind::text)
     return fmt::format("a unit is written without quotes: `{}`", bracketed_unit(gap, gap.at, gap.at + 1));
+  if (gap.found->kind == TokenKind::number) return number_in_unit(gap);
   if (gap.found->is("]")) return "write the unit in the brackets, `[N s/m]`, or `[-]` for a pure number";
   if (gap.found->is("[")) return "write one pair of brackets";
   return {};

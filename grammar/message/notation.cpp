@@ -11,7 +11,7 @@
 namespace sysid::grammar::notation {
 namespace {
 
-constexpr std::array<LookAlike, 32> look_alikes{{
+constexpr std::array<LookAlike, 36> look_alikes{{
     {"−", "`-`"},
     {"–", "`-`"},
     {"—", "`-`"},
@@ -44,6 +44,10 @@ constexpr std::array<LookAlike, 32> look_alikes{{
     {"∂", "`y'` for a derivative"},
     {"±", "an uncertain value as a prior, such as `~ normal(20, sd = 5)`"},
     {"≈", "`=`"},
+    {"∼", "`~`"},
+    {"˜", "`~`"},
+    {"～", "`~`"},
+    {"∈", "a range of values as a prior, `~ uniform(0.1, 10)`"},
 }};
 
 /// Raised digits and signs, `⁻³`, with what they stand for.
