@@ -9,8 +9,8 @@
 #include "check/expression/leaves.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_numbers.hpp"
-#include "check/message/unit_words.hpp"
 #include "check/units/unit_errors.hpp"
+#include "check/units/unit_words.hpp"
 #include "function/primitive.hpp"
 #include "syntax/unparse.hpp"
 

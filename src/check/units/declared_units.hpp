@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "check/message/unit_words.hpp"
+#include "check/units/unit_words.hpp"
 #include "syntax/ast.hpp"
 
 namespace sysid {

@@ -10,9 +10,9 @@
 #include <numbers>
 #include <utility>
 
-#include "check/message/unit_words.hpp"
 #include "check/units/product.hpp"
 #include "check/units/unit_errors.hpp"
+#include "check/units/unit_words.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
 

@@ -1,5 +1,5 @@
 // Two small tables: named units that make a dimension short, and the kinds of quantities that have a name.
-#include "check/message/unit_words.hpp"
+#include "check/units/unit_words.hpp"
 
 #include <cstdlib>
 #include <optional>
@@ -27,12 +27,12 @@ constexpr Named named_units[] = {
     {"T", {1, 0, -2, -1, 0}, false},   {"Wb", {1, 2, -2, -1, 0}, false},
 };
 
-struct Kind {
+struct NamedKind {
   std::string_view name;
   Exponents exponents;
   bool plain = false;
 };
-constexpr Kind kinds[] = {
+constexpr NamedKind named_kinds[] = {
     {"a length", {0, 1, 0, 0, 0}, true},
     {"a time", {0, 0, 1, 0, 0}, true},
     {"a mass", {1, 0, 0, 0, 0}, true},
@@ -58,7 +58,7 @@ constexpr Kind kinds[] = {
 constexpr std::size_t kilogram = 0, second = 2;
 constexpr std::string_view prefixes = "GMkhdcmun";
 
-int size_of(Dimension const& dimension) {
+int exponents_of(Dimension const& dimension) {
   int size = 0;
   for (Rational const& exponent : dimension)
     if (exponent.numerator != 0) size += 1 + std::abs(exponent.numerator) + exponent.denominator - 1;
@@ -81,7 +81,7 @@ std::string short_dimension(Dimension const& dimension, UnitNames const& in_use)
     if (in_use.contains(named.symbol) && named.exponents.dimension() == dimension) return std::string(named.symbol);
   std::string text = format_dimension(dimension);
   // Who writes newtons reads "N s/m" more easily than "kg/s".
-  int size = size_of(dimension) + (in_use.contains("N") && dimension[second].numerator != 0 ? 3 : 0);
+  int size = exponents_of(dimension) + (in_use.contains("N") && dimension[second].numerator != 0 ? 3 : 0);
   for (Named const& named : named_units)
     for (int const power : {1, -1, 2, -2, 3, -3, 4, -4}) {
       if (!named.in_products || !in_use.contains(named.symbol)) continue;
@@ -90,7 +90,7 @@ std::string short_dimension(Dimension const& dimension, UnitNames const& in_use)
         rest = quotient(rest, power > 0 ? named.exponents.dimension() : inverse(named.exponents.dimension()));
       // A newton stands for the kilogram in it: m/s^2 is not N/kg.
       bool const brings_mass = std::abs(rest[kilogram].numerator) > std::abs(dimension[kilogram].numerator);
-      int const length = 1 + std::abs(power) + size_of(rest);
+      int const length = 1 + std::abs(power) + exponents_of(rest);
       if (brings_mass || length >= size) continue;
       size = length;
       text = joined(named.symbol, power, rest);
@@ -98,7 +98,7 @@ std::string short_dimension(Dimension const& dimension, UnitNames const& in_use)
   return text;
 }
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_unit_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
 }  // namespace
 
@@ -112,7 +112,7 @@ Dimension inverse(Dimension const& dimension) { return quotient(Dimension{}, dim
 void add_unit_names(std::string_view text, UnitNames& names) {
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = at;
-    while (end < text.size() && is_letter(text[end])) ++end;
+    while (end < text.size() && is_unit_letter(text[end])) ++end;
     std::string_view const word = text.substr(at, end - at);
     for (Named const& named : named_units) {
       bool const prefixed = word.size() == named.symbol.size() + 1 && word.ends_with(named.symbol) &&
@@ -133,13 +133,13 @@ std::string unit_words(Unit const& unit, UnitNames const& in_use) {
 }
 
 bool is_plain_kind(Dimension const& dimension) {
-  for (Kind const& kind : kinds)
+  for (NamedKind const& kind : named_kinds)
     if (kind.plain && kind.exponents.dimension() == dimension) return true;
   return false;
 }
 
 std::string kind_words(Dimension const& dimension, UnitNames const& in_use) {
-  for (Kind const& kind : kinds)
+  for (NamedKind const& kind : named_kinds)
     if (kind.exponents.dimension() == dimension) return std::string(kind.name);
   return "something in [" + short_dimension(dimension, in_use) + "]";
 }
