@@ -9,6 +9,7 @@
 #include "check/elaborate/frame.hpp"
 #include "check/elaborate/part_noise.hpp"
 #include "check/elaborate/tree.hpp"
+#include "check/message/errors_numbers.hpp"
 #include "check/message/errors_reuse.hpp"
 #include "syntax/walk.hpp"
 
@@ -309,7 +310,7 @@ class Flattener {
     if (channel.sizes.size() > 1) {
       diagnostics_.add(errors::too_many_sizes(channel.span, channel.name.text));
     } else if (!size) {
-      diagnostics_.add(errors::whole_number_needed(channel.sizes.front().span, errors::named("a size of", channel.name.text)));
+      diagnostics_.add(errors::size_needed(channel, 0));
     } else if (*size < 1 || *size > 1000) {
       diagnostics_.add(errors::size_out_of_range(channel.sizes.front().span, channel.name.text, *size, 1000));
     } else {

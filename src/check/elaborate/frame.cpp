@@ -81,9 +81,7 @@ std::optional<Shape> FrameBuilder::shape_of(Frame const& frame, ast::Declared co
   for (std::size_t i = 0; i < declared.sizes.size(); ++i) {
     auto const size = whole_number(declared.sizes[i], frame.instance.arguments);
     if (!size) {
-      Diagnostic needed = errors::whole_number_needed(declared.sizes[i].span, errors::named("a size of", declared.name.text));
-      if (std::string meant = errors::instead_of_size(declared); i == 0 && !meant.empty()) needed.help = std::move(meant);
-      diagnostics_.add(std::move(needed));
+      diagnostics_.add(errors::size_needed(declared, i));
       return std::nullopt;
     }
     if (*size < 1 || *size > most_elements || sizes[0] * *size > most_elements) {

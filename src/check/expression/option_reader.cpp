@@ -15,6 +15,16 @@ namespace {
 constexpr int default_start_rows = 50;
 constexpr double example_burn_in = 1000;
 
+/// Of `schedule = 100, 10, 1`, a list without its parentheses: the last of its numbers; `first` where it has them.
+std::size_t end_of_list(ast::Call const& call, std::size_t first, std::span<SettingRow const> rows) {
+  std::string const& name = call.arguments[first].name->text;
+  bool const list = std::any_of(rows.begin(), rows.end(),
+                                [&](SettingRow const& each) { return each.kind == SettingKind::numbers && each.name == name; });
+  std::size_t last = first;
+  while (list && last + 1 < call.arguments.size() && !call.arguments[last + 1].name) ++last;
+  return last;
+}
+
 }  // namespace
 
 Unit unit_of(std::string_view atom) { return atom.empty() ? Unit{} : unit_atom(atom).value(); }
@@ -255,7 +265,13 @@ void OptionReader::settings(ast::Call const& call, std::span<SettingRow const> r
   std::vector<std::string> known;
   for (SettingRow const& row : rows) known.emplace_back(row.name);
   std::map<std::string, Span> given;
-  for (ast::Argument const& argument : call.arguments) {
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    ast::Argument const& argument = call.arguments[i];
+    if (std::size_t const last = argument.name ? end_of_list(call, i, rows) : i; last > i) {
+      diagnostics_.add(errors::list_without_parentheses(call, i, last));
+      i = last;
+      continue;
+    }
     if (!argument.name) {
       diagnostics_.add(known.empty() ? errors::too_many_arguments(call, argument, known)
                                      : errors::must_be_named(call, argument, known));

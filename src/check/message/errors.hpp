@@ -180,6 +180,8 @@ Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::stri
 Diagnostic unknown_option(Span span, std::string const& option, OptionOwner const& owner, Names const& known);
 /// `with "map"`, `with map + mh`: an option that is neither a name nor a call, and has no key.
 Diagnostic option_without_name(ast::Expression const& option, std::string const& verb);
+/// E2106: `schedule = 100, 10, 1`, by the indices of the argument with the name and of the last one without.
+Diagnostic list_without_parentheses(ast::Call const& call, std::size_t first, std::size_t last);
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example);
 Diagnostic option_kind(Span span, std::string const& option, Subject const& wanted, std::string const& example);
 Diagnostic option_range(Span span, std::string const& option, double given, double least, double most);

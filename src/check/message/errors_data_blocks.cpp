@@ -1,11 +1,17 @@
 // The checker's wording about data blocks, and about bringing them together with models.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "check/message/error_words.hpp"
 #include "syntax/foreign_words.hpp"
 
 namespace sysid::errors {
 namespace {
+
+constexpr Synonym setting_synonyms[] = {{"header", "names"},      {"delimiter", "separator"}, {"sep", "separator"},
+                                        {"delim", "separator"},   {"nan", "missing"},         {"na", "missing"},
+                                        {"na_values", "missing"}, {"datetime", "stamp"},      {"charset", "encoding"}};
 
 /// "`hold linear` or `hold cubic`".
 std::string choice_of_rules(Names rules) {
@@ -75,8 +81,12 @@ Diagnostic unknown_rule(ast::Name const& rule, Names const& known) {
 }
 
 Diagnostic unknown_reading(ast::Name const& setting, Names const& known) {
+  constexpr std::string_view of_first_row[] = {"skip", "skiprows", "skip_rows", "header_lines", "headerlines"};
+  if (std::find(std::begin(of_first_row), std::end(of_first_row), setting.text) != std::end(of_first_row))
+    return about({setting.text}, error("E4117", setting.span, fmt::format("`read` has no setting `{}`", setting.text),
+                                       "write the line where the values begin: `read values = 2` if there is one line above them"));
   return about({setting.text}, error("E4117", setting.span, fmt::format("`read` has no setting `{}`", setting.text),
-                                     guess_or(setting.text, known, fmt::format("settings: {}", quoted(known)))));
+                                     guess_or(setting_synonyms, setting.text, known, fmt::format("settings: {}", quoted(known)))));
 }
 
 Diagnostic bad_reading(Span span, std::string const& setting, std::string const& wanted, std::string const& usage) {

@@ -77,6 +77,11 @@ constexpr Synonym argument_synonyms[] = {
     {"theta", "scale"},
     {"alpha", "shape"},
     {"beta", "rate"},
+    {"beta", "scale"},
+    {"scale", "mean"},
+    {"a", "shape"},
+    {"alpha", "a"},
+    {"beta", "b"},
 };
 
 /// The digits of a whole number without a sign or a unit, zeros in front kept; empty for all else.
@@ -163,6 +168,8 @@ std::string other_distribution(std::string const& small) {
 std::string other_argument(ast::Name const& argument, std::string const& distribution, Names const& known) {
   if (std::find(start_words.begin(), start_words.end(), argument.text) != start_words.end())
     return "remove it: a parameter has no start value, the search begins at draws of the prior";
+  if (known == Names{"lower", "upper"} && (argument.text == "a" || argument.text == "b"))
+    return fmt::format("did you mean `{}`?", argument.text == "a" ? "lower" : "upper");
   // A mean where a median or the mean of the logarithm can be given: neither is it.
   bool const logarithmic = std::find(known.begin(), known.end(), "log_mean") != known.end();
   if (logarithmic && argument.text == "mean")
@@ -333,8 +340,12 @@ Diagnostic prior_cycle(Span span, Names const& loop) {
 }
 
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason) {
-  return about({distribution}, error("E2112", span, fmt::format("the arguments of `{}` are invalid: {}", distribution, reason),
-                                     "choose arguments that satisfy this condition"));
+  return about({distribution},
+               error("E2112", span, fmt::format("the arguments of `{}` are invalid: {}", distribution, reason),
+                     distribution == "log_uniform"
+                         ? "its bounds are the positive values themselves, not their logarithms, the lower one first: "
+                           "`log_uniform(1e-3, 1)`"
+                         : "choose arguments that satisfy this condition"));
 }
 
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,

@@ -138,13 +138,24 @@ std::string no_delay(std::string const& delayed) {
       delayed);
 }
 
+constexpr char const* over_the_record =
+    "a quantity of a model has a value at each time: compute one over the record from the table of a prediction";
+/// What is written here that functions with too few arguments are in other programs.
+constexpr Synonym fewer_arguments[] = {
+    {"lag", "write `lag(y, 1)` for the sample before"}, {"max", over_the_record}, {"min", over_the_record}};
+
 /// What has no function here, and how it is modelled; empty for other calls.
 std::string of_model(ast::Call const& call, std::string const& name) {
   std::string const argument = call.arguments.empty() ? "y" : unparse(call.arguments.front().value);
   for (std::string_view const each : {"integral", "integrate", "cumtrapz", "trapz", "cumsum"})
     if (name == each) return fmt::format("an integral is a state with an equation: `state z` and `z' = {}`", argument);
   for (std::string_view const each : {"delay", "delayed", "dead_time", "deadtime", "transport_delay"})
-    if (name == each) return no_delay(argument);
+    if (name == each)
+      return fmt::format("{}; in discrete time write `lag({}, 1)` for the sample before", no_delay(argument), argument);
+  for (std::string_view const each : {"prev", "previous", "pre", "last", "unit_delay"})
+    if (name == each) return fmt::format("in discrete time the sample before is written `lag({}, 1)`", argument);
+  for (std::string_view const each : {"mean", "average", "avg", "rms", "std", "var", "variance", "median"})
+    if (name == each) return over_the_record;
   for (std::string_view const each : {"randn", "rand", "random", "noise", "normrnd", "white_noise"})
     if (name == each)
       return "noise of a measurement is written after `observe`, `observe d ~ normal(y, sd = sigma)`; an unknown force is a "
@@ -193,10 +204,10 @@ Diagnostic unknown_function(ast::Call const& call, Names const& known, bool is_q
     return about({name.text}, error("E2003", name.span, std::move(message), std::move(help)), std::move(kind));
   };
   if (is_quantity) return refused(fmt::format("`{}` is a quantity, not a function", name.text), of_quantity(call));
-  if (find_distribution(name.text) != nullptr)
-    return refused(fmt::format("`{}` is a distribution, not a function", name.text),
-                   fmt::format("a prior is written with `~`: `parameter k ~ {}(...)`", name.text));
   std::string const message = fmt::format("there is no function `{}`", name.text), plain = in_small_letters(name.text);
+  if (find_distribution(plain) != nullptr)
+    return refused(fmt::format("`{}` is a distribution, not a function", name.text),
+                   fmt::format("a prior is written with `~`: `parameter k ~ {}(...)`", plain));
   for (std::string_view const derivative :
        {"der", "diff", "d", "ddt", "dt", "derivative", "D", "dot", "ddot", "Dt", "dydt", "dxdt"})
     if (name.text == derivative) return refused(message, "a derivative is written with primes: `y'`, `y''`", "function");
@@ -233,10 +244,13 @@ Diagnostic argument_count(ast::Name const& function, std::size_t given, std::siz
   std::string const wanted = least == most ? fmt::format("{}", least)
                              : most > 100  ? fmt::format("{} or more", least)
                                            : fmt::format("{} to {}", least, most);
+  std::string help = "give each argument once, separated by commas";
+  for (Synonym const& each : fewer_arguments)
+    if (function.text == each.foreign && given < least) help = each.ours;
   return about({function.text},
                error("E2004", function.span,
                      fmt::format("`{}` takes {} argument{}, not {}", function.text, wanted, wanted == "1" ? "" : "s", given),
-                     "give each argument once, separated by commas"));
+                     std::move(help)));
 }
 
 Diagnostic piecewise_without_otherwise(ast::Call const& call) {

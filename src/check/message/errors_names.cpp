@@ -29,6 +29,7 @@ constexpr Synonym name_synonyms[] = {
     {"unknown", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"s", "declare it; of a transfer function write the differential equation, a prime for each power of s: `y''` for `s^2*y`"},
     {"i", "declare it; there are no complex numbers: write an equation for the real and one for the imaginary part"},
+    {"z", "declare it as state, input or parameter; if it shifts a sample of discrete time, write `lag(y, 1)` for `y*z^-1`"},
     {"free", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"estimate", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
     {"real", declared_in_stan},

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "check/message/error_words.hpp"
+#include "check/message/errors_reuse.hpp"
 #include "core/numeric/unit.hpp"
 #include "syntax/unparse.hpp"
 
@@ -20,6 +21,20 @@ bool of_units(ast::Expression const& expression) {
     return ((*binary)->symbol == "*" || (*binary)->symbol == "/") && of_units(*(*binary)->left) && of_units(*(*binary)->right);
   }
   return false;
+}
+
+/// Empty where it is unknown.
+std::string instead_of_size(ast::Declared const& declared) {
+  ast::Expression const& size = declared.sizes.front();
+  std::string const& name = declared.name.text;
+  std::string const written = unparse(size);
+  if (written == "t" || written == "time")
+    return fmt::format("write `{}` without `({})`: a quantity is written without its time", name, written);
+  std::string const number = fmt::format("a size is a number or an argument of the model: `{}(3)`", name);
+  if (of_units(size)) return fmt::format("a unit is written in brackets: `{} [{}]`; {}", name, written, number);
+  if (std::holds_alternative<ast::Reference>(size.node))
+    return fmt::format("{}; a function is written `function {}({}) = ...`", number, name, written);
+  return {};
 }
 
 }  // namespace
@@ -53,17 +68,10 @@ Diagnostic parts_overlap(NamedRows const& later, NamedRows const& earlier) {
                                                          : "both ends of a range belong to it: " + crossing));
 }
 
-std::string instead_of_size(ast::Declared const& declared) {
-  ast::Expression const& size = declared.sizes.front();
-  std::string const& name = declared.name.text;
-  std::string const written = unparse(size);
-  if (written == "t" || written == "time")
-    return fmt::format("write `{}` without `({})`: a quantity is written without its time", name, written);
-  std::string const number = fmt::format("a size is a number or an argument of the model: `{}(3)`", name);
-  if (of_units(size)) return fmt::format("a unit is written in brackets: `{} [{}]`; {}", name, written, number);
-  if (std::holds_alternative<ast::Reference>(size.node))
-    return fmt::format("{}; a function is written `function {}({}) = ...`", number, name, written);
-  return {};
+Diagnostic size_needed(ast::Declared const& declared, std::size_t which) {
+  Diagnostic needed = whole_number_needed(declared.sizes[which].span, named("a size of", declared.name.text));
+  if (std::string meant = instead_of_size(declared); which == 0 && !meant.empty()) needed.help = std::move(meant);
+  return needed;
 }
 
 }  // namespace sysid::errors

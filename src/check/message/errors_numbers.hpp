@@ -21,7 +21,8 @@ struct NamedRows {
 /// E4116: rows that two parts of a record have in common, where neither lies inside the other, or both are the same.
 Diagnostic parts_overlap(NamedRows const& later, NamedRows const& earlier);
 
-/// What is meant in place of a size that is no number: a unit, the time, the argument of a function; empty where that is unknown.
-std::string instead_of_size(ast::Declared const& declared);
+/// E2701: a size of what is declared that is no number, with what is meant in its place: a unit, the time, the argument of a
+/// function.
+Diagnostic size_needed(ast::Declared const& declared, std::size_t which);
 
 }  // namespace sysid::errors

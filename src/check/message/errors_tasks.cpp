@@ -103,6 +103,9 @@ constexpr Synonym option_places[] = {
     {"snr", "noise is given relative to the standard deviation of the signal: `noise = 1 [percent]`"},
     {"input", "an input is named: `input x = gaussian(sd = 10)`"},
 };
+/// How what a task names is declared.
+constexpr Synonym declared_by[] = {
+    {"model", "model"}, {"data block", "data"}, {"dictionary", "dictionary"}, {"set of candidates", "candidates"}};
 constexpr std::string_view of_backends[] = {"samples", "burn_in", "thin", "chains", "proposal", "particles", "variance"};
 
 constexpr Synonym backend_synonyms[] = {
@@ -150,11 +153,15 @@ std::string place_of_option(std::string const& option, OptionOwner const& owner,
   bool const inside = owner.name != owner.verb, own = among(owner.verbs, owner.verb);
   if (inside && own) return fmt::format("`{0}` is an option of the task: write `{0} = ...` after the parentheses", option);
   if (inside && option == "x0") return "remove it: a fit has no start values, its search begins at draws of the prior";
-  if (known.empty()) return {};
+  if (known.empty()) return fmt::format("it has none: write `{}`", owner.name);
+  if (inside && (option == "step" || option == "dt" || option == "h") && among(known, "substeps"))
+    return fmt::format("write the number of steps in each sampling interval: `{}(substeps = 10)`", owner.name);
+  auto const kind = words::task_kind(owner.verb);
+  if (!inside && kind == TaskKind::predict && (option == "steps" || option == "horizon"))
+    return "a prediction from the samples up to some rows before is written `prediction = steps(10)`";
   constexpr std::string_view tolerances[] = {"rtol", "reltol", "atol", "abstol"};
   if (inside && among(tolerances, option) && among(known, "relative"))
     return fmt::format("write `{}(relative = 1e-8, absolute = 1e-10)`", owner.name);
-  auto const kind = words::task_kind(owner.verb);
   bool const has_backend = kind == TaskKind::fit || kind == TaskKind::select;
   if (!inside && has_backend && among(of_backends, option))
     return fmt::format("`{0}` is a setting of the back end: write it in its parentheses, `{1}({0} = ...)`", option,
@@ -175,10 +182,12 @@ std::string word_of(ast::Expression const& tree) {
 }  // namespace
 
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known) {
+  std::string help = guess_or(name.text, known, choose(known, kind));
+  for (Synonym const& each : declared_by)
+    if (known.empty() && kind == each.foreign)
+      help = fmt::format("this file has none: declare one, `{} NAME {{ ... }}`", each.ours);
   return about({name.text},
-               error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text),
-                     guess_or(name.text, known, choose(known, kind))),
-               kind);
+               error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text), std::move(help)), kind);
 }
 
 Diagnostic unknown_fit(ast::Name const& name, Names const& known, bool is_data) {
@@ -199,9 +208,7 @@ Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::stri
 
 Diagnostic unknown_option(Span span, std::string const& option, OptionOwner const& owner, Names const& known) {
   std::string help = guess_or(option_synonyms, option, known, place_of_option(option, owner, known));
-  if (help.empty())
-    help = known.empty() ? std::string("it has none")
-                         : fmt::format("{} {}", known.size() == 1 ? "its option is" : "its options are", quoted(known));
+  if (help.empty()) help = fmt::format("{} {}", known.size() == 1 ? "its option is" : "its options are", quoted(known));
   return about({owner.name, option},
                error("E6002", span, fmt::format("`{}` has no option `{}`", owner.name, option), std::move(help)));
 }
@@ -215,6 +222,15 @@ Diagnostic option_without_name(ast::Expression const& option, std::string const&
     if (std::string const left = word_of(*(*both)->left), right = word_of(*(*both)->right); !left.empty() && !right.empty())
       help = fmt::format("a task has one back end: write `with {}` or `with {}`", left, right);
   return about({verb}, error("E6002", option.span, fmt::format("`{}` is no option of `{}`", unparse(option), verb), help));
+}
+
+Diagnostic list_without_parentheses(ast::Call const& call, std::size_t first, std::size_t last) {
+  std::string const& name = call.arguments[first].name->text;
+  std::string items = unparse(call.arguments[first].value);
+  for (std::size_t i = first + 1; i <= last; ++i) items += ", " + unparse(call.arguments[i].value);
+  return about({name}, error("E2106", cover(call.arguments[first + 1].span, call.arguments[last].span),
+                             "the name of this argument is missing, or it belongs to the list before it",
+                             fmt::format("a list is written in parentheses: `{} = ({})`", name, items)));
 }
 
 Diagnostic option_missing(ast::Task const& task, std::string const& option, std::string const& example) {
@@ -273,6 +289,9 @@ Diagnostic unknown_backend(ast::Name const& name, Names const& known) {
   if (name.text == "values" || name.text == "fix" || name.text == "fixed")
     return about({name.text}, error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
                                     "remove it, and give the parameter its value in the model: `parameter m [kg] = 1`"));
+  if (name.text == "weights" || name.text == "weight")
+    return about({name.text}, error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
+                                    "remove it: a channel weighs by the size of its noise, `observe d ~ normal(y, sd = sigma)`"));
   return about({name.text}, error("E6008", name.span, fmt::format("there is no back end `{}`", name.text),
                                   guess_or(backend_synonyms, name.text, known, fmt::format("back ends: {}", quoted(known)))));
 }

@@ -23,9 +23,9 @@ constexpr std::pair<std::string_view, std::string_view> molar[] = {
 
 // Of which the letters would tell something else.
 constexpr std::pair<std::string_view, std::string_view> other_names[] = {
-    {"lbs", "lb"},      {"lbm", "lb"},         {"revs", "rev"},      {"kp", "kgf"},      {"klbf", "kip"},
-    {"mseconds", "ms"}, {"msec", "ms"},        {"usec", "us"},       {"pct", "percent"}, {"Vrms", "V"},
-    {"dyn", "dyne"},    {"µε", "microstrain"}, {"με", "microstrain"}};
+    {"lbs", "lb"},      {"lbm", "lb"},  {"revs", "rev"},       {"kp", "kgf"},        {"klbf", "kip"},
+    {"mseconds", "ms"}, {"msec", "ms"}, {"usec", "us"},        {"pct", "percent"},   {"Vrms", "V"},
+    {"dyn", "dyne"},    {"G", "g_n"},   {"µε", "microstrain"}, {"με", "microstrain"}};
 constexpr std::pair<std::string_view, std::string_view> products[] = {{"mNm", "mN m"}, {"NS", "N s"}};
 
 bool is_common(std::string_view word) {

@@ -177,6 +177,7 @@ void TaskChecker::prediction(ast::Option const& option, std::span<int const> mod
     if (as_word(option.value) == names.back()) chosen = each;
   }
   if (!chosen) {
+    if (words::task_kind(tree_.verb.text) == TaskKind::predict) names.emplace_back("steps(10)");
     diagnostics_.add(errors::option_choice(option.value.span, "prediction", as_word(option.value).value_or(""), names));
     return;
   }
