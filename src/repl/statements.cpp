@@ -121,7 +121,11 @@ bool draft(Context& context, EntryPart const& part, std::string const& entry, Wo
     context.output.show(diagnostics, entry);
     return false;
   }
-  put(with_statement(work.items[place], entry, part.span));
+  WorkItem changed = with_statement(work.items[place], entry, part.span);
+  for (auto const& [parameter, unit] : lost_units(work.items[place], changed))
+    notices.push_back(fmt::format("`{0}` was declared in [{1}] and has no unit now: to keep it, write `parameter {0} [{1}] ...`",
+                                  parameter, unit));
+  put(std::move(changed));
   return true;
 }
 

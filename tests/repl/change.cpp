@@ -38,6 +38,20 @@ TEST_CASE("a declaration takes the place of that of the same name, whatever word
         replaced(text, "observe d ~ normal(y, sd = 1)", "observe d ~ normal(z, sd = 2)"));
 }
 
+TEST_CASE("a parameter that loses its unit to a new declaration is told of, one that keeps it or had none is not") {
+  WorkItem const before{ItemKind::model, "a", "", replaced(text, "parameter k = 1", "parameter k [N/mm] = 1")};
+  auto const lost = [&](std::string const& statement) {
+    return lost_units(before, with_statement(before, statement, {0, static_cast<std::uint32_t>(statement.size())}));
+  };
+  auto const said = lost("parameter k ~ normal(1, sd = 0.1)");
+  REQUIRE(said.size() == 1);
+  CHECK(said[0].parameter == "k");
+  CHECK(said[0].unit == "N/mm");
+  CHECK(lost("parameter k [N/m] = 2").empty());
+  CHECK(lost("let k = 2 [N/m]").empty());
+  CHECK(lost("parameter c = 2").empty());
+}
+
 TEST_CASE("an equation takes the place of that for the same highest derivative") {
   CHECK(with(text, "y'' + k*y + y^3 = x") == replaced(text, "y'' + k*y = x", "y'' + k*y + y^3 = x"));
   CHECK(with(text, "2*z' = y") == replaced(text, "z' = y", "2*z' = y"));

@@ -244,6 +244,15 @@ void put(Editor& editor, std::string const& entry, Span at, Statement const& typ
   }
 }
 
+/// The units that the parameters of a model are declared in; empty for none.
+std::map<std::string, std::string> parameter_units(WorkItem const& model) {
+  std::map<std::string, std::string> units;
+  for (ast::ModelStatement const& statement : std::get<ast::Model>(item_of(model.text)).statements)
+    if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
+      units[parameter->name.name.text] = parameter->name.unit ? unparse(*parameter->name.unit) : "";
+  return units;
+}
+
 /// Blanks tell no two equations of a model apart.
 std::string without_blanks(std::string text) {
   std::erase_if(text, [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; });
@@ -262,6 +271,15 @@ WorkItem with_statement(WorkItem block, std::string const& entry, Span span) {
   block.text = editor.text();
   block.typed = editor.take_typed();
   return block;
+}
+
+std::vector<LostUnit> lost_units(WorkItem const& before, WorkItem const& after) {
+  if (before.kind != ItemKind::model) return {};
+  std::map<std::string, std::string> const had = parameter_units(before), has = parameter_units(after);
+  std::vector<LostUnit> lost;
+  for (auto const& [name, unit] : had)
+    if (auto const now = has.find(name); !unit.empty() && now != has.end() && now->second.empty()) lost.push_back({name, unit});
+  return lost;
 }
 
 WorkItem without_statement(WorkItem block, std::string const& what) {
