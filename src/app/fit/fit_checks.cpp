@@ -47,6 +47,12 @@ Findings parameter_use(FinishedFit& fit) {
     return std::ranges::any_of(
         of, [&](Finding const& each) { return each.code == code && std::ranges::find(each.names, parameter) != each.names.end(); });
   };
+  // What nothing uses lies where its prior has it.
+  std::erase_if(fit.report.findings, [&](Finding const& each) {
+    return each.code == FindingCode::at_bound && std::ranges::all_of(each.names, [&](std::string const& name) {
+             return names(findings, FindingCode::unused_parameter, name);
+           });
+  });
   Findings flat = check_influence(fit.likelihood.space(), fit.target, fit.result.draws);
   std::erase_if(flat, [&](Finding const& each) {
     return names(fit.report.findings, FindingCode::flat_direction, each.names.front()) ||
