@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 #include "core/text/words.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid::cli {
 namespace {
@@ -52,6 +55,22 @@ std::string path_with_blanks(CLI::App const& verb, std::vector<std::string> cons
   return {};
 }
 
+constexpr std::string_view of_tasks =
+    "a command runs all its tasks of the file, and `--resume` keeps those that are complete; tasks that are run alone have a file "
+    "of "
+    "their own";
+/// Options of other programs, and what there is in their place.
+constexpr std::pair<std::string_view, std::string_view> other_options[] = {
+    {"--json", "messages are written as JSON by `--error-format json`; the folder of a task has its results as JSON"},
+    {"--plot", "figures of each task are written into its folder of results"},
+    {"--only", of_tasks},
+    {"--task", of_tasks},
+    {"--tasks", of_tasks},
+};
+
+/// Whether the command runs the tasks of a file.
+bool runs_tasks(CLI::App const& verb) { return verb.get_name() == "run" || words::task_kind(verb.get_name()).has_value(); }
+
 /// The option behind a dash of typesetting, `–force`; empty for other words.
 std::string behind_dash(std::string const& word) {
   for (std::string_view const dash : {"\u2013", "\u2014", "\u2212"})
@@ -65,6 +84,7 @@ std::string instead_of_argument(CLI::App const& verb, std::vector<std::string> c
     return fmt::format("write the name of a file with blanks in quotes: `\"{}\"`", path);
   if (std::string const option = behind_dash(unread.front()); !option.empty())
     return fmt::format("an option begins with two hyphens: `--{}`", option);
+  if (runs_tasks(verb) && unread.front().find_first_of("=./") == std::string::npos) return std::string(of_tasks);
   if (unread.front().find('=') != std::string::npos) return "values of parameters and options of a task are written in its file";
   return see;
 }
@@ -133,6 +153,11 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
                       instead_of_argument(verb, unread, see));
     return ExitCode::usage;
   }
+  for (auto const& [option, instead] : other_options)
+    if (word == option) {
+      messages.complain(fmt::format("`sysid {}` has no option `{}`", verb.get_name(), word), std::string(instead));
+      return ExitCode::usage;
+    }
   if (std::vector<std::string> const others = verbs_with(app, verb, word); !others.empty() && others.size() <= most_named) {
     messages.complain(fmt::format("`sysid {}` has no option `{}`", verb.get_name(), word),
                       fmt::format("it is an option of {}", quoted(others)));

@@ -43,6 +43,15 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
   refused("fit x.sysid --with map",
           "sysid: error: `sysid fit` has no option `--with`\n"
           "help: what a task does is written in its file: `fit MODEL to DATA with mh(samples = 1000)`\n");
+  std::string const of_tasks =
+      "help: a command runs all its tasks of the file, and `--resume` keeps those that are complete; tasks that are run alone have "
+      "a "
+      "file of their own\n";
+  refused("fit x.sysid posterior", "sysid: error: `sysid fit` takes no argument `posterior`\n" + of_tasks);
+  refused("run x.sysid --only posterior", "sysid: error: `sysid run` has no option `--only`\n" + of_tasks);
+  refused("check x.sysid --json",
+          "sysid: error: `sysid check` has no option `--json`\n"
+          "help: messages are written as JSON by `--error-format json`; the folder of a task has its results as JSON\n");
   desk.save("my rig.sysid", "");
   refused("run my rig.sysid",
           "sysid: error: `sysid run` takes no argument `rig.sysid`\n"
