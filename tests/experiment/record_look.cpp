@@ -108,6 +108,22 @@ TEST_CASE("gaps, dead, clipped and drifting channels, coarse steps and frequenci
   CHECK(record_figure(look).script.find("plot") != std::string::npos);
 }
 
+TEST_CASE("a command that a converter holds for some rows is not clipped for that, one that stays longer at an end is") {
+  std::string text = "t,held,clipped,rested\n";
+  for (int i = 0; i < 1000; ++i) {
+    double const held = std::sin(0.7 * (i / 5)), moving = std::sin(0.05 * i);
+    text +=
+        fmt::format("{:.2f},{:.9g},{:.9g},{:.9g}\n", 0.01 * i, held, std::min(held, 0.8), i < 600 ? 0.1 : std::min(moving, 0.9));
+  }
+  TemporaryFile const file(text);
+  RecordLook const look = look_at_record(file.path());
+  CHECK(column(look, "held").at_largest == 0);
+  CHECK(column(look, "held").at_smallest == 0);
+  CHECK(column(look, "clipped").at_largest > 100);
+  CHECK(column(look, "clipped").at_smallest == 0);
+  CHECK(column(look, "rested").at_largest > 40);
+}
+
 TEST_CASE("the picture of a record names its columns in full, and one line goes through all of a long one") {
   std::string text = "t,displacement_of_the_second_storey\n", spike = text;
   for (int i = 0; i < 9001; ++i) spike += fmt::format("{},{}\n", 0.01 * i, i == 4321 ? 50.0 : std::sin(0.01 * i));

@@ -14,9 +14,27 @@
 namespace sysid {
 namespace {
 
-/// Samples at `value` in runs of at least three, where there are enough of them to be no chance.
-std::size_t in_runs_at(std::vector<double> const& values, double value) {
-  constexpr std::size_t shortest = 3;
+/// For how many rows the column usually keeps a value: 1 for a sensor, the ratio of the rates for the command of a converter that
+/// is recorded faster.
+std::size_t rows_held(std::vector<double> const& values) {
+  std::vector<std::size_t> runs;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    if (i > 0 && values[i] == values[i - 1] && !runs.empty())
+      ++runs.back();
+    else
+      runs.push_back(1);
+  }
+  if (runs.empty()) return 1;
+  auto const middle = runs.begin() + static_cast<std::ptrdiff_t>(runs.size() / 2);
+  std::nth_element(runs.begin(), middle, runs.end());
+  return *middle;
+}
+
+/// Samples at `value` in runs longer than the column is held elsewhere, and of at least three, where there are enough of them to be
+/// no chance.
+std::size_t in_runs_at(std::vector<double> const& values, double value, std::size_t held) {
+  std::size_t const shortest = std::max<std::size_t>(3, held + 1);
   std::size_t all = 0, run = 0;
   for (std::size_t i = 0; i <= values.size(); ++i) {
     if (i < values.size() && values[i] == value) {
@@ -135,8 +153,9 @@ ColumnLook look_at_column(std::string name, std::vector<double> const& values, d
   if (look.dead) return look;
   constexpr std::size_t few_levels = 8;  // a switch, or steps of a command, is at its ends most of the time
   if (look.levels > few_levels) {
-    look.at_smallest = in_runs_at(values, look.smallest);
-    look.at_largest = in_runs_at(values, look.largest);
+    std::size_t const held = rows_held(values);
+    look.at_smallest = in_runs_at(values, look.smallest, held);
+    look.at_largest = in_runs_at(values, look.largest, held);
     if (auto const run = frozen_run(values)) {
       look.frozen_first = run->first + 1;
       look.frozen_last = run->last + 1;
