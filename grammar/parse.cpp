@@ -114,7 +114,8 @@ void add_all(Diagnostics const& found, Diagnostics& diagnostics) {
 std::optional<ast::File> parse(Source const& source, Diagnostics& diagnostics) {
   Diagnostics found;
   auto reading = grammar::read_all(grammar::file, source, found);
-  if (!reading.complete && is_other_file(source, diagnostics)) return std::nullopt;
+  bool const doubtful = !reading.complete || ends_lines_by_return(source.text());
+  if (doubtful && is_other_file(source, diagnostics)) return std::nullopt;
   add_all(found, diagnostics);
   return reading.complete ? std::optional(std::move(reading.tree)) : std::nullopt;
 }

@@ -114,8 +114,7 @@ std::string power_of_uniform(Gap const& gap) {
   std::size_t const opener = gap.at + 3, close = gap.closing(opener), comma = first_comma(gap, opener);
   if (comma >= close || close >= gap.statement.size()) return {};
   auto const power = [&](std::size_t from, std::size_t end) {
-    constexpr std::size_t signed_number = 2;
-    return fmt::format(fmt::runtime(end - from > signed_number ? "10^({})" : "10^{}"), gap.text(from, end));
+    return fmt::format(fmt::runtime(end - from > 2 ? "10^({})" : "10^{}"), gap.text(from, end));
   };
   return fmt::format("write `log_uniform({}, {})`", power(opener + 1, comma), power(comma + 1, close));
 }
@@ -251,6 +250,8 @@ std::string at_bracket(Gap const& gap) {
   if (gap.at == 1 && !keyword && close + 1 == gap.statement.size())
     return fmt::format("a declaration begins with its keyword: `state {0}`, `parameter {0} ~ ...`, `let {0} = ...`",
                        gap.text(0, close + 1));
+  if (close == gap.at + 2 && gap.next()->kind == TokenKind::number && gap.before()->kind == TokenKind::word)
+    return fmt::format("an element of a vector is written without a blank: `{}{}`", gap.before()->text, unit);
   if ((definition || parameter) && equals < gap.at)
     return gap.find("[") < equals ? fmt::format("remove `{}`: the value has the unit of `{}`", unit, gap.statement[1].text)
                                   : fmt::format("the unit comes after the name: `{} {} = {}`", gap.text(0, equals), unit,

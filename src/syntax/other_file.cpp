@@ -76,7 +76,12 @@ bool is_binary(std::string_view head) {
 
 }  // namespace
 
+bool ends_lines_by_return(std::string_view text) {
+  return text.find('\n') == text.npos && std::count(text.begin(), text.end(), '\r') > 1;
+}
+
 std::string_view other_kind(std::string_view text) {
+  if (ends_lines_by_return(text)) return "a text whose lines end in CR alone, as on old Macs: save it with LF";
   // What begins as a .sysid file is one, whatever follows.
   for (std::string_view const item : words::items)
     if (text.starts_with(item) && text.substr(item.size()).starts_with(' ')) return {};

@@ -18,6 +18,10 @@ TEST_CASE("records, archives and documents are known, texts of the language and 
   CHECK(other_kind(std::string(100, '\0')) == "a binary file");
   for (char const* text : {"", "\n", "modle line {\n}\n", "parameter k, m\n1, 2, 3\n", "t,y\nzero,one\n", "rows 1..500, 2\n3, x\n"})
     CHECK(other_kind(text) == "");
+  // A comment would hold the rest, which nothing would miss.
+  CHECK(other_kind("# note\rmodel m {\r}\r").starts_with("a text whose lines end in CR alone"));
+  for (char const* text : {"model m { }\r", "# note\r\nmodel m {\r\n}\r\n", "# a\rb\rc\nmodel m { }\n"})
+    CHECK(other_kind(text) == "");
   CHECK(other_kind("model m {\0}\n"s) == "");  // one byte that slipped in
   CHECK(other_kind("model m \"" + std::string(100, '\1')) == "");
 }
