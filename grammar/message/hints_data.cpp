@@ -59,7 +59,9 @@ std::string behind_time(Gap const& gap) {
   if (gap.at == 2 && is_numeral(gap.found) && words::contains(counts_columns, gap.before()->text))
     return counted_column(gap, "time");
   bool const unit = gap.next() != nullptr && gap.next()->is("[");
-  if (gap.at == 2 && is_numeral(gap.found) && unit) return fmt::format("rows at equal steps are written `step {}`", gap.rest());
+  if (gap.at == 2 && is_numeral(gap.found) && unit)
+    return fmt::format(
+        "rows at equal steps are written `step {0}` in a data block; a model in discrete time has `time discrete {0}`", gap.rest());
   if (gap.before()->is("]") && words::contains(arithmetic, gap.found->text))
     return fmt::format("a column is used as it is, with the unit of its numbers: remove `{}`", gap.rest());
   return {};
