@@ -43,8 +43,21 @@ std::string first_name(Items const& items, std::string const& fallback) {
 std::string model(CheckedFile const& file) { return first_name(file.models, "MODEL"); }
 std::string data(CheckedFile const& file) { return first_name(file.data, "DATA"); }
 
+/// With values of the parameters that have none and signals of the inputs, without which it would be refused.
 std::string simulate_example(CheckedFile const& file) {
-  return fmt::format("truth = simulate {} with samples = 1000, rate = 1000 [Hz]", model(file));
+  std::string values, inputs;
+  bool plain = true;  // no elements of vectors
+  if (!file.models.empty()) {
+    Model const& first = file.models.front();
+    for (Parameter const& each : first.parameters) {
+      if (each.value || each.coefficient) continue;
+      plain = plain && each.name.find('[') == std::string::npos;
+      values += fmt::format("{}{} = 1", values.empty() ? "" : ", ", each.name);
+    }
+    for (Quantity const& each : first.inputs) inputs += fmt::format("input {} = gaussian(sd = 1), ", each.name);
+  }
+  if (!values.empty()) values = fmt::format("values({}), ", plain ? values : "...");
+  return fmt::format("truth = simulate {} with {}{}samples = 1000, rate = 1000 [Hz]", model(file), values, inputs);
 }
 std::string fit_example(CheckedFile const& file) {
   return fmt::format("posterior = fit {} to {} with mh", model(file), data(file));

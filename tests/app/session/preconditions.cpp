@@ -67,6 +67,14 @@ TEST_CASE("a file without tasks says which it could have") {
   std::ostringstream summaries, notices;
   CHECK(run_tasks(source, *file, {}, options, progress, summaries, notices) == ExitCode::usage);
   CHECK(notices.str() == "there is no task in example.sysid\nhelp: add one, for example `posterior = fit decay to dish with mh`\n");
+  notices.str("");
+  CHECK(run_tasks(source, *file, {"simulate"}, options, progress, summaries, notices) == ExitCode::usage);
+  std::size_t const task = notices.str().find("`truth = "), end = notices.str().rfind('`');
+  REQUIRE(task < end);
+  // As it is told it is taken.
+  Source with_task("example.sysid", decay_model + dish + notices.str().substr(task + 1, end - task - 1) + "\n");
+  CHECK(load(with_task, diagnostics));
+  CHECK_FALSE(diagnostics.has_errors());
 }
 
 TEST_CASE("a selection that cannot begin is refused before the first task begins") {
