@@ -38,9 +38,8 @@ std::string advice_on_disturbance(std::string const& size, FoundByBoth const& fo
   add_named(found.without, of_residuals, doubts);
   if (!faults.empty())
     return fmt::format(
-        "the evidence is higher with the disturbance ({}), but it may stand in for a fault that the findings name ({}): mend the "
-        "fault "
-        "first, then compare again; until then use neither fit\n",
+        "the evidence is higher with the disturbance ({}), but the disturbance may only compensate for an error that the findings "
+        "name ({}): correct this error first, then compare again; until then use neither fit\n",
         size, fmt::join(faults, ", "));
   auto const missing = std::ranges::find(found.with, FindingCode::disturbance_follows_states, &Finding::code);
   if (missing != found.with.end())
@@ -48,16 +47,14 @@ std::string advice_on_disturbance(std::string const& size, FoundByBoth const& fo
                        "with the term, compare again with and without the disturbance", missing->message);
   if (shares.replaced())
     return fmt::format(
-        "the disturbance takes the place of what the equations explain ({}): by themselves they explain {:.2g} % of the variance "
-        "of the "
-        "channels with the parameters of the fit with it, {:.2g} % with those of the fit without it; use neither fit: check the "
-        "times, "
-        "delays, signs and scales of the columns, then the equations\n",
+        "the disturbance replaces what the equations explain ({}): without it they explain {:.2g} % of the variance of the "
+        "channels with the parameters of the fit with the disturbance, and {:.2g} % with those of the fit without it; use neither "
+        "fit: check the times, delays, signs and scales of the columns, then the equations\n",
         size, 100 * *shares.with, 100 * *shares.without);
   std::string const also = doubts.empty() ? ""
                                           : fmt::format(
-                                                "; the fit without it has {}, which a force that was not measured can cause, too: "
-                                                "see first whether the cause named there is the right one",
+                                                "; the fit without it has {}, which a force that was not measured can also cause: "
+                                                "first check the cause that this finding names",
                                                 fmt::join(doubts, ", "));
   return fmt::format("the record prefers the model with the disturbance: {}{}\n", size, also);
 }

@@ -40,12 +40,12 @@ std::string noise_words(GatheredTrack const& gathered, NoiseAlarm const& alarm) 
 std::string restart_words(Restart const& restart) {
   switch (restart.cause) {
     case Restart::Cause::gap:
-      return fmt::format("{} s after the row before: a gap in time, behind which the states are estimated anew",
+      return fmt::format("{} s after the previous row: a gap in time, after which the states are estimated again",
                          significant(restart.step, 3));
     case Restart::Cause::jump:
-      return "the samples stay far from the predictions: the states and parameters are estimated anew from this row on";
+      return "the samples stay far from the predictions: from this row on the states and parameters are estimated again";
     case Restart::Cause::divergence:
-      return "the filter has no finite values: the states and parameters are estimated anew from this row on";
+      return "the filter has no finite values: from this row on the states and parameters are estimated again";
   }
   return "";
 }
@@ -70,18 +70,17 @@ Finding far_off_samples(GatheredTrack const& gathered) {
     if (std::find(names.begin(), names.end(), each.channel) == names.end()) names.push_back(each.channel);
   }
   auto const more = gathered.left_out_samples - static_cast<std::int64_t>(told.size());
-  return {
-      FindingCode::samples_far_off, Severity::warning, std::move(names),
-      fmt::format("{} far from the predictions {} left out: {}{}", counted(gathered.left_out_samples, "sample"),
-                  gathered.left_out_samples == 1 ? "was" : "were", fmt::join(told, ", "),
-                  more > 0 ? fmt::format(" and {} more", more) : ""),
-      static_cast<double>(gathered.left_out_samples) > many * static_cast<double>(gathered.samples)
-          ? "so many are no single outliers: check the sensor and the units of the record, and whether the model and its noise are "
-            "those of these rows"
-          : "check the sensor at these rows"};
+  return {FindingCode::samples_far_off, Severity::warning, std::move(names),
+          fmt::format("{} far from the predictions {} left out: {}{}", counted(gathered.left_out_samples, "sample"),
+                      gathered.left_out_samples == 1 ? "was" : "were", fmt::join(told, ", "),
+                      more > 0 ? fmt::format(" and {} more", more) : ""),
+          static_cast<double>(gathered.left_out_samples) > many * static_cast<double>(gathered.samples)
+              ? "these are too many for single outliers: check the sensor, the units of the record, and whether the model and its "
+                "noise are right for these rows"
+              : "check the sensor at these rows"};
 }
 
-/// Changes of several parameters, or to and fro, within few rows: what a fault of a sensor looks like, too.
+/// Changes of several parameters within a few rows, or of one and back again: a fault of a sensor has the same effect.
 bool may_be_a_sensor(GatheredTrack const& gathered) {
   constexpr std::int64_t together = 500;
   for (std::size_t i = 1; i < gathered.alarms.size(); ++i) {
@@ -106,8 +105,9 @@ Finding changed_parameters(GatheredTrack const& gathered) {
           fmt::format("{}{}", fmt::join(told, "; "),
                       changes > most_told_changes ? fmt::format("; and {} more", changes - most_told_changes) : ""),
           may_be_a_sensor(gathered)
-              ? "several parameters, or one to and fro, changed within few rows, which a fault of a sensor explains as well: check "
-                "there for a change of its gain or sign, an offset, and lost rows; only then look for a cause in the structure"
+              ? "several parameters changed within a few rows, or one changed and then changed back, as a fault of a sensor also "
+                "makes them: first check these rows for a change of the sensor's gain or sign, an offset, and lost rows; only then "
+                "look for a cause in the structure"
               : "look for the cause at these rows; to predict later rows, fit the rows after the last change and use that fit"};
 }
 
@@ -121,15 +121,16 @@ Finding changed_noise(GatheredTrack const& gathered) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   std::size_t const more = gathered.noises.size() - told.size();
-  return {FindingCode::noise_changed, Severity::warning, std::move(names),
-          fmt::format("{}{}", fmt::join(told, "; "), more > 0 ? fmt::format("; and {} more", more) : ""),
-          correlated
-              ? "correlated innovations are no noise of a sensor alone: check the sensor for a change of its gain, an offset, "
-                "or lost rows, and the model for an unmeasured force or a parameter that is not tracked"
-              : "check the sensor at these rows; from there on the track gives the channel the weight of its new noise"};
+  return {
+      FindingCode::noise_changed, Severity::warning, std::move(names),
+      fmt::format("{}{}", fmt::join(told, "; "), more > 0 ? fmt::format("; and {} more", more) : ""),
+      correlated
+          ? "noise of a sensor does not explain correlated innovations: check the sensor for a change of its gain, an offset, or "
+            "lost rows, and the model for an unmeasured force or a parameter that is not tracked"
+          : "check the sensor at these rows; after them the filter uses the new noise of the channel"};
 }
 
-/// "row 8012, row 9000 and 3 more", with what was said of each cause once.
+/// "at row 8012 (the samples stayed far from the predictions) and 3 more".
 Finding lost_states(GatheredTrack const& gathered) {
   std::vector<std::string> told;
   for (Restart const& each : gathered.restarts) {
@@ -143,8 +144,8 @@ Finding lost_states(GatheredTrack const& gathered) {
           Severity::warning,
           {},
           fmt::format("the filter began again {}{}", fmt::join(told, ", "), more > 0 ? fmt::format(" and {} more", more) : ""),
-          "check the record there for lost rows, a jump of its time, and a change of a unit or a sign; where all that is right, "
-          "the structure has changed much: fit the rows behind"};
+          "check the record there for lost rows, a jump of its time, and a change of a unit or a sign; if the record is right, the "
+          "structure has changed considerably: fit the rows after the restart"};
 }
 
 Finding gaps_in_time(GatheredTrack const& gathered) {
@@ -155,7 +156,7 @@ Finding gaps_in_time(GatheredTrack const& gathered) {
           {},
           fmt::format("the time has a gap of {} s before row {}{}; the usual step is {} s", significant(longest.step, 3),
                       longest.row, others, significant(gathered.usual_step, 3)),
-          "the input during the gap is unknown, so the states are estimated anew behind it; look for lost rows there"};
+          "the input during the gap is unknown, so the states are estimated again after it; check whether rows were lost there"};
 }
 
 }  // namespace

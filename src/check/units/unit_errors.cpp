@@ -158,12 +158,12 @@ Diagnostic number_beside(Span number, Label other, bool angle, std::string const
 Diagnostic converted_twice(Label shown, Label declared, std::string const& factor, std::string const& unit,
                            std::string const& written) {
   return at(Severity::warning, "E2214", std::move(shown), {std::move(declared)},
-            fmt::format("`{}` is of the size of a conversion to [{}], which the unit itself does", factor, unit),
+            fmt::format("`{}` looks like a conversion to [{}], which is made automatically", factor, unit),
             fmt::format("write `{}`, unless `{}` is a factor of the formula itself", written, factor));
 }
 Diagnostic angle_converted(Span shown, std::string const& factor, std::string const& written) {
   return at(Severity::warning, "E2214", {shown, "an angle with a unit"}, {},
-            fmt::format("`{}` converts an angle that has a unit, which does so itself", factor),
+            fmt::format("`{}` converts an angle whose unit is converted automatically", factor),
             fmt::format("write `{}`: a function takes an angle in any unit", written));
 }
 

@@ -79,7 +79,7 @@ void say(std::string const& text) { (void)!write(STDERR_FILENO, text.data(), tex
   int const gone = all.places.ended(all.rank);
   if (leads() || (gone == 0 && all.rank == 1))
     say(fmt::format(
-        "\nsysid: error[{0}]: {1}\nhelp: checkpoints are kept: go on with --resume, on any number of ranks\nmore: sysid explain "
+        "\nsysid: error[{0}]: {1}\nhelp: checkpoints are kept: continue with --resume, on any number of ranks\nmore: sysid explain "
         "{0}\n",
         "E6214", gone >= 0 ? fmt::format("rank {} ({}) has ended in the middle of the run", gone, all.places.words(gone)) : what));
   _exit(interrupted_code);

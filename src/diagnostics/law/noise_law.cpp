@@ -38,7 +38,7 @@ std::optional<Finding> noise_law(ResidualLaw const& law, double limit, LawWords 
                              words.channel, law.excess_kurtosis),
                  words.random_states
                      ? check +
-                           ": empty the cells that are no measurements; if all are, the disturbance does not describe "
+                           ": empty the cells that are not measurements; if all are, the disturbance does not describe "
                            "the motion there"
                      : check + "; if they are measurements, " + use_heavy_tails(words.heavy_tailed())};
 }

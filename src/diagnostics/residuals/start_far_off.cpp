@@ -61,12 +61,13 @@ Finding initial_of_states(ChannelResiduals const& of, double sds) {
   }
   return {
       FindingCode::initial_far_off, Severity::warning, of.names(),
-      fmt::format("the first sample of {}, row {}, lies {:.1f} sds from where the model begins: the record begins in motion, and "
-                  "the model at known initial values",
+      fmt::format("the first sample of {}, row {}, lies {:.1f} sds from where the model begins: the record begins in motion, but "
+                  "the model has known initial values",
                   of.name(), of.data().first_row + static_cast<int>(of.places.front()), std::fabs(sds)),
-      fmt::format("give the initial values a distribution as wide as the motion, {}, and the same for the other initial values of "
-                  "these motions, their rates above all; to empty the row would only move the misfit to the next",
-                  help)};
+      fmt::format(
+          "give the initial values a distribution as wide as the motion, {}, and do the same for the other initial values of "
+          "this motion, above all its rates; do not empty the row: the misfit would only move to the next one",
+          help)};
 }
 
 }  // namespace sysid
