@@ -10,13 +10,6 @@
 namespace sysid {
 namespace {
 
-/// Rows around an interval that shape the curve of an input within it, to what a run could show: a spline forgets a sample by a
-/// factor of 3.7 per row, a window ends.
-int rows_around(InputRule rule) {
-  constexpr int of_spline = 20, of_window = 40;
-  return rule == InputRule::cubic ? of_spline : rule == InputRule::band_limited ? of_window : 0;
-}
-
 /// The longest run of rows within `rows` in which the input of `gap` has no gap; last = 0: none of two rows.
 RowRange longest_without_gap(std::span<InputGap const> gaps, InputGap const& gap, RowRange rows, int around) {
   RowRange best{1, 0};
@@ -56,7 +49,7 @@ std::vector<InputGap> bridge_gaps(std::vector<double>& values) {
 
 void refuse_gaps(Record const& record, RowRange used, RowRange simulated) {
   for (InputGap const& gap : record.gaps) {
-    int const around = rows_around(record.inputs[gap.input].rule());
+    int const around = row_of(record.inputs[gap.input].rule()).reach;
     if (gap.last < used.first - around || gap.first > used.last + around) continue;
     data_errors::Cell const first{record.path, gap.first, gap.line, gap.column};
     if (record.independent_rows) throw UserError(data_errors::gap_in_independent_rows(first, gap.last, gap.mention));

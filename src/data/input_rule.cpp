@@ -37,6 +37,7 @@ std::span<InputRuleRow const> input_rules() {
        .usage = "hold cubic",
        .summary = "the input is smooth: a cubic spline through its samples",
        .degree = 3,
+       .reach = 20,  // the effect of a sample falls by a factor of 3.7 per row: below 1e-11 there
        .coefficients = &cubic_coefficients},
       {.rule = InputRule::band_limited,
        .name = "band_limited",
@@ -44,6 +45,7 @@ std::span<InputRuleRow const> input_rules() {
        .summary = "the input was sampled after an anti-aliasing filter",
        .degree = band_limited_degree,
        .equal_steps = true,
+       .reach = band_limited_reach,
        .band = 0.45,
        .coefficients = &band_limited},
   };

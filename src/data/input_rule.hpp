@@ -1,4 +1,5 @@
-// What an input does between its samples: one row per rule, which the checker, records, solvers and reports read.
+// What an input does between its samples: one row per rule, which the checker, records, solvers and reports read. A new rule is an
+// enumerator here, a row in input_rule.cpp and its polynomials in interpolation.cpp.
 #pragma once
 #include <optional>
 #include <span>
@@ -20,6 +21,7 @@ struct InputRuleRow {
   bool jumps = false;        // its value jumps at a sample: a solver starts anew there
   bool kinks = false;        // its slope does
   bool equal_steps = false;  // the record needs equal time steps
+  int reach = 0;             // rows before and after an interval, besides its two ends, that shape the curve in it
   double band = 0;           // content up to this part of the sampling rate is exact, and none is above half of it; 0: not assumed
   /// c_0 ... c_degree of each interval, [N - 1 x degree + 1], from samples [N] at time [N].
   std::vector<double> (*coefficients)(std::span<double const> time, std::span<double const> samples);

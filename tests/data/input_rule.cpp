@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -26,6 +27,31 @@ TEST_CASE("every input rule has a complete row of its own, in the order of the r
     CHECK((row.coefficients != nullptr));
   }
   CHECK(!find_input_rule("zoh"));
+}
+
+TEST_CASE("a sample changes no interval that is farther away than the reach of its rule") {
+  std::vector<double> time, samples;
+  for (int i = 0; i < 120; ++i) {
+    time.push_back(i);
+    samples.push_back(std::sin(0.7 * i));
+  }
+  constexpr std::size_t changed = 60;
+  std::vector<double> other = samples;
+  other[changed] += 1;
+  for (InputRuleRow const& row : input_rules()) {
+    CAPTURE(row.name);
+    std::vector<double> const one = row.coefficients(time, samples), two = row.coefficients(time, other);
+    std::size_t const each = static_cast<std::size_t>(row.degree) + 1, reach = static_cast<std::size_t>(row.reach);
+    double inside = 0, outside = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      std::size_t const interval = i / each;
+      bool const near = interval <= changed + reach && interval + 1 + reach >= changed;
+      double& largest = near ? inside : outside;
+      largest = std::max(largest, std::abs(one[i] - two[i]));
+    }
+    CHECK(inside > 0.1);
+    CHECK(outside < 1e-10);
+  }
 }
 
 TEST_CASE("degree, jumps and kinks of a rule are those of its polynomials") {
