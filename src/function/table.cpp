@@ -1,4 +1,5 @@
-// The functions of the language: one row each. A primitive is called, the others are built from operations.
+// The functions of the language: one row each. A primitive is called, the others are built from operations. A new one is declared
+// above the table and has a row in it (docs/extending.md).
 #include "function/table.hpp"
 
 #include <limits>

@@ -1,4 +1,5 @@
-// The back ends, one line each, in the order `sysid list` prints them.
+// The back ends, one line each, in the order `sysid list` prints them. A new one is a file that exports `settings` and `run`
+// (inference/backend/backend.hpp), and a line here.
 #include "inference/table.hpp"
 
 #include "core/setting/table.hpp"

@@ -1,4 +1,4 @@
-// The table of solvers and the arithmetic of their settings.
+// The table of solvers, one row each, and their settings: what `finer` and coarser ones are.
 #include "solver/solver.hpp"
 
 #include <fmt/format.h>

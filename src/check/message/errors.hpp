@@ -1,4 +1,6 @@
-// Every message of the checker, one named constructor per mistake; wording lives in errors_*.cpp alone.
+// The messages of the checker, one named constructor per mistake; the wording is in errors_*.cpp beside this file. Those about
+// units are in check/units/unit_errors.cpp, those about data files in data/table/*_errors.cpp, those about syntax in
+// grammar/message.
 #pragma once
 #include <optional>
 #include <span>

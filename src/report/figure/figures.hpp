@@ -1,4 +1,5 @@
-// The figures of a report, as scripts; report/figure/gnuplot draws them.
+// The figures of a report, as scripts; report/figure/gnuplot draws them. Each is a file figure_NAME.cpp beside this one and a
+// function declared here; figures.cpp decides which reports have it, and in which order.
 #pragma once
 #include <string_view>
 #include <vector>
@@ -8,18 +9,17 @@
 
 namespace sysid {
 
-/// All that the report's data can fill, in the order in which the page shows them.
+/// All figures for which the report has data, in the order in which the page shows them.
 std::vector<plot::Figure> figures(Report const& report);
 
-// One each; `figures` calls them.
-
-// `where`, " on bench.train", tells figures of several experiments apart; empty where there is one.
+// One function for each figure, called by `figures`. `where`, such as " on bench.train", distinguishes the figures of several
+// experiments; it is empty if there is one.
 
 /// Mean, bands and data of a quantity along the record, with its residuals below when it was measured; of smoothed states, too.
 plot::Figure fit_figure(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view where = {});
 /// The same of a free run of equations that a discovery found.
 plot::Figure free_run_figure(Prediction const& run, PredictedQuantity const& quantity);
-/// More samples than this in a column are a blot.
+/// The most samples that a figure shows; more cannot be distinguished.
 inline constexpr std::size_t shown_samples = 600;
 /// Whether a measured quantity has more samples than `fit_figure` shows.
 bool is_long(Prediction const& prediction, PredictedQuantity const& quantity);
@@ -35,9 +35,9 @@ bool over_inputs(Prediction const& prediction, PredictedQuantity const& quantity
 plot::Figure input_figure(Prediction const& prediction, PredictedQuantity const& quantity, std::string_view where = {});
 /// Restoring force against displacement and against velocity: loops of a hysteresis, a curve of a spring.
 plot::Figure loop_figure(RestoringForce const& force, std::string_view where = {});
-/// Restoring force over displacement and velocity, with where the data lie. The surface is not empty.
+/// Restoring force over displacement and velocity, with the points of the data. The surface is not empty.
 plot::Figure surface_figure(RestoringForce const& force, std::string_view where = {});
-/// How sure the terms of an equation of a discovery are.
+/// Inclusion probabilities of the terms of an equation of a discovery.
 plot::Figure inclusion_figure(DiscoveryReport const& discovery, std::size_t equation);
 /// Whether any term that was chosen has a coefficient with a spread.
 bool has_coefficients(DiscoveredEquation const& equation);
@@ -56,7 +56,7 @@ plot::Figure rank_figure(Draws const& draws);
 plot::Figure population_figure(SelectionReport const& selection);
 /// Probabilities of models between which chains have jumped.
 plot::Figure model_figure(SelectionReport const& selection);
-/// How often true values have which rank among posterior draws. There are replications with draws.
+/// Histogram of the ranks of the true values among posterior draws. There are replications with draws.
 plot::Figure true_ranks_figure(CalibrationReport const& calibration);
 /// The distribution of these ranks minus the uniform one, with its simultaneous band.
 plot::Figure rank_difference_figure(CalibrationReport const& calibration);
