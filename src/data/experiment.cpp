@@ -1,6 +1,7 @@
 // Parts of an experiment.
 #include "data/experiment.hpp"
 
+#include <cmath>
 #include <type_traits>
 
 namespace sysid {
@@ -26,6 +27,15 @@ Experiment slice(Experiment const& experiment, int begin, int end, int lags) {
   part.corrects = cut(experiment.corrects);
   for (auto const& flags : experiment.has_lags) part.has_lags.push_back(cut(flags));
   return part;
+}
+
+double measured_sample(Experiment const& experiment, int channel, int row) {
+  auto const c = static_cast<std::size_t>(channel);
+  std::vector<double> const& measured = experiment.measured[c];
+  double const missing = std::nan("");
+  if (row >= 0) return measured.empty() ? missing : measured[static_cast<std::size_t>(row)];
+  auto const back = static_cast<std::size_t>(-row - 1);
+  return c < experiment.history.size() && back < experiment.history[c].size() ? experiment.history[c][back] : missing;
 }
 
 }  // namespace sysid

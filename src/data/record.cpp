@@ -1,17 +1,15 @@
-// Columns to SI numbers, with every doubt an error that names its row; and the cutting of experiments.
+// The columns of a file as numbers in SI units; every doubt is an error that names its row.
 #include "data/record.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "core/text/words.hpp"
 #include "data/cell/column_name.hpp"
 #include "data/cell/serial_time.hpp"
 #include "data/cell/time_doubt.hpp"
 #include "data/cell/unit_text.hpp"
+#include "data/column_units.hpp"
 #include "data/format/open_record.hpp"
 #include "data/input_gap.hpp"
 #include "data/table/cell_errors.hpp"
@@ -23,104 +21,6 @@
 namespace sysid {
 namespace {
 
-void to_si(std::vector<double>& values, ColumnRequest const& request) {
-  std::optional<Unit> const& declared = request.declared ? request.declared : request.unit;
-  if (!declared) return;
-  Unit const& unit = request.unit ? *request.unit : *declared;
-  if (unit.dimension != declared->dimension)
-    throw InternalError(
-        fmt::format("column `{}` in [{}] was let through for a quantity in [{}]", request.column, unit.text, declared->text));
-  if (cycles_against_radians(unit, *declared))
-    throw UserError(data_errors::cycles_against_radians(request.column, unit.text, declared->text, request.mention));
-  // convert applies the offset; a declared degC stays degrees above 0 degC in the equations.
-  for (double& value : values) value = convert(value, unit, *declared) * declared->scale;
-}
-
-/// Of numbers that need no change to be in the other: a difference of temperatures is called as they are, and what turns 3000 times
-/// in a minute has 3000 rpm and 3000 1/min.
-bool same_unit(Unit const& a, Unit const& b) {
-  bool const turns = cycles_against_radians(a, b);
-  if (turns && a.hertz == b.hertz) return true;
-  auto const same = [](double x, double y) { return std::fabs(x - y) <= 1e-9 * std::max(std::fabs(x), std::fabs(y)); };
-  return a.dimension == b.dimension && same(a.scale, b.scale) && !turns &&
-         (same(a.offset, b.offset) || is_named_difference(a) || is_named_difference(b));
-}
-
-/// `F [kN]` that the data block has in N. What is no unit of the kind that is wanted may be no unit at all, as in `sensor (A)`; two
-/// letters in square brackets are one.
-void refuse_other_unit_in_name(RecordFile const& file, std::string const& column, Unit const& stated, std::optional<Span> mention) {
-  auto const split = split_name(column);
-  std::optional<Unit> const unit = split ? unit_of_text(split->unit, stated) : std::nullopt;
-  if (!unit) return;
-  bool const surely = trimmed(column).ends_with(']') && split->unit.size() > 1;
-  if (same_unit(*unit, stated) || (unit->dimension != stated.dimension && !surely)) return;
-  throw UserError(data_errors::unit_differs_from_name(
-      file.name(), {column, split->name}, {stated.text, split->unit, unit->dimension == stated.dimension ? unit->text : ""},
-      file.row_count().has_value(), mention));
-}
-
-/// `F [kN]` without a unit in the data block would be read in the unit of the model.
-void refuse_unit_left_out(RecordFile const& file, std::string const& column, Unit const& read_in, std::optional<Span> mention) {
-  auto const split = split_name(column);
-  std::optional<Unit> const unit = split ? unit_of_text(split->unit, read_in) : std::nullopt;
-  if (!unit || unit->dimension != read_in.dimension || same_unit(*unit, read_in)) return;
-  throw UserError(data_errors::unit_differs_from_name(file.name(), {column, split->name},
-                                                      {read_in.text_or_dimension(), split->unit, unit->text},
-                                                      file.row_count().has_value(), mention));
-}
-
-/// Of another kind of quantity than the data block has. A text table need not be read with its units; other files have no way out.
-bool wrong_unit_of_file(RecordFile const& file, Unit const& in_file, Unit const& stated) {
-  return !file.row_count() && in_file.dimension != stated.dimension;
-}
-
-/// With the unit that the file states, where the data block has it read and gives none itself; the two must agree.
-template <class Request>
-Request with_unit_of_file(RecordFile const& file, Request request) {
-  std::optional<std::string> const text = file.unit(request.column);
-  if (!text && request.unit) refuse_other_unit_in_name(file, request.column, *request.unit, request.mention);
-  if (!text && !request.unit && request.declared) refuse_unit_left_out(file, request.column, *request.declared, request.mention);
-  if (!text) return request;
-  std::optional<Unit> const& wanted = request.unit ? request.unit : request.declared;
-  std::optional<Unit> const unit = wanted ? unit_of_text(*text, *wanted) : unit_of_text(*text);
-  if (request.unit) {
-    if (unit && !same_unit(*unit, *request.unit) && !wrong_unit_of_file(file, *unit, *request.unit))
-      throw UserError(data_errors::unit_differs(file.name(), request.column, request.unit->text, unit->text, request.mention));
-    return request;
-  }
-  if (!unit && !text->empty()) throw UserError(data_errors::unit_unknown(file.name(), request.column, {}, request.mention));
-  if (!unit) return request;
-  if (request.declared && unit->dimension != request.declared->dimension)
-    throw UserError(data_errors::unit_of_another_kind(file.name(), request.column, unit->text,
-                                                      request.declared->text_or_dimension(), request.mention));
-  request.unit = unit;
-  // A file that calls differences of temperatures degC does not mean that they begin at 273.15 K.
-  if (request.declared && is_named_difference(*request.declared)) request.unit->offset = 0;
-  return request;
-}
-
-/// Where the data block has another kind of quantity than the file says, and the data block is believed.
-std::optional<UnitInName> wrong_unit_in_file(RecordFile const& file, ColumnRequest const& request) {
-  auto const text = file.unit(request.column);
-  std::optional<Unit> const unit = text && request.unit ? unit_of_text(*text, *request.unit) : std::nullopt;
-  if (!unit || !wrong_unit_of_file(file, *unit, *request.unit)) return std::nullopt;
-  return UnitInName{.column = request.column, .in_name = *text, .read_in = request.unit->text, .stated = true, .of_file = true};
-}
-
-/// Where neither the file nor its name in brackets states a unit. usual: of the time, whose name may be a unit in a word.
-std::optional<UnitInName> other_unit_in_name(RecordFile const& file, ColumnRequest const& request,
-                                             std::optional<Unit> const& usual) {
-  if (file.unit(request.column) || split_name(request.column)) return std::nullopt;
-  auto const named = unit_behind_underscore(request.column);
-  auto const word = !named && usual ? unit_of_time_name(request.column) : std::nullopt;
-  std::optional<Unit> const unit = named ? unit_of_text(named->unit) : word ? unit_of_text(*word) : std::nullopt;
-  std::optional<Unit> const& read_in = request.unit ? request.unit : request.declared ? request.declared : usual;
-  if (!unit || !read_in || read_in->text == "-" || unit->dimension != read_in->dimension || same_unit(*unit, *read_in))
-    return std::nullopt;
-  return UnitInName{request.column,  unit->text, read_in->text, request.unit.has_value(), cycles_against_radians(*unit, *read_in),
-                    word.has_value()};
-}
-
 /// The columns of a record as they are asked for, all of one length.
 class Columns {
  public:
@@ -130,7 +30,7 @@ class Columns {
     ColumnRequest column = *request_.time;
     std::vector<double> const written = complete(file_.times(column.column, column.mention), column, "the time");
     if (!file_.has_stamps()) {
-      column = with_unit_of_file(file_, column);
+      take_unit_of_file(file_, column);
       if (!column.unit) refuse_unit_left_out(file_, column.column, unit_atom("s").value(), column.mention);
       if (column.unit && column.unit->dimension != unit_atom("s").value().dimension)
         throw UserError(data_errors::unit_of_another_kind(file_.name(), column.column, column.unit->text, "s", column.mention));
@@ -170,7 +70,8 @@ class Columns {
   }
   /// Rows that arrive one by one are used at once, so none of them may lack a value.
   std::vector<double> input(InputRequest const& asked, std::size_t index, bool whole) {
-    InputRequest const column = with_unit_of_file(file_, asked);
+    InputRequest column = asked;
+    take_unit_of_file(file_, column);
     note_unit(column);
     if (!asked.unit && column.unit) file_units_.emplace_back(column.column, *column.unit);
     std::vector<double> values = file_.numbers(column.column, column.mention);
@@ -187,7 +88,8 @@ class Columns {
     return values;
   }
   std::vector<double> measured(ColumnRequest const& asked) {
-    ColumnRequest const column = with_unit_of_file(file_, asked);
+    ColumnRequest column = asked;
+    take_unit_of_file(file_, column);
     note_unit(column);
     if (!asked.unit && column.unit) file_units_.emplace_back(column.column, *column.unit);
     std::vector<double> values = of_one_length(file_.numbers(column.column, column.mention), column);
@@ -360,50 +262,6 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
     record.unused_columns = find_unused_columns(file, request);
   }
   return record;
-}
-
-double measured_sample(Experiment const& experiment, int channel, int row) {
-  auto const c = static_cast<std::size_t>(channel);
-  std::vector<double> const& measured = experiment.measured[c];
-  double const missing = std::nan("");
-  if (row >= 0) return measured.empty() ? missing : measured[static_cast<std::size_t>(row)];
-  auto const back = static_cast<std::size_t>(-row - 1);
-  return c < experiment.history.size() && back < experiment.history[c].size() ? experiment.history[c][back] : missing;
-}
-
-std::optional<Diagnostic> check_rows(Record const& record, std::string const& what, RowRange rows, std::optional<Span> mention) {
-  int const last = rows.last == 0 ? record.rows() : rows.last;
-  if (rows.first >= 1 && rows.first <= last && last <= record.rows()) return std::nullopt;
-  return data_errors::rows_outside(record.path, what, rows.first, last, record.rows(), mention);
-}
-
-Experiment make_experiment(Record const& record, std::string name, int simulate_from, RowRange scored, std::optional<Span> mention,
-                           int earlier) {
-  if (std::optional<Diagnostic> wrong = check_rows(record, fmt::format("`{}`", name), scored, mention))
-    throw UserError(std::move(*wrong));
-  if (simulate_from < 1 || simulate_from > scored.first)
-    throw InternalError("a simulation starts after the first row it is scored on");
-  int const last = scored.last == 0 ? record.rows() : scored.last;
-  int const begin = simulate_from - 1;
-  refuse_gaps(record, {simulate_from - earlier, last}, {simulate_from, last});
-  Experiment experiment;
-  experiment.name = std::move(name);
-  experiment.first_row = simulate_from;
-  experiment.time_unit = record.time_unit;
-  experiment.time.assign(record.time.begin() + begin, record.time.begin() + last);
-  for (InputSignal const& input : record.inputs) experiment.inputs.push_back(input.view(begin, last - begin));
-  for (std::vector<double> const& channel : record.measured) {
-    if (channel.empty())
-      experiment.measured.emplace_back();
-    else
-      experiment.measured.emplace_back(channel.begin() + begin, channel.begin() + last);
-    std::vector<double> before(channel.begin(), channel.begin() + (channel.empty() ? 0 : begin));
-    std::reverse(before.begin(), before.end());
-    experiment.history.push_back(std::move(before));
-  }
-  experiment.scored.assign(static_cast<std::size_t>(last - begin), 0);
-  std::fill(experiment.scored.begin() + (scored.first - simulate_from), experiment.scored.end(), std::uint8_t{1});
-  return experiment;
 }
 
 }  // namespace sysid

@@ -9,6 +9,7 @@
 #include "core/system/digest.hpp"
 #include "core/system/files.hpp"
 #include "core/text/number.hpp"
+#include "data/record_rows.hpp"
 #include "experiment/record_request.hpp"
 #include "experiment/true_parameters.hpp"
 #include "model/lags.hpp"

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "data/record_rows.hpp"
 #include "data/table/table.hpp"
 #include "data/table_record.hpp"
 #include "relative.hpp"

@@ -15,6 +15,7 @@
 #include "core/numeric/unit.hpp"
 #include "core/text/diagnostic.hpp"
 #include "data/record.hpp"
+#include "data/record_rows.hpp"
 #include "data/table/table.hpp"
 #include "likelihood/compiled_model.hpp"
 #include "likelihood/process/process_model.hpp"

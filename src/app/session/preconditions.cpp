@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "data/record_rows.hpp"
 #include "experiment/experiments.hpp"
 #include "inference/table.hpp"
 #include "likelihood/member_coordinate.hpp"
