@@ -7,6 +7,7 @@
 #include <set>
 
 #include "check/cascade_filter.hpp"
+#include "check/data/binding.hpp"
 #include "check/data/data.hpp"
 #include "check/dictionary/dictionary.hpp"
 #include "check/message/errors.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "check/data/data.hpp"
+#include "check/data/binding.hpp"
 #include "check/message/errors.hpp"
 #include "syntax/words.hpp"
 

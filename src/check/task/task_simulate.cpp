@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "check/data/data.hpp"
 #include "check/message/errors.hpp"
 #include "check/task/signal_generators.hpp"
 #include "check/task/task_options.hpp"

@@ -7,7 +7,7 @@
 
 #include "check/checked/backends.hpp"
 #include "check/checked/checked.hpp"
-#include "check/data/data.hpp"
+#include "check/data/binding.hpp"
 
 namespace sysid {
 
