@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "check/expression/leaves.hpp"
+#include "check/expression/log_normal.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_numbers.hpp"
 #include "check/units/unit_errors.hpp"
@@ -21,53 +22,6 @@ std::vector<std::string> spelling_names(ArgumentRow const& row) {
   std::vector<std::string> names;
   for (Spelling const& spelling : row.spellings) names.emplace_back(spelling.name);
   return names;
-}
-
-bool is_logarithm(ast::Expression const& value) {
-  auto const* call = std::get_if<ast::Box<ast::Call>>(&value.node);
-  return call != nullptr && ((*call)->function.text == "log" || (*call)->function.text == "ln");
-}
-
-struct PlaceOfLogarithm {
-  std::string text;
-  bool median = false;
-};
-
-/// `log_mean = 3`; of `log(x)` it is `median = x`, for what has a unit has no logarithm. Where `log(x/K)` is of a pure number and
-/// the quantity is not, it is `log_mean = log(x/K)`.
-PlaceOfLogarithm mean_of_logarithm(Scope& scope, ast::Expression const& value, Quantity const& variate) {
-  PlaceOfLogarithm const whole{"log_mean = " + unparse(value)};
-  auto const* call = std::get_if<ast::Box<ast::Call>>(&value.node);
-  if (!is_logarithm(value) || (*call)->arguments.size() != 1) return whole;
-  ast::Expression const& inside = (*call)->arguments.front().value;
-  Diagnostics unsaid;
-  auto const typed = scope.with(unsaid).expression(inside);
-  bool const pure = typed && typed->kind == Typed::Kind::known && typed->unit.dimensionless();
-  return pure && variate.unit && !variate.unit->dimensionless() ? whole : PlaceOfLogarithm{"median = " + unparse(inside), true};
-}
-
-/// `lognormal(log(x), sigma)` of Stan, R, NumPy and PyMC, where both arguments are of the logarithm: how it is written here. Empty
-/// where it is written as here but for the name.
-errors::LogNormalOfOthers log_normal_of_others(Scope& scope, ast::Call const& call, Quantity const& variate) {
-  constexpr std::string_view means[] = {"mu", "meanlog"}, widths[] = {"sigma", "sdlog"};
-  auto const is_one_of = [](ast::Argument const& argument, std::span<std::string_view const> names) {
-    return argument.name && std::find(names.begin(), names.end(), argument.name->text) != names.end();
-  };
-  if (call.function.text != "lognormal" && call.function.text != "Lognormal" && call.function.text != "LogNormal") return {};
-  if (call.arguments.size() != 2) return {};
-  ast::Argument const &place = call.arguments[0], &width = call.arguments[1];
-  if ((place.name && !is_one_of(place, means)) || (width.name && !is_one_of(width, widths))) return {};
-  auto const [location, as_median] = mean_of_logarithm(scope, place.value, variate);
-  std::string const of_logarithm =
-      fmt::format("log_normal({}, {} = {})", location, as_median ? "sd" : "log_sd", unparse(width.value));
-  auto const* number = std::get_if<ast::Number>(&place.value.node);
-  errors::LogNormalOfOthers written;
-  written.of_logarithm = of_logarithm;
-  if (as_median || place.name || number == nullptr || !(number->value > 0)) return written;
-  constexpr double most_log_mean = 30;  // 1e13
-  written.of_median = fmt::format("log_normal(median = {}, log_sd = {})", unparse(place.value), unparse(width.value));
-  written.median_first = number->value > most_log_mean;
-  return written;
 }
 
 /// `log_uniform(10..1e4)`: a range among the arguments.
