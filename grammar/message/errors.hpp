@@ -1,4 +1,5 @@
-// Every message of the syntax stage, one named constructor per mistake: detection calls them, wording lives in errors.cpp alone.
+// Every message of the syntax stage, one named constructor per mistake; the wording is in errors.cpp. Help for constructs of other
+// languages is in hints*.cpp.
 #pragma once
 #include <span>
 #include <string>

@@ -1,4 +1,4 @@
-// Weights of models by what each says of samples that it has not seen, sample by sample.
+// Weights of models from their pointwise predictive scores: stacking and pseudo-BMA.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,4 +1,4 @@
-// What a finished fit is asked apart from its residuals: does a population upset it, is every parameter used.
+// Checks of a finished fit other than those of its residuals: populations, unused parameters.
 #pragma once
 #include <functional>
 #include <span>

@@ -1,4 +1,5 @@
-// What a discovery comes to: is the form decided, how well are the coefficients known, does the equation hold elsewhere.
+// The verdict of a discovery: whether the form is decided, how certain the coefficients are, whether the equation holds on other
+// rows.
 #pragma once
 #include <string>
 #include <vector>

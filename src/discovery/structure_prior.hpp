@@ -1,4 +1,4 @@
-// What is known of a structure before the record: few terms, and simple ones.
+// The prior of a structure: few and simple terms are more probable.
 #pragma once
 #include <vector>
 

@@ -1,4 +1,4 @@
-// Named arrays in groups, written as NetCDF-4. The only folder that includes netCDF.
+// Named arrays in groups, written as NetCDF-4. Records are read with netCDF in data/format.
 #pragma once
 #include <cstdint>
 #include <set>

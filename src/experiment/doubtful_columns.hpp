@@ -1,4 +1,4 @@
-// Columns that are read as the data block says, though their names or their numbers say something else.
+// Columns whose names or numbers contradict the data block: units, times, columns that are used twice.
 #pragma once
 #include "experiment/experiments.hpp"
 #include "result/finding.hpp"

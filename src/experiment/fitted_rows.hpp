@@ -1,4 +1,4 @@
-// Whether a prediction is scored on what its fit has seen.
+// Whether a prediction is scored on rows that its fit used.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -1,4 +1,4 @@
-// Dry friction as `sign(v)`: where the motion sticks, no solver has an answer, and what is said of solvers leads in a circle.
+// Dry friction as `sign(v)`: where the motion sticks, no solver succeeds, so messages that recommend another solver would not help.
 #pragma once
 #include <string>
 #include <vector>

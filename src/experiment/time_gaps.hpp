@@ -1,4 +1,4 @@
-// Times at which a recorder stood still, and how a fit leaves them out.
+// Gaps in the times of a record, and how a fit leaves them out.
 #pragma once
 #include "experiment/experiments.hpp"
 #include "result/finding.hpp"

@@ -1,4 +1,4 @@
-// Ranks that run another text or have other data would come to results that belong to none of them: said before the first task.
+// Ranks must have the same text and the same data; this is checked before the first task.
 #pragma once
 #include <map>
 #include <string>

@@ -1,4 +1,4 @@
-// Whether two models are one under two names.
+// Whether two models have the same equations under different names.
 #pragma once
 #include <optional>
 #include <utility>

@@ -1,4 +1,5 @@
-// When a block of lanes is looked at on its way: the same samples for every width and executor where it matters.
+// The samples at which a run of a block of lanes pauses, to remove failed or unwanted lanes: the same for every width and executor
+// where results depend on it.
 #pragma once
 #include <algorithm>
 

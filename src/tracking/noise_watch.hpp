@@ -1,4 +1,4 @@
-// Whether the noise of a channel has changed: innovations that stay as unrelated as they were but have another size.
+// Whether the noise of a channel has changed: innovations that are as uncorrelated as before but have another size.
 #pragma once
 #include <cstdint>
 #include <optional>

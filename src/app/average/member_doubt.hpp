@@ -1,4 +1,4 @@
-// What is wrong with one fit of an average, or with its trajectories, by its part in it.
+// Findings about one fit of an average, or about its trajectories; their severity depends on the weight of the fit.
 #pragma once
 #include "app/average/mixture_bands.hpp"
 #include "core/text/diagnostic.hpp"

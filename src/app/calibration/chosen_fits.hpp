@@ -1,4 +1,4 @@
-// The fit tasks that a verb on whole fits is asked for.
+// The fit tasks that `calibrate` and `crosscheck` work on: all of a file, or the one of --task.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Fits weighed by what each says of samples that it has not seen.
+// Predictive scores of fits side by side, and weights computed from them.
 #pragma once
 #include <compare>
 #include <filesystem>

@@ -1,4 +1,5 @@
-// What a higher evidence with a disturbance is worth: a disturbance takes up whatever a model lacks, and faults of records, too.
+// Whether a higher evidence with a disturbance is a reason to prefer that model: a disturbance also compensates for missing terms
+// and for faults of the record.
 #pragma once
 #include <string>
 #include <vector>

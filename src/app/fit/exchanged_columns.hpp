@@ -1,4 +1,4 @@
-// Whether a record that a fit does not explain is explained once two of its columns have changed places.
+// Whether a record that a fit does not explain is explained if two of its columns are exchanged.
 #pragma once
 #include "app/fit/fit_checks.hpp"
 

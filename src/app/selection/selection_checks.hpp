@@ -1,4 +1,4 @@
-// What a finished selection is asked: does the likelihood agree, how far is the threshold above the noise, is noise all that the
+// Checks of a finished selection: does the likelihood agree, how far is the threshold above the noise, is noise all that the
 // leading model leaves, are distances the integrator's.
 #pragma once
 #include <vector>

@@ -1,4 +1,4 @@
-// Words of the command that makes a result again.
+// The command that repeats a result, as text.
 #pragma once
 #include <string>
 

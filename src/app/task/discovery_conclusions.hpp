@@ -1,4 +1,4 @@
-// What a discovery comes to beside its terms: findings, the source of what was found, the line at the top.
+// The results of a discovery other than its terms: findings, the source text of the model that was found, the verdict.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Signals from core/elementary and counter-based streams, so that made data are the same bytes everywhere.
+// Signals from core/numeric/elementary and counter-based streams, so that made data are the same bytes everywhere.
 #include "app/task/signals.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What a simulation takes: its memory, and its rounds where a model reads what the run itself makes.
+// The memory that a simulation needs, and its iterations if the model reads its own output.
 #pragma once
 #include <functional>
 #include <memory>

@@ -1,4 +1,4 @@
-// What there is to say of the rows of a track.
+// Findings about the rows of a track, and the verdict.
 #pragma once
 #include <cmath>
 #include <string>

@@ -1,4 +1,5 @@
-// What tells errors apart when a model is checked again with another unit; the units of those that remain may change.
+// The identity of an error, to compare the errors of a model that is checked again with another unit; units in a message may
+// change.
 #pragma once
 #include <cstddef>
 #include <cstdint>

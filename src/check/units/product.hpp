@@ -1,4 +1,5 @@
-// The factors of a product as they are written, and the product without some of them: for what a unit converts already.
+// The factors of a product as they are written, and the product without some of them: for conversions that a unit already makes
+// (E2214).
 #pragma once
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
-// The functions of core/elementary, once: F(name, SLEEF's accuracy class). Every file that needs one line per function expands this
-// list.
+// The functions of core/numeric/elementary, once: F(name, SLEEF's accuracy class). Every file that needs one line per function
+// expands this list.
 #pragma once
 
 #define SYSID_ELEMENTARY_UNARY(F) \

@@ -1,4 +1,4 @@
-// Elementary functions over whole vectors: what the files for one instruction set offer to core/elementary.cpp.
+// Elementary functions over whole vectors: provided by the files for one instruction set, called by elementary.cpp.
 #pragma once
 
 #include "core/numeric/elementary_list.hpp"

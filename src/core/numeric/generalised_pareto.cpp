@@ -1,4 +1,5 @@
-// Sums in the order of the values; logarithms and exponentials from core/elementary, so the bits are those of every processor.
+// Sums in the order of the values; logarithms and exponentials from core/numeric/elementary, so the bits are those of every
+// processor.
 #include "core/numeric/generalised_pareto.hpp"
 
 #include <algorithm>

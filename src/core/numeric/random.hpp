@@ -52,7 +52,7 @@ class Stream {
   std::uint64_t bits();
   /// Uniform on the open interval (0, 1), 52 random bits.
   double uniform();
-  /// Standard normal, by Box and Muller on core/elementary; two numbers per pair of uniforms.
+  /// Standard normal, by Box and Muller on core/numeric/elementary; two numbers per pair of uniforms.
   double normal();
   /// Uniform on {0, ..., n - 1} without bias; n > 0.
   std::uint64_t below(std::uint64_t n);

@@ -1,5 +1,5 @@
-// What the program asks of MPI. The program and the module that is linked with it share this header and nothing else, so a program
-// that is not started under MPI needs nothing of it.
+// The functions of MPI that the program uses. The program and the module that is linked with it share this header and nothing else,
+// so a program that is not started under MPI needs nothing of it.
 #pragma once
 #include <cstddef>
 

@@ -1,4 +1,4 @@
-// Names of files are made of the user's names, and some of these become the same when letters are left out.
+// Distinct file names from the user's names, some of which become the same when characters are left out.
 #pragma once
 #include <set>
 #include <string>

@@ -1,4 +1,4 @@
-// Whether the inputs of a fit act when, and between their samples as, the data block has it.
+// Delays of the inputs of a fit, and whether another rule between their samples fits better.
 #pragma once
 #include <functional>
 #include <memory>

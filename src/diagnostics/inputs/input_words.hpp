@@ -1,4 +1,4 @@
-// The words for inputs that act at other times, or between their samples in another way, than the data block has it.
+// Findings about delays of inputs and about the rule between their samples, in words.
 #pragma once
 #include <string>
 

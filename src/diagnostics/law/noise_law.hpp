@@ -1,4 +1,4 @@
-// What is said of residuals that have another law than the noise of the model.
+// The finding about residuals whose distribution differs from that of the noise of the model.
 #pragma once
 #include <functional>
 #include <optional>

@@ -1,4 +1,4 @@
-// Cures that change the noise of a channel, in the words that several findings share.
+// Help that changes the noise of a channel, in words that several findings share.
 #pragma once
 #include <functional>
 #include <optional>

@@ -1,4 +1,4 @@
-// Whether white residuals have the law of normal noise of one size: their tails, and their size along the prediction.
+// Whether white residuals are normal noise of constant size: their tails, and whether their size depends on the prediction.
 #pragma once
 #include <cstddef>
 #include <span>

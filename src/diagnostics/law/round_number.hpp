@@ -1,4 +1,4 @@
-// Numbers that a cure proposes, as a person would write them.
+// Round numbers, for parameters and priors that a help proposes.
 #pragma once
 #include <cmath>
 

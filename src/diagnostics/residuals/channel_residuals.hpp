@@ -1,4 +1,4 @@
-// One channel of a fit over one experiment: what it leaves, and what the tests of that find.
+// The residuals of one channel of a fit over one experiment, and the results of their tests.
 #pragma once
 #include <cstddef>
 #include <optional>

@@ -1,4 +1,4 @@
-// What a fit or a prediction has to explain of a channel at least.
+// The share of a channel's variance that a fit or a prediction must explain.
 #pragma once
 #include <cstddef>
 #include <string>

@@ -1,4 +1,4 @@
-// The user's text, as findings quote it in their cures.
+// The user's text, as the help of findings quotes it.
 #pragma once
 #include <functional>
 #include <optional>

@@ -1,4 +1,4 @@
-// The state of a run as a JSON value: whose it is, and why one cannot be gone on from.
+// The state of a run as a JSON value: which run it belongs to, and why one cannot be resumed.
 #pragma once
 #include <chrono>
 #include <functional>

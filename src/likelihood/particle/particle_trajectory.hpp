@@ -1,4 +1,4 @@
-// What particles tell along a record: of each sample from those before it, and of the states from all samples.
+// Particles along a record: predictions of each sample from those before it, and states given all samples.
 #pragma once
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
-// From what a filter knew at each sample to what the whole record says of it: the smoother of Rauch, Tung and Striebel, for one
-// parameter vector.
+// From the filtered states at each sample to the smoothed ones, which use the whole record: the smoother of Rauch, Tung and
+// Striebel, for one parameter vector.
 #pragma once
 #include <vector>
 

@@ -1,4 +1,4 @@
-// What a whole record says of the states along it, and of the disturbances that moved them, for given parameters.
+// The smoothed states and disturbances along a record, for given parameters.
 #pragma once
 #include <memory>
 #include <string>

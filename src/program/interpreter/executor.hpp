@@ -1,4 +1,4 @@
-// Running bytecode: linked for every instruction set and width, and the scalar oracle. All executors give the same bytes.
+// Running bytecode: linked for every instruction set and width, and the scalar reference. All executors give the same bytes.
 #pragma once
 #include <memory>
 #include <span>

@@ -1,4 +1,4 @@
-// Where a search looks for parameters whose prior is improper: the prior has no draws that would say it.
+// Where the search begins for parameters whose prior is improper and cannot be drawn from.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
