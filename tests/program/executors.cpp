@@ -86,6 +86,35 @@ TEST_CASE("kernels of random expressions equal their plain evaluation bit for bi
   }
 }
 
+#if defined(__x86_64__)
+TEST_CASE("no executor leaves the upper halves of vectors behind, which slow whatever is compiled without them") {
+  Random const random = random_function(3);
+  Kernel const kernel = compile_kernel(random.graph, random.leaves, random.outputs);
+  InstructionSet const before = instruction_set();
+  for (InstructionSet const set : supported()) {
+    force_instruction_set(set);
+    for (Executor const& executor : executors(set)) {
+      CAPTURE(executor.width);
+      LaneArray const inputs = random_inputs(5, executor.width);
+      LaneArray out(kernel.outputs, executor.width);
+      run(kernel, inputs, out);
+      double upper[8][2];
+      asm volatile(
+          "vextractf128 $1, %%ymm0, (%0)\n vextractf128 $1, %%ymm1, 16(%0)\n"
+          "vextractf128 $1, %%ymm2, 32(%0)\n vextractf128 $1, %%ymm3, 48(%0)\n"
+          "vextractf128 $1, %%ymm4, 64(%0)\n vextractf128 $1, %%ymm5, 80(%0)\n"
+          "vextractf128 $1, %%ymm6, 96(%0)\n vextractf128 $1, %%ymm7, 112(%0)\n"
+          :
+          : "r"(upper)
+          : "memory");
+      for (auto const& vector : upper)
+        for (double const part : vector) CHECK(std::bit_cast<std::uint64_t>(part) == 0);
+    }
+    force_instruction_set(before);
+  }
+}
+#endif
+
 TEST_CASE("a block takes the narrowest executor that holds it, within the width allowed") {
   InstructionSet const before = instruction_set();
   force_instruction_set(narrowest_instruction_set);

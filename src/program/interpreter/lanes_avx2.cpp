@@ -14,6 +14,7 @@ inline Vec load(char const* p) { return _mm256_load_pd(reinterpret_cast<double c
 inline void store(char* p, Vec v) { _mm256_store_pd(reinterpret_cast<double*>(p), v); }
 inline Vec broadcast(char const* p) { return _mm256_broadcast_sd(reinterpret_cast<double const*>(p)); }
 inline Vec zero() { return _mm256_setzero_pd(); }
+inline void leave() { _mm256_zeroupper(); }
 inline Vec negate_of(Vec a) { return _mm256_xor_pd(a, _mm256_set1_pd(-0.0)); }
 inline Vec add_of(Vec a, Vec b) { return _mm256_add_pd(a, b); }
 inline Vec subtract_of(Vec a, Vec b) { return _mm256_sub_pd(a, b); }

@@ -15,6 +15,7 @@ inline Vec load(char const* p) { return _mm512_load_pd(p); }
 inline void store(char* p, Vec v) { _mm512_store_pd(p, v); }
 inline Vec broadcast(char const* p) { return _mm512_set1_pd(*reinterpret_cast<double const*>(p)); }
 inline Vec zero() { return _mm512_setzero_pd(); }
+inline void leave() { _mm256_zeroupper(); }
 inline Vec negate_of(Vec a) { return _mm512_xor_pd(a, _mm512_set1_pd(-0.0)); }
 inline Vec add_of(Vec a, Vec b) { return _mm512_add_pd(a, b); }
 inline Vec subtract_of(Vec a, Vec b) { return _mm512_sub_pd(a, b); }

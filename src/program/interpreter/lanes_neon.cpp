@@ -16,6 +16,7 @@ inline Vec load(char const* p) { return vld1q_f64(reinterpret_cast<double const*
 inline void store(char* p, Vec v) { vst1q_f64(reinterpret_cast<double*>(p), v); }
 inline Vec broadcast(char const* p) { return vld1q_dup_f64(reinterpret_cast<double const*>(p)); }
 inline Vec zero() { return vdupq_n_f64(0); }
+inline void leave() {}
 inline Vec one() { return vdupq_n_f64(1); }
 inline Vec negate_of(Vec a) { return vnegq_f64(a); }
 inline Vec add_of(Vec a, Vec b) { return vaddq_f64(a, b); }
