@@ -10,6 +10,7 @@
 #include "program/interpreter/executor.hpp"
 #include "program/kernel.hpp"
 #include "program/random_expressions.hpp"
+#include "program/upper_halves.hpp"
 
 using namespace sysid;
 
@@ -86,7 +87,6 @@ TEST_CASE("kernels of random expressions equal their plain evaluation bit for bi
   }
 }
 
-#if defined(__x86_64__)
 TEST_CASE("no executor leaves the upper halves of vectors behind, which slow whatever is compiled without them") {
   Random const random = random_function(3);
   Kernel const kernel = compile_kernel(random.graph, random.leaves, random.outputs);
@@ -98,22 +98,11 @@ TEST_CASE("no executor leaves the upper halves of vectors behind, which slow wha
       LaneArray const inputs = random_inputs(5, executor.width);
       LaneArray out(kernel.outputs, executor.width);
       run(kernel, inputs, out);
-      double upper[8][2];
-      asm volatile(
-          "vextractf128 $1, %%ymm0, (%0)\n vextractf128 $1, %%ymm1, 16(%0)\n"
-          "vextractf128 $1, %%ymm2, 32(%0)\n vextractf128 $1, %%ymm3, 48(%0)\n"
-          "vextractf128 $1, %%ymm4, 64(%0)\n vextractf128 $1, %%ymm5, 80(%0)\n"
-          "vextractf128 $1, %%ymm6, 96(%0)\n vextractf128 $1, %%ymm7, 112(%0)\n"
-          :
-          : "r"(upper)
-          : "memory");
-      for (auto const& vector : upper)
-        for (double const part : vector) CHECK(std::bit_cast<std::uint64_t>(part) == 0);
+      CHECK(testing::upper_halves_are_clear());
     }
     force_instruction_set(before);
   }
 }
-#endif
 
 TEST_CASE("a block takes the narrowest executor that holds it, within the width allowed") {
   InstructionSet const before = instruction_set();

@@ -24,6 +24,7 @@
 #include "program/interpreter/executor.hpp"
 #include "program/kernel.hpp"
 #include "program/random_expressions.hpp"
+#include "program/upper_halves.hpp"
 
 using namespace sysid;
 
@@ -85,6 +86,7 @@ void run_native(native::Function function, double* registers) {
   call.summed = &summed;
   call.to = 1;
   function(&call);
+  CHECK(testing::upper_halves_are_clear());
 }
 
 std::unique_ptr<native::Machine> compiled(native::Loop const& loop) {
