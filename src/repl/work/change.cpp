@@ -247,7 +247,8 @@ void put(Editor& editor, std::string const& entry, Span at, Statement const& typ
 /// The units that the parameters of a model are declared in; empty for none.
 std::map<std::string, std::string> parameter_units(WorkItem const& model) {
   std::map<std::string, std::string> units;
-  for (ast::ModelStatement const& statement : std::get<ast::Model>(item_of(model.text)).statements)
+  ast::Item const item = item_of(model.text);
+  for (ast::ModelStatement const& statement : std::get<ast::Model>(item).statements)
     if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
       units[parameter->name.name.text] = parameter->name.unit ? unparse(*parameter->name.unit) : "";
   return units;
