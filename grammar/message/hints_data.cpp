@@ -94,7 +94,7 @@ std::string in_head(Gap const& gap) {
   if (std::string const setting = errors::setting_of_reading(gap.found->text);
       gap.wanted == wanted::end_of_statement && !setting.empty())
     return setting;
-  if (gap.begins_with("time"))
+  if (gap.begins_with("time") && gap.at > 0)
     if (std::string help = behind_time(gap); !help.empty()) return help;
   if (gap.begins_with("time") && gap.at == 2) return in_name_of_column(gap);
   if (gap.begins_with("time") && gap.at == 1 && is_numeral(gap.found))

@@ -314,7 +314,8 @@ class DistributionChecker {
       if (auto const number = graph_.constant_value(argument)) numbers.push_back(*number);
     if (numbers.size() != use_.arguments.size() || row_.refuse == nullptr) return true;
     std::string_view const reason = row_.refuse(numbers);
-    return reason.empty() || refused(errors::bad_arguments(call_.span, name_, reason));
+    bool const negative = std::any_of(numbers.begin(), numbers.end(), [](double number) { return number < 0; });
+    return reason.empty() || refused(errors::bad_arguments(call_.span, name_, reason, name_ == "log_uniform" && negative));
   }
 
   bool bounds_fit() {

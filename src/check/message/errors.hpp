@@ -74,7 +74,8 @@ Diagnostic truncated_noise(ast::Call const& call);
 Diagnostic cannot_truncate(Span span, std::string const& distribution);
 Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what);
 Diagnostic prior_cycle(Span span, Names const& loop);
-Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason);
+/// logarithms: bounds of `log_uniform` that are below zero, as exponents are.
+Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason, bool logarithms = false);
 /// names: of the parameters that the argument reads.
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
                          std::vector<std::string> const& names);

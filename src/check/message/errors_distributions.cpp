@@ -339,13 +339,11 @@ Diagnostic prior_cycle(Span span, Names const& loop) {
                "write one of them without the others");
 }
 
-Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason) {
+Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason, bool logarithms) {
   return about({distribution},
                error("E2112", span, fmt::format("the arguments of `{}` are invalid: {}", distribution, reason),
-                     distribution == "log_uniform"
-                         ? "its bounds are the positive values themselves, not their logarithms, the lower one first: "
-                           "`log_uniform(1e-3, 1)`"
-                         : "choose arguments that satisfy this condition"));
+                     logarithms ? "its bounds are the positive values themselves, not their logarithms: `log_uniform(1e-3, 1)`"
+                                : "choose arguments that satisfy this condition"));
 }
 
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,

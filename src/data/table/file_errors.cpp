@@ -110,8 +110,6 @@ Diagnostic ragged_row(std::string const& file, std::int64_t row, std::int64_t li
       cells > columns
           ? "remove the cell that is too many; numbers with a decimal comma need a separator other than the comma: export "
             "the file again with `;`"
-      : cells == 1
-          ? "a missing value is an empty cell between separators; empty lines between rows are read with `read ragged = yes`"
           : "a missing value is an empty cell between separators");
 }
 
