@@ -6,7 +6,22 @@
 #include <unordered_map>
 #include <vector>
 
+#include "expression/function.hpp"
+
 namespace sysid::regression {
+namespace {
+
+/// `apply` to each of `count` values. Functions over lanes have the bits of those of one number, and take a fraction of the time.
+void apply_all(Node const& node, double const* a, double const* b, double const* c, double* result, int count) {
+  if (node.operation == Operation::power) return elementary::pow_lanes(a, b, result, count);
+  if (node.operation == Operation::call) {
+    Function const& function = *node.function;
+    return function.arity == 1 ? function.unary_lanes(a, result, count) : function.binary_lanes(a, b, result, count);
+  }
+  for (int k = 0; k < count; ++k) result[k] = apply(node, a[k], b[k], c[k]);
+}
+
+}  // namespace
 
 Eigen::MatrixXd evaluate_columns(Graph const& graph, std::span<NodeId const> roots, LeafColumn const& leaf, int count) {
   constexpr int block = 256;
@@ -36,7 +51,7 @@ Eigen::MatrixXd evaluate_columns(Graph const& graph, std::span<NodeId const> roo
         double const* const a = values.col(operands[i][0]).data();
         double const* const b = values.col(operands[i][1]).data();
         double const* const c = values.col(operands[i][2]).data();
-        for (int k = 0; k < width; ++k) result[k] = apply(node, a[k], b[k], c[k]);
+        apply_all(node, a, b, c, result, width);
       }
     }
     for (std::size_t r = 0; r < roots.size(); ++r)

@@ -32,8 +32,15 @@ bool is_invertible(std::vector<double> c) {
 /// v divided by C in one run, from e = 0 before it.
 Eigen::MatrixXd divided_by(std::vector<double> const& c, Eigen::MatrixXd v) {
   auto const order = static_cast<Eigen::Index>(c.size());
-  for (Eigen::Index i = 1; i < v.rows(); ++i)
-    for (Eigen::Index k = 1; k <= std::min(order, i); ++k) v.row(i) -= c[static_cast<std::size_t>(k - 1)] * v.row(i - k);
+  for (Eigen::Index i = 1; i < v.rows(); ++i) {
+    Eigen::Index const terms = std::min(order, i);
+    for (Eigen::Index column = 0; column < v.cols(); ++column) {
+      double* const e = v.data() + column * v.rows() + i;
+      double left = *e;
+      for (Eigen::Index k = 1; k <= terms; ++k) left -= c[static_cast<std::size_t>(k - 1)] * e[-k];
+      *e = left;
+    }
+  }
   return v;
 }
 
@@ -46,22 +53,28 @@ Eigen::MatrixXd responses(std::vector<double> const& c, Eigen::Index count) {
   return divided_by(c, std::move(out));
 }
 
-/// The decompositions of R above I, one for each length of a run.
+/// R, and the decomposition of R above I.
+struct Start {
+  Eigen::MatrixXd responses;
+  OrthogonalTriangular decomposed;
+};
+
+/// One for each length of a run.
 class Starts {
  public:
   explicit Starts(std::vector<double> const& c) : c_(c) {}
-  OrthogonalTriangular const& operator()(Eigen::Index count) {
+  Start const& operator()(Eigen::Index count) {
     auto const known = of_.find(count);
     if (known != of_.end()) return known->second;
     auto const order = static_cast<Eigen::Index>(c_.size());
     Eigen::MatrixXd both(count + order, order);
     both << responses(c_, count), Eigen::MatrixXd::Identity(order, order);
-    return of_.emplace(count, OrthogonalTriangular(both)).first->second;
+    return of_.emplace(count, Start{both.topRows(count), OrthogonalTriangular(both)}).first->second;
   }
 
  private:
-  std::vector<double> const& c_;
-  std::map<Eigen::Index, OrthogonalTriangular> of_;
+  std::vector<double> c_;
+  std::map<Eigen::Index, Start> of_;
 };
 
 /// Rows above zeros, one for each error before a run.
@@ -71,20 +84,46 @@ Eigen::MatrixXd with_zeros(Eigen::MatrixXd const& rows, Eigen::Index order) {
   return out;
 }
 
-}  // namespace
-
-MovingAverage::Errors MovingAverage::errors(Eigen::VectorXd const& v, std::span<Run const> runs) const {
-  Errors out{v, Eigen::MatrixXd::Zero(order(), static_cast<Eigen::Index>(runs.size()))};
-  if (coefficients.empty()) return out;
-  Starts starts(coefficients);
+MovingAverage::Errors errors_of(MovingAverage const& average, Starts& starts, Eigen::VectorXd const& v, std::span<Run const> runs) {
+  MovingAverage::Errors out{v, Eigen::MatrixXd::Zero(average.order(), static_cast<Eigen::Index>(runs.size()))};
+  if (average.coefficients.empty()) return out;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     Run const& run = runs[r];
-    Eigen::VectorXd const from_zero = divided_by(coefficients, v.segment(run.first, run.count));
-    Eigen::VectorXd const before = -starts(run.count).solve(with_zeros(from_zero, order()));
-    out.in_runs.segment(run.first, run.count) = from_zero + responses(coefficients, run.count) * before;
+    Start const& start = starts(run.count);
+    Eigen::VectorXd const from_zero = divided_by(average.coefficients, v.segment(run.first, run.count));
+    Eigen::VectorXd const before = -start.decomposed.solve(with_zeros(from_zero, average.order()));
+    out.in_runs.segment(run.first, run.count) = from_zero + start.responses * before;
     out.before.col(static_cast<Eigen::Index>(r)) = before;
   }
   return out;
+}
+
+Eigen::MatrixXd turned_by(MovingAverage const& average, Starts& starts, Eigen::MatrixXd const& columns, std::span<Run const> runs) {
+  if (average.coefficients.empty()) return columns;
+  Eigen::MatrixXd out(columns.rows(), columns.cols());
+  for (Run const& run : runs)
+    out.middleRows(run.first, run.count) =
+        starts(run.count)
+            .decomposed.turned(with_zeros(columns.middleRows(run.first, run.count), average.order()))
+            .bottomRows(run.count);
+  return out;
+}
+
+double log_determinant_of(MovingAverage const& average, Starts& starts, std::span<Run const> runs) {
+  if (average.coefficients.empty()) return 0;
+  double sum = 0;
+  for (Run const& run : runs) {
+    Eigen::MatrixXd const triangle = starts(run.count).decomposed.triangle();
+    for (Eigen::Index k = 0; k < triangle.rows(); ++k) sum += 2 * elementary::log(std::abs(triangle(k, k)));
+  }
+  return sum;
+}
+
+}  // namespace
+
+MovingAverage::Errors MovingAverage::errors(Eigen::VectorXd const& v, std::span<Run const> runs) const {
+  Starts starts(coefficients);
+  return errors_of(*this, starts, v, runs);
 }
 
 Eigen::MatrixXd MovingAverage::slopes(Errors const& e, std::span<Run const> runs) const {
@@ -101,13 +140,8 @@ Eigen::MatrixXd MovingAverage::slopes(Errors const& e, std::span<Run const> runs
 }
 
 Eigen::MatrixXd MovingAverage::turned(Eigen::MatrixXd const& columns, std::span<Run const> runs) const {
-  if (coefficients.empty()) return columns;
-  Eigen::MatrixXd out(columns.rows(), columns.cols());
   Starts starts(coefficients);
-  for (Run const& run : runs)
-    out.middleRows(run.first, run.count) =
-        starts(run.count).turned(with_zeros(columns.middleRows(run.first, run.count), order())).bottomRows(run.count);
-  return out;
+  return turned_by(*this, starts, columns, runs);
 }
 
 Eigen::MatrixXd MovingAverage::divided(Eigen::MatrixXd const& columns, std::span<Run const> runs) const {
@@ -134,14 +168,8 @@ Eigen::MatrixXd MovingAverage::freed(Eigen::MatrixXd const& columns, std::span<R
 }
 
 double MovingAverage::log_determinant(std::span<Run const> runs) const {
-  if (coefficients.empty()) return 0;
   Starts starts(coefficients);
-  double sum = 0;
-  for (Run const& run : runs) {
-    Eigen::MatrixXd const triangle = starts(run.count).triangle();
-    for (Eigen::Index k = 0; k < triangle.rows(); ++k) sum += 2 * elementary::log(std::abs(triangle(k, k)));
-  }
-  return sum;
+  return log_determinant_of(*this, starts, runs);
 }
 
 MovingAverage fitted_moving_average(Eigen::VectorXd const& v, std::span<Run const> runs, MovingAverage from) {
@@ -152,8 +180,9 @@ MovingAverage fitted_moving_average(Eigen::VectorXd const& v, std::span<Run cons
     double factor = 1;
     for (double& each : best.coefficients) each *= factor *= moved_out;
   }
-  MovingAverage::Errors e = best.errors(v, runs);
-  double determinant = best.log_determinant(runs);
+  Starts starts(best.coefficients);
+  MovingAverage::Errors e = errors_of(best, starts, v, runs);
+  double determinant = log_determinant_of(best, starts, runs);
   for (int round = 0; round < most_rounds && order > 0 && e.squares() > 0; ++round) {
     Eigen::VectorXd rise(order);  // of the determinant
     for (Eigen::Index k = 0; k < order; ++k) {
@@ -161,24 +190,26 @@ MovingAverage fitted_moving_average(Eigen::VectorXd const& v, std::span<Run cons
       other.coefficients[static_cast<std::size_t>(k)] += shift;
       rise(k) = (other.log_determinant(runs) - determinant) / shift;
     }
-    Eigen::MatrixXd const slopes = best.turned(best.slopes(e, runs), runs);
+    Eigen::MatrixXd const slopes = turned_by(best, starts, best.slopes(e, runs), runs);
     OrthogonalTriangular const decomposed(slopes);
     Eigen::MatrixXd const root = solve_upper(decomposed.triangle(), Eigen::MatrixXd::Identity(order, order));
-    Eigen::VectorXd const step =
-        decomposed.solve(best.turned(best.divided(v, runs), runs)) - e.squares() / (2 * rows) * (root * (root.transpose() * rise));
+    Eigen::VectorXd const step = decomposed.solve(turned_by(best, starts, best.divided(v, runs), runs)) -
+                                 e.squares() / (2 * rows) * (root * (root.transpose() * rise));
     double factor = 1, gain = 0;
     for (int halving = 0; halving < most_halvings && gain == 0; ++halving, factor /= 2) {
       MovingAverage next = best;
       for (Eigen::Index k = 0; k < order; ++k) next.coefficients[static_cast<std::size_t>(k)] += factor * step(k);
       if (!is_invertible(next.coefficients)) continue;
-      MovingAverage::Errors left = next.errors(v, runs);
-      double const its_determinant = next.log_determinant(runs);
+      Starts its_starts(next.coefficients);
+      MovingAverage::Errors left = errors_of(next, its_starts, v, runs);
+      double const its_determinant = log_determinant_of(next, its_starts, runs);
       double const lower = rows * elementary::log(e.squares() / left.squares()) + determinant - its_determinant;
       if (!(lower > 0)) continue;
       gain = lower;
       best = std::move(next);
       e = std::move(left);
       determinant = its_determinant;
+      starts = std::move(its_starts);
     }
     if (gain <= enough) break;
   }
