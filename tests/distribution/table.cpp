@@ -10,6 +10,7 @@
 #include "cases.hpp"
 #include "core/text/diagnostic.hpp"
 #include "relative.hpp"
+#include "replications.hpp"
 
 using namespace sysid;
 using test::all_cases;
@@ -125,12 +126,12 @@ TEST_CASE("distribution and survival function add to one, and the quantile inver
 
 TEST_CASE("draws have the distribution, whole and truncated") {
   // Kolmogorov-Smirnov: P(D > sqrt(log(2/alpha)/(2 n))) <= alpha = 1e-6, Massart 1990.
-  constexpr int n = 10'000;
+  int const n = replications(4000, 10'000);
   double const threshold = std::sqrt(std::log(2 / 1e-6) / (2 * n));
   for (Case const& given : all_cases()) {
     Evaluated evaluated(given);
     Stream stream(StreamKey{.seed = 20240607, .purpose = Purpose::test});
-    std::vector<double> draws(n);
+    std::vector<double> draws(static_cast<std::size_t>(n));
     bool inside = true;
     for (double& x : draws) {
       x = draw(given.row(), given.arguments, given.lower, given.upper, stream);

@@ -45,7 +45,7 @@ std::string compared(fs::path const& folder) {
 
 ExportedRun short_fit() {
   auto const model = models / "regression/regression.sysid";
-  return ExportedRun(model, with(read_file(model), "samples = 6000, burn_in = 2000", "samples = 400, burn_in = 100"));
+  return ExportedRun(model, with(read_file(model), "samples = 6000, burn_in = 2000", "samples = 150, burn_in = 100"));
 }
 
 void seal(fs::path const& folder, Json summary) {

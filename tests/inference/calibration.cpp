@@ -253,8 +253,8 @@ TEST_CASE("ranks of true parameters in posteriors by nuts are uniform") {
   for (Problem const* problem : {&correlated_problem, &valley_problem, &two_modes_problem, &hierarchy_problem, &funnel_problem})
     DOCTEST_SUBCASE(problem->name) {
       Settings trajectories(nuts::settings());
-      trajectories.set("samples", std::int64_t{600});
-      trajectories.set("burn_in", std::int64_t{300});
+      trajectories.set("samples", std::int64_t{full_size() ? 600 : 300});
+      trajectories.set("burn_in", std::int64_t{full_size() ? 300 : 200});
       CHECK(worst_chi_square(*problem, trajectories, &nuts::run) < chi_square_limit);
     }
 }

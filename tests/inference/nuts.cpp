@@ -12,6 +12,7 @@
 #include "inference/interruptions.hpp"
 #include "inference/nuts/trajectory_checks.hpp"
 #include "linear_algebra/decompositions.hpp"
+#include "replications.hpp"
 
 namespace sysid::nuts {
 namespace {
@@ -148,8 +149,8 @@ TEST_CASE("Duffing's posterior is that of mh") {
   CHECK(verdict_of(result.findings).pass);
   Bench bench(2);
   Settings walks(mh::settings());
-  walks.set("samples", std::int64_t{6000});
-  walks.set("burn_in", std::int64_t{2000});
+  walks.set("samples", std::int64_t{full_size() ? 6000 : 3000});
+  walks.set("burn_in", std::int64_t{full_size() ? 2000 : 1000});
   FitResult const reference = mh::run(target, walks, bench.context);
   std::vector<Summary> const drawn = summarise(result), known = summarise(reference);
   for (std::size_t p = 0; p < 5; ++p) {

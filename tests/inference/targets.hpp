@@ -21,30 +21,34 @@ namespace sysid::testing {
 /// A parameter with a normal prior on the line, or a uniform or log-uniform one between bounds.
 struct Prior {
   enum Kind { normal, uniform, log_uniform } kind;
-  double a, b;  // mean and sd, or lower and upper bound
+  double a, b;   // mean and sd, or lower and upper bound
+  double width;  // of what is uniform
+  double log_scale;
 
+  Prior(Kind kind, double a, double b)
+      : kind(kind), a(a), b(b), width(kind == log_uniform ? elementary::log(b / a) : b - a), log_scale(elementary::log(width)) {
+    if (kind == normal) log_scale = 0.5 * elementary::log(2 * std::numbers::pi * b * b);
+  }
   double constrain(double u) const {
     if (kind == normal) return u;
     double const share = 1 / (1 + elementary::exp(-u));
-    if (kind == uniform) return a + (b - a) * share;
-    return a * elementary::exp(elementary::log(b / a) * share);
+    if (kind == uniform) return a + width * share;
+    return a * elementary::exp(width * share);
   }
   double unconstrain(double x) const {
     if (kind == normal) return x;
-    double const share = kind == uniform ? (x - a) / (b - a) : elementary::log(x / a) / elementary::log(b / a);
+    double const share = kind == uniform ? (x - a) / width : elementary::log(x / a) / width;
     return elementary::log(share / (1 - share));
   }
   double log_density(double x) const {
-    if (kind == normal) return -0.5 * (x - a) * (x - a) / (b * b) - 0.5 * elementary::log(2 * std::numbers::pi * b * b);
-    if (kind == uniform) return -elementary::log(b - a);
-    return -elementary::log(x) - elementary::log(elementary::log(b / a));
+    if (kind == normal) return -0.5 * (x - a) * (x - a) / (b * b) - log_scale;
+    return kind == uniform ? -log_scale : -elementary::log(x) - log_scale;
   }
   double log_jacobian(double u) const {
     if (kind == normal) return 0;
-    double const e = elementary::exp(-std::fabs(u));  // share (1 - share) = e / (1 + e)^2
-    double const logistic = elementary::log(e) - 2 * elementary::log1p(e);
-    if (kind == uniform) return logistic + elementary::log(b - a);
-    return logistic + elementary::log(elementary::log(b / a)) + elementary::log(constrain(u));
+    double const distance = std::fabs(u);  // share (1 - share) = exp(-distance) / (1 + exp(-distance))^2
+    double const logistic = -distance - 2 * elementary::log1p(elementary::exp(-distance));
+    return kind == uniform ? logistic + log_scale : logistic + log_scale + elementary::log(constrain(u));
   }
   double draw(Stream& stream) const {
     if (kind == normal) return a + b * stream.normal();

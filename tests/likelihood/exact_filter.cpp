@@ -37,7 +37,7 @@ TEST_CASE("the likelihood of an exact filter is the joint normal density, howeve
 
 TEST_CASE("the gradient of an exact filter is that of the joint normal density") {
   std::vector<double> const values = {1.3, 4, 130, 0.02, 0.004};
-  FilterRecord const of = record(60, 2, true);
+  FilterRecord const of = record(40, 2, true);
   for (double const ratio : {0.0, 1e4, 1e8}) {
     double const variance = ratio * ratio * 0.004 * 0.004;
     ModelTarget const target(compile(oscillator_from(variance), false, "exponential"), of.experiment,

@@ -20,7 +20,7 @@ std::map<std::string, double> const duffing_truth = {{"m", 1}, {"c", 20}, {"k", 
 // An ordinary run finds sds that are too small by two fifths or means that are off by one sd; of 100 records, sds that are wrong by
 // a quarter.
 TEST_CASE("over made records the truth is as far from the mean as the sds say, with the known widths, and no run fails silently") {
-  int const records = replications(25, 100);
+  int const records = replications(20, 100);
   int outside = 0, silent = 0;
   std::map<std::string, std::vector<double>> widths, off;
   for (std::uint64_t const seed : counted_from(1, records)) {

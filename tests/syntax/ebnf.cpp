@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "parsing.hpp"
+#include "replications.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::test {
@@ -234,7 +235,7 @@ TEST_CASE("the parser accepts every sentence of the reference grammar") {
 
 TEST_CASE("the parser accepts every statement of the reference grammar") {
   test::Random random(2);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < replications(400, 1000); ++i) {
     test::parsed("model m {" + reference().sentence("statement", 6 + i % 10, random) + "}");
     test::parsed("data d {" + reference().sentence("data_statement", 6 + i % 10, random) + "}");
     test::parsed("dictionary d {" + reference().sentence("dictionary_statement", 6 + i % 10, random) + "}");

@@ -8,6 +8,7 @@
 #include "core/numeric/random.hpp"
 #include "core/text/diagnostic.hpp"
 #include "relative.hpp"
+#include "replications.hpp"
 
 using namespace sysid;
 
@@ -85,9 +86,9 @@ TEST_CASE("the band of 250 draws is that of its definition: binomial quantiles a
 
 TEST_CASE("p values of uniform ranks fall below 0.05 and 0.01 no more often than stated, those of shifted ranks always") {
   int rare = 0, very_rare = 0, chi_rare = 0;
-  constexpr int draws = 600;
-  for (std::uint64_t r = 0; r < draws; ++r) {
-    std::vector<int> const ranks = uniform_ranks(100, 100, r + 5000);
+  int const draws = replications(300, 600);
+  for (std::uint64_t const r : counted_from(5000, draws)) {
+    std::vector<int> const ranks = uniform_ranks(100, 100, r);
     double const p = ecdf_p_value(ranks, 100);
     rare += p < 0.05;
     very_rare += p < 0.01;
