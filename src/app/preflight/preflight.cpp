@@ -91,12 +91,12 @@ Preflight::Preflight(Session& session, FitTask const& stated, std::vector<Experi
   jumps_ = what.solver.fixed_step() && jumps(model());
 }
 
-// What a solver does lane by lane costs what its steps cost, and how many it takes between two samples only a trial shows: at few
-// draws, along few rows. A stiff transient, which some draws have within one interval, is no reason.
+// How many steps an adaptive solver takes between two samples only a trial shows: at few draws, along few rows. A stiff transient,
+// which some draws have within one interval, is no reason.
 void Preflight::bound_steps() {
   constexpr int tried_draws = 8, tried_rows = 16, fewest_steps = 100;
-  constexpr double most_own_steps = 2e6;  // of all draws together: some seconds
-  if (!what.solver.row().adaptive || what.solver.row().in_program || !model().integrated()) return;
+  if (!what.solver.row().adaptive || !model().integrated()) return;
+  double const most_own_steps = what.solver.row().in_program ? 6e6 : 2e6;  // of all draws together: some seconds
   std::vector<Experiment> begun;
   double samples = 0;
   for (Experiment const& each : experiments) {
