@@ -11,21 +11,26 @@ namespace sysid {
 
 void draw_normals(std::span<Stream> streams, Lanes out) {
   // All pairs of rows together: of few streams a row alone would leave vectors unfilled.
-  std::size_t const width = streams.size(), pairs = static_cast<std::size_t>(out.rows() + 1) / 2, count = pairs * width;
-  std::vector<double> numbers(3 * count);
-  double *const radius = numbers.data(), *const sine = radius + count, *const cosine = sine + count;
-  for (std::size_t w = 0; w < width; ++w)
-    for (std::size_t i = w; i < count; i += width) {
-      radius[i] = streams[w].uniform();
-      cosine[i] = 2 * std::numbers::pi * streams[w].uniform();
+  auto const rows = static_cast<std::size_t>(out.rows());
+  std::size_t const width = streams.size(), pairs = (rows + 1) / 2, count = pairs * width;
+  std::vector<double> numbers(3 * count + 2 * pairs);
+  double *const radius = numbers.data(), *const sine = radius + count, *const cosine = sine + count, *const own = cosine + count;
+  for (std::size_t w = 0; w < width; ++w) {
+    streams[w].uniforms({own, 2 * pairs});
+    for (std::size_t pair = 0, i = w; pair < pairs; ++pair, i += width) {
+      radius[i] = own[2 * pair];
+      cosine[i] = 2 * std::numbers::pi * own[2 * pair + 1];
     }
+  }
   elementary::log_lanes(radius, radius, static_cast<int>(count));
   elementary::sin_lanes(cosine, sine, static_cast<int>(count));
   elementary::cos_lanes(cosine, cosine, static_cast<int>(count));
-  for (int r = 0; r < out.rows(); ++r) {
-    std::size_t const first = static_cast<std::size_t>(r / 2) * width;
+  for (std::size_t i = 0; i < count; ++i) radius[i] = std::sqrt(-2 * radius[i]);
+  for (std::size_t r = 0; r < rows; ++r) {
+    std::size_t const first = r / 2 * width;
     double const* const wave = r % 2 == 0 ? cosine : sine;
-    for (std::size_t w = 0; w < width; ++w) out.row(r)[w] = std::sqrt(-2 * radius[first + w]) * wave[first + w];
+    double* const to = out.row(static_cast<int>(r)).data();
+    for (std::size_t w = 0; w < width; ++w) to[w] = radius[first + w] * wave[first + w];
   }
 }
 

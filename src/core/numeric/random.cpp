@@ -14,22 +14,40 @@
 
 namespace sysid {
 
+namespace {
+
+using Philox = r123::Philox4x64;
+
+inline Philox::ctr_type block_of(StreamKey const& key, std::uint64_t block) {
+  return Philox()(Philox::ctr_type{{key.index, key.step, block, 0}},
+                  Philox::key_type{{key.seed, static_cast<std::uint64_t>(key.purpose)}});
+}
+
+/// The middles of 2^52 equal cells: never 0, never 1, symmetric about 1/2.
+inline double uniform_of(std::uint64_t word) { return (static_cast<double>(static_cast<std::int64_t>(word >> 12)) + 0.5) * 0x1p-52; }
+
+}  // namespace
+
 std::uint64_t Stream::bits() {
   if (used_ == 4) {
-    r123::Philox4x64 generator;
-    r123::Philox4x64::ctr_type const counter = {{key_.index, key_.step, block_, 0}};
-    r123::Philox4x64::key_type const key = {{key_.seed, static_cast<std::uint64_t>(key_.purpose)}};
-    r123::Philox4x64::ctr_type const words = generator(counter, key);
+    Philox::ctr_type const words = block_of(key_, block_++);
     for (std::size_t i = 0; i < 4; ++i) words_[i] = words[i];
-    ++block_;
     used_ = 0;
   }
   return words_[static_cast<std::size_t>(used_++)];
 }
 
-double Stream::uniform() {
-  // The middles of 2^52 equal cells: never 0, never 1, symmetric about 1/2.
-  return (static_cast<double>(bits() >> 12) + 0.5) * 0x1p-52;
+double Stream::uniform() { return uniform_of(bits()); }
+
+void Stream::uniforms(std::span<double> out) {
+  std::size_t i = 0;
+  while (i < out.size() && used_ < 4) out[i++] = uniform();
+  // Whole blocks do not wait for one another.
+  for (; i + 4 <= out.size(); i += 4) {
+    Philox::ctr_type const words = block_of(key_, block_++);
+    for (std::size_t k = 0; k < 4; ++k) out[i + k] = uniform_of(words[k]);
+  }
+  while (i < out.size()) out[i++] = uniform();
 }
 
 double Stream::normal() {

@@ -2,7 +2,9 @@
 // before.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace sysid {
 
@@ -52,6 +54,8 @@ class Stream {
   std::uint64_t bits();
   /// Uniform on the open interval (0, 1), 52 random bits.
   double uniform();
+  /// The next of them, several times as quick as one by one.
+  void uniforms(std::span<double> out);
   /// Standard normal, by Box and Muller on core/numeric/elementary; two numbers per pair of uniforms.
   double normal();
   /// Uniform on {0, ..., n - 1} without bias; n > 0.
