@@ -26,6 +26,10 @@ bool ChannelResiduals::noise_is_estimated() const {
                      [&](NodeId argument) { return reads_estimated(model(), argument); });
 }
 
+int ChannelResiduals::fitted() const {
+  return static_cast<int>(std::ranges::count_if(model().parameters, [](Parameter const& each) { return each.prior.has_value(); }));
+}
+
 char const* ChannelTests::first_cure() const {
   constexpr double useless = 80;  // nmse [%] that offset or trend leave, from which they are not what the fit lacks
   if (offset.fires && unexplained * (1 - offset.share) < useless)

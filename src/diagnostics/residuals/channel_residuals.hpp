@@ -29,6 +29,7 @@ struct ChannelResiduals {
   std::string name() const;                // "displacement on bench", where there are several experiments
   std::vector<std::string> names() const;  // that a finding concerns
   bool noise_is_estimated() const;
+  int fitted() const;  // parameters that it may follow: all that are estimated
   /// [%], on the scale on which the noise has one size.
   double nmse_of(std::vector<double> const& some_observed, std::vector<double> const& some_predicted) const;
 };

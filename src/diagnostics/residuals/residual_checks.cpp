@@ -124,8 +124,10 @@ std::string size_help(ChannelResiduals const& of, ChannelTests const& tested, bo
 
 void check_size(ChannelResiduals const& of, ChannelTests const& tested, Limits const& limits, UserText const& text, FitLine& line,
                 Findings& findings) {
-  ChiSquaredTest const size = of.sized.degrees.empty() ? chi_squared(of.sized.values, of.sized.excess_kurtosis, limits.channels)
-                                                       : chi_squared_of_counts(of.sized.values, of.sized.degrees, limits.channels);
+  SizedResiduals const& sized = of.sized;
+  ChiSquaredTest const size = sized.degrees.empty()
+                                  ? chi_squared(sized.values, sized.excess_kurtosis, limits.channels, of.fitted())
+                                  : chi_squared_of_counts(sized.values, sized.degrees, limits.channels, of.fitted());
   line.scores.push_back({{ScoreKind::chi_squared}, size.per_sample});
   if (!size.fires()) return;
   findings.push_back(

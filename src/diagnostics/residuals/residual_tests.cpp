@@ -72,6 +72,9 @@ double lowest_events(double mean, double probability) {
   return low;
 }
 
+/// The x for which a gamma variable of this shape is below x with this probability; 0 where nothing is free.
+double lowest_square(double shape, double probability) { return shape > 0 ? boost::math::gamma_p_inv(shape, probability) : 0; }
+
 int usable_lags(double samples, int lags) { return std::min(lags, static_cast<int>(samples / 4)); }
 
 }  // namespace
@@ -185,27 +188,29 @@ double rmse(std::span<double const> observed, std::span<double const> predicted)
   return std::sqrt(square / samples);
 }
 
-ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis, int together) {
+ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis, int together, int fitted) {
   auto const [sum, samples] = products(standardised, 0, standardised, 0, 0);
   if (samples == 0) return {};
   double const half = samples / (2 + excess_kurtosis), tail = 5e-4 / together;
-  return {sum / samples, boost::math::gamma_p_inv(half, tail) / half, boost::math::gamma_q_inv(half, tail) / half};
+  return {sum / samples, lowest_square(half * (1 - fitted / samples), tail) / half, boost::math::gamma_q_inv(half, tail) / half};
 }
 
-ChiSquaredTest chi_squared_of_counts(std::span<double const> standardised, std::span<double const> degrees, int together) {
-  double square = 0, worth = 0, squared_worth = 0;
+ChiSquaredTest chi_squared_of_counts(std::span<double const> standardised, std::span<double const> degrees, int together,
+                                     int fitted) {
+  double square = 0, worth = 0, squared_worth = 0, samples = 0;
   for (std::size_t i = 0; i < standardised.size(); ++i) {
     if (std::isnan(standardised[i])) continue;
     double const sized = standardised[i] * std::sqrt(degrees[i]);  // first, as a square of a rare event may overflow
     square += sized * sized;
     worth += degrees[i];
     squared_worth += degrees[i] * degrees[i];
+    ++samples;
   }
   if (!(worth > 0)) return {};
-  double const half = worth / 2, tail = 5e-4 / together;
-  double low = boost::math::gamma_p_inv(half, tail);
+  double const half = worth / 2, free = half * (1 - fitted / samples), tail = 5e-4 / together;
+  double low = lowest_square(free, tail);
   // Where samples are worth little, of means below a half: P(at most x events, of half on average) = gamma_q(x + 1, half).
-  if (squared_worth < 0.5 * worth) low = std::min(low, lowest_events(half, tail));
+  if (squared_worth < 0.5 * worth) low = free > 0 ? std::min(low, lowest_events(free, tail)) : 0;
   return {square / worth, low / half, std::max(1.0, boost::math::gamma_q_inv(half, tail)) / half};
 }
 

@@ -76,8 +76,9 @@ struct ChiSquaredTest {
 
 /// standardised: (y - location) / sd, independent under the model. n * per_sample ~ chi^2(n) for normal ones. Where they have an
 /// excess kurtosis k the variance of the sum is n (2 + k), that of chi^2 with 2 n/(2 + k) degrees of freedom in place of n.
-/// together: how many series of a run are tested, each on its part of the thousandth.
-ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis = 0, int together = 1);
+/// together: how many series of a run are tested, each on its part of the thousandth. fitted: how many parameters the residuals
+/// come from. They take up to so many degrees of freedom, fewer where priors hold them: only the lower bound allows for all.
+ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_kurtosis = 0, int together = 1, int fitted = 0);
 
 /// The same of counts, whose excess kurtosis k_i is another one at each sample (1/mean for Poisson's) and without bound where the
 /// mean is small. Such a sample says less of the size, and weighs by the degrees of freedom d_i = 2/(2 + k_i) that it is worth,
@@ -86,6 +87,7 @@ ChiSquaredTest chi_squared(std::span<double const> standardised, double excess_k
 ///
 /// which of all weights give the smallest variance. Sums of a few rare events are lumps: there the lower bound is that of so many
 /// events, and a single event is never too much.
-ChiSquaredTest chi_squared_of_counts(std::span<double const> standardised, std::span<double const> degrees, int together = 1);
+ChiSquaredTest chi_squared_of_counts(std::span<double const> standardised, std::span<double const> degrees, int together = 1,
+                                     int fitted = 0);
 
 }  // namespace sysid

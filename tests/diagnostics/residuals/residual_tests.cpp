@@ -164,6 +164,27 @@ TEST_CASE("of the sizes of many series one is found wrong in a thousand runs, no
   CHECK(chi_squared(noise(500, 70, 1.3), 0, together).fires());
 }
 
+// n samples of p coefficients by least squares leave chi^2(n - p), whatever the coefficients are.
+TEST_CASE("what fitted parameters take from few residuals is no sign of a noise that is too large") {
+  constexpr unsigned runs = 2000;
+  constexpr int samples = 6, fitted = 3;
+  int wrong = 0, without = 0;
+  for (unsigned run = 0; run < runs; ++run) {
+    std::vector<double> left = noise(samples, 40000 + run);
+    // Of two samples each the mean, as three parameters would.
+    for (std::size_t i = 0; i < samples; i += 2) {
+      double const mean = (left[i] + left[i + 1]) / 2;
+      left[i] -= mean, left[i + 1] -= mean;
+    }
+    wrong += chi_squared(left, 0, 1, fitted).fires() ? 1 : 0;
+    without += chi_squared(left).fires() ? 1 : 0;
+  }
+  CHECK(wrong <= 5);  // one is expected
+  CHECK(without > 40);
+  CHECK(chi_squared(noise(40, 7, 0.3), 0, 1, fitted).fires());
+  CHECK_FALSE(chi_squared(std::vector<double>{1e-9, 1e-9}, 0, 1, 3).fires());  // nothing is free
+}
+
 namespace {
 
 /// How many of these records of Poisson counts have the size of their noise. [runs] below, above.
