@@ -111,6 +111,14 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
       return;
     }
   }
+  if (!term.factors.powers.empty() && term.factors.proportional(factors_of(out_.numbers.graph, split.known))) {
+    Target const& target = targets_[static_cast<std::size_t>(index)];
+    auto const* name = std::get_if<ast::Reference>(&target.tree->node);
+    bool const rate = name != nullptr && name->primes == 0 && !out_.numbers.discrete && find_state(name->name.text) != nullptr;
+    diagnostics_.add(errors::target_among_terms(target.tree->span, term.written.tree.span, equation.text, term.written.text,
+                                                rate ? equation.text + "'" : ""));
+    return;
+  }
   for (std::size_t j = split.free.size(); j < kept.size(); ++j) {
     if (!kept[j]->factors.proportional(term.factors)) continue;
     out_.excluded.push_back({ExcludedTerm::Why::same, term.written.text, kept[j]->written.text, index});

@@ -251,6 +251,9 @@ Diagnostic model_and_candidates(ast::Name const& name, Span model);
 // dictionaries and discovery (E66)
 Diagnostic no_target(ast::Name const& dictionary);
 Diagnostic target_twice(Span second, Span first, std::string const& text);
+/// derivative: of the target, where that is a state that stands for one; else empty.
+Diagnostic target_among_terms(Span target, Span term, std::string const& text, std::string const& written,
+                              std::string const& derivative);
 Diagnostic no_terms(ast::Name const& dictionary);
 Diagnostic nothing_left_of_terms(Span target, std::string const& equation);
 /// item: the term that holds the family.

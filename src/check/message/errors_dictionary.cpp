@@ -26,6 +26,19 @@ Diagnostic target_twice(Span second, Span first, std::string const& text) {
                                 "remove one of the two: each target has an equation of its own"));
 }
 
+Diagnostic target_among_terms(Span target, Span term, std::string const& text, std::string const& written,
+                              std::string const& derivative) {
+  return about({text}, conflict("E6618", term, "a term", target, "the target",
+                                fmt::format("`{}` is both the target and {}: `{} = 1*{}` is always right and explains nothing",
+                                            text, written == text ? "a term" : fmt::format("in the term `{}`", written), text, text),
+                                fmt::format("{}`exclude = {}`", derivative.empty()
+                                                                    ? "leave this term out: "
+                                                                    : fmt::format("if the rate of change is meant, write `target = {}`; "
+                                                                                  "else leave this term out: ",
+                                                                                  derivative),
+                                            written)));
+}
+
 Diagnostic no_terms(ast::Name const& dictionary) {
   return about({dictionary.text}, error("E6602", dictionary.span, fmt::format("dictionary `{}` has no terms", dictionary.text),
                                         "add `terms = polynomial(y, y', degree = 3), abs(y')*y', 1`"));
