@@ -175,7 +175,7 @@ class Finder {
     auto found = differs(times.seconds, times.unit, times);
     if (!found) return std::nullopt;
     if (times.assumed)
-      for (char const* const other : {"ms", "us", "ns", "min", "h", "d"}) {
+      for (char const* const other : {"ms", "us", "ns", "min", "h", "d", "week", "year"}) {
         Unit const unit = unit_atom(other).value();
         std::vector<double> scaled = times.seconds;
         for (double& each : scaled) each *= unit.scale;

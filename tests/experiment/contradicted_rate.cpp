@@ -97,6 +97,8 @@ TEST_CASE("a rate that the column agrees with is no finding: by its unit, by rou
   CHECK(contradictions("Zeit_ms", scaled(20), "rate 50 [Hz]").empty());
   CHECK(contradictions("t", scaled(20), "rate 50 [Hz]").empty());     // whole milliseconds without a unit
   CHECK(contradictions("t", scaled(20000), "rate 50 [Hz]").empty());  // microseconds
+  CHECK(contradictions("t", scaled(1), "rate 1 [1/year]").empty());
+  CHECK(contradictions("t", scaled(2), "step 2 [week]").empty());
   TimeCell const rounded = [](int i) { return fmt::format("{}", std::round(i * 1000 / 256.0)); };
   CHECK(contradictions("t_ms", rounded, "rate 256 [Hz]").empty());
   TimeCell const coarse = [](int i) { return fmt::format("{:.3f}", i / 800.0 + 1e-9); };
