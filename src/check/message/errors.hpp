@@ -144,6 +144,7 @@ Diagnostic not_a_channel(Span span, std::string const& function, std::string con
 Diagnostic samples_in_differential_equation(ast::Call const& call);
 Diagnostic change_out_of_place(ast::Call const& call, bool discrete, bool no_states);
 Diagnostic own_sample(Span span, std::string const& channel);
+Diagnostic own_sample_in_function(Span call, std::string const& function, std::string const& channel);
 Diagnostic prediction_cycle(Span span, std::string const& channel);
 Diagnostic present_prediction(Span span, std::string const& channel);
 Diagnostic range_out_of_place(Span span);

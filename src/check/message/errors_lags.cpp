@@ -105,6 +105,13 @@ Diagnostic own_sample(Span span, std::string const& channel) {
   return about({channel}, error("E3108", span, fmt::format("channel `{}` is predicted from its own present sample", channel),
                                 fmt::format("use a past sample: `lag(measured({}), 1)`", channel)));
 }
+Diagnostic own_sample_in_function(Span call, std::string const& function, std::string const& channel) {
+  return about({function, channel},
+               error("E3108", call, fmt::format("`{}` reads the present sample of `{}`, which it helps to predict", function, channel),
+                     fmt::format("use past samples: `lag(measured({0}), 1)`; a list of lags begins at 1, as in "
+                                 "`lags(measured({0}), 1..4)`",
+                                 channel)));
+}
 Diagnostic prediction_cycle(Span span, std::string const& channel) {
   return about({channel},
                error("E3109", span, fmt::format("the prediction of channel `{}` depends on itself at the same sample", channel),

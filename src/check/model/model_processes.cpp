@@ -101,6 +101,13 @@ void ModelChecker::place_processes() {
         return;
       }
       process.channel = static_cast<int>(c);
+      auto const is_own = [&](Node const& node) {
+        return is_leaf(node, LeafKind::measured) && node.index == static_cast<int>(c) && node.lag == 0;
+      };
+      if (std::ranges::any_of(process.arguments, [&](NodeId argument) { return graph.depends(argument, is_own); })) {
+        diagnostics_.add(errors::own_sample_in_function(call, process.name, channel.name));
+        return;
+      }
       if (!channel.noise.row->gaussian) {
         diagnostics_.add(errors::process_without_normal_noise(channel.span, channel.name, std::string(channel.noise.row->name)));
         return;
