@@ -150,6 +150,7 @@ Diagnostic present_prediction(Span span, std::string const& channel);
 Diagnostic range_out_of_place(Span span);
 Diagnostic initial_lag_missing(Span declaration, std::string const& state);
 Diagnostic implicit_in_discrete_time(Span equation, std::string const& state);
+Diagnostic forgotten_lag(Span equation, std::string const& state);
 
 // data blocks (E40; the file's own contents: data/table/*_errors.hpp)
 Diagnostic no_file(ast::Name const& block);

@@ -16,7 +16,7 @@ namespace sysid {
 
 void ModelChecker::equations() {
   std::vector<ast::Equation const*> trees;
-  std::vector<NodeId> residuals;
+  std::vector<NodeId> residuals, right;
   bool good = true;
   Graph& graph = model_.graph;
   each<ast::Equation>([&](ast::Equation const& equation) {
@@ -27,6 +27,7 @@ void ModelChecker::equations() {
     }
     orders_doubtful_ = orders_doubtful_ || sides->first.kind == Typed::Kind::wrong || sides->second.kind == Typed::Kind::wrong;
     trees.push_back(&equation);
+    right.push_back(sides->second.node);
     residuals.push_back(graph.subtract(sides->second.node, sides->first.node));
     graph.set_span(residuals.back(), equation.span);
   });
@@ -55,7 +56,10 @@ void ModelChecker::equations() {
                                unknown_name(static_cast<std::size_t>(failure->unknown))};
   else
     highest_ = std::get<std::vector<NodeId>>(solved);
-  if (scope_.samples().discrete) return;  // they are the states at the present sample
+  if (scope_.samples().discrete) {  // they are the states at the present sample
+    report_forgotten_lags(trees, right);
+    return;
+  }
   bool const algebraic = std::any_of(states_.begin(), states_.end(), [](auto const& each) { return each.second.order == 0; });
   if (algebraic || model_.implicit) model_.residuals = residuals;
   for (std::size_t i = 0; i < states_.size(); ++i) {
@@ -72,6 +76,23 @@ void ModelChecker::equations() {
     unknown.component = info.order > 0 ? info.first + info.order - 1 : -1;
     unknown.guess = graph.constant(0);
     model_.unknowns.push_back(std::move(unknown));
+  }
+}
+
+void ModelChecker::report_forgotten_lags(std::vector<ast::Equation const*> const& trees, std::vector<NodeId> const& right) {
+  Graph const& graph = model_.graph;
+  std::vector<NodeId> const read = graph.reachable(right);
+  for (std::size_t e = 0; e < trees.size(); ++e) {
+    auto const* given = std::get_if<ast::Reference>(&trees[e]->left.node);
+    StateInfo const* const state = given != nullptr ? find_state(given->name.text) : nullptr;
+    if (state == nullptr) continue;
+    auto const of_state = [index = static_cast<int>(index_of(*state))](LeafKind kind) {
+      return [kind, index](Node const& node) { return is_leaf(node, kind) && node.index == index; };
+    };
+    auto const is_past = of_state(LeafKind::previous);
+    if (std::ranges::none_of(read, [&](NodeId id) { return is_past(graph[id]); }) &&
+        graph.depends(right[e], of_state(LeafKind::unknown)))
+      diagnostics_.add(errors::forgotten_lag(trees[e]->span, given->name.text));
   }
 }
 
