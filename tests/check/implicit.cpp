@@ -99,3 +99,11 @@ TEST_CASE("initial values off a constraint, or off its time derivative, are refu
   CHECK(with_initial("x = 0.8, y = -0.6, x' = 0, y' = 0").find("error[E3017]") != std::string::npos);
   CHECK(with_initial("x = 0.8*l, y = -0.6*l, x' = 1, y' = 0").find("error[E3017]") != std::string::npos);
 }
+
+TEST_CASE("in discrete time a step back that is implicit is solved in silence, and a state without a past is warned of") {
+  std::string const rest = "parameter a ~ uniform(0, 1)\nobserve d ~ normal(u, sd = 1)\n";
+  std::string const start = "time discrete 1 [s]\ninput x\nstate u\ninitial u = 0\n";
+  CHECK(refused_model(start + "u = lag(u, 1) + a*(x - u)\n" + rest).empty());
+  CHECK(refused_model(start + "u - lag(u, 1) = a*u\n" + rest).empty());
+  CHECK(refused_model(start + "u = a*u + x\n" + rest).find("warning[E3114]") != std::string::npos);
+}

@@ -79,6 +79,8 @@ Diagnostic bad_arguments(Span span, std::string const& distribution, std::string
 /// names: of the parameters that the argument reads.
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
                          std::vector<std::string> const& names);
+/// of: "sd of `y`".
+Diagnostic width_below_zero(Span parameter, std::string const& name, std::string const& of);
 Diagnostic no_mass(Span span, std::string const& distribution);
 Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit);
 Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit);

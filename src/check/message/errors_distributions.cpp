@@ -355,6 +355,15 @@ Diagnostic never_allowed(Span span, std::string const& distribution, std::string
                      positive_prior(names)));
 }
 
+Diagnostic width_below_zero(Span parameter, std::string const& name, std::string const& of) {
+  Diagnostic result =
+      about({name}, error("E2120", parameter,
+                          fmt::format("`{}` is the {}, which is positive, but its prior also has negative values", name, of),
+                          "add `lower = 0` to this prior, or use a prior of positive values, such as `half_normal(sd = ...)`"));
+  result.severity = Severity::warning;
+  return result;
+}
+
 Diagnostic no_mass(Span span, std::string const& distribution) {
   return about({distribution}, error("E2115", span, fmt::format("`{}` has no probability between its bounds", distribution),
                                      "widen `lower` and `upper`, or move the distribution"));

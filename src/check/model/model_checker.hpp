@@ -132,6 +132,8 @@ class ModelChecker {
 
   // --- model_widths.cpp
   void positive_widths();
+  // Of a parameter that is a width and whose prior gives more than next to nothing to negative values.
+  void report_negative_width(NodeId width, std::string const& of);
   std::vector<std::string> parameters_of(NodeId root) const;
 
   // --- model_samples.cpp
@@ -173,6 +175,7 @@ class ModelChecker {
     std::size_t disturbance;
   };
   std::vector<PositiveArgument> positive_;  // of laws of disturbances
+  std::set<std::string> negative_widths_;   // reported
 };
 
 }  // namespace sysid

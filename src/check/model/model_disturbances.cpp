@@ -215,8 +215,11 @@ void ModelChecker::disturbances() {
 void ModelChecker::positive_laws(ValueRanges& ranges) {
   for (PositiveArgument const& each : positive_) {
     ValueRange const range = ranges.of(each.node);
-    if (!range.empty && range.high > 0) continue;
     Disturbance const& disturbance = model_.disturbances[each.disturbance];
+    if (!range.empty && range.high > 0) {
+      report_negative_width(each.node, fmt::format("{} of `{}`", each.argument, disturbance.name));
+      continue;
+    }
     diagnostics_.add(errors::law_never_positive(disturbance.span, disturbance.name, each.argument, parameters_of(each.node)));
   }
 }

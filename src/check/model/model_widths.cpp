@@ -1,4 +1,7 @@
-// Widths that are invalid for all values of a prior: reported by the checker, because every draw would have zero likelihood.
+// Widths that are invalid for all values of a prior, because every draw would have zero likelihood; and those whose prior reaches
+// below zero.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "check/expression/value_range.hpp"
@@ -17,7 +20,26 @@ std::string_view never_allowed(DistributionRow const& row, std::size_t i, ValueR
   return row.refuse(numbers);
 }
 
+/// The probability of a negative value under a prior with numbers for arguments and no lower bound; 0 for any other.
+double negative_share(Graph& graph, Distribution const& prior) {
+  if (!prior.row->proper || prior.row->cumulative == nullptr || prior.row->lower != nullptr || prior.lower) return 0;
+  NodeId const below = prior.row->cumulative(graph, graph.constant(0), prior.arguments);
+  for (NodeId const id : graph.reachable({&below, 1}))
+    if (graph[id].operation == Operation::leaf) return 0;
+  return graph.evaluate(below, [](NodeId) { return 0.0; });
+}
+
 }  // namespace
+
+void ModelChecker::report_negative_width(NodeId width, std::string const& of) {
+  constexpr double hardly_any = 0.01;
+  Node const& node = model_.graph[width];
+  if (!is_leaf(node, LeafKind::parameter)) return;
+  Parameter const& parameter = model_.parameters[static_cast<std::size_t>(node.index)];
+  if (!parameter.prior || !(negative_share(model_.graph, *parameter.prior) > hardly_any)) return;
+  if (!negative_widths_.insert(parameter.name).second) return;
+  diagnostics_.add(errors::width_below_zero(parameter.span, parameter.name, of));
+}
 
 std::vector<std::string> ModelChecker::parameters_of(NodeId root) const {
   std::vector<std::string> names;
@@ -30,10 +52,13 @@ std::vector<std::string> ModelChecker::parameters_of(NodeId root) const {
 void ModelChecker::positive_widths() {
   ValueRanges ranges(model_);
   auto const look_at = [&](Distribution const& use, Quantity const& variate) {
-    for (std::size_t i = 0; i < use.arguments.size(); ++i)
+    for (std::size_t i = 0; i < use.arguments.size(); ++i) {
       if (std::string_view const reason = never_allowed(*use.row, i, ranges.of(use.arguments[i])); !reason.empty())
         diagnostics_.add(
             errors::never_allowed(variate.span, std::string(use.row->name), variate.name, reason, parameters_of(use.arguments[i])));
+      else if (!never_allowed(*use.row, i, {-1, -1}).empty())
+        report_negative_width(use.arguments[i], fmt::format("{} of `{}`", use.row->arguments[i].spellings.front().name, variate.name));
+    }
   };
   for (Parameter const& parameter : model_.parameters)
     if (parameter.prior) look_at(*parameter.prior, parameter);
@@ -47,7 +72,10 @@ void ModelChecker::positive_widths() {
         for (std::size_t d = 0; d < (row.per_input ? kernel.inputs.size() : 1); ++d) {
           NodeId const node = kernel.hyper_parameters[k++];
           ValueRange const range = ranges.of(node);
-          if (!range.empty && range.high > 0) continue;
+          if (!range.empty && range.high > 0) {
+            report_negative_width(node, fmt::format("{} of `{}`", row.name, process.name));
+            continue;
+          }
           diagnostics_.add(
               errors::hyper_parameter_never_positive(process.span, std::string(row.name), process.name, parameters_of(node)));
           return;
