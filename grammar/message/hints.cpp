@@ -328,6 +328,14 @@ std::string instead_of_product(Gap const& gap) {
   if (left->kind == TokenKind::number)
     if (std::string const unit = declaration ? unit_without_brackets(gap) : unit_of_no_names(gap); !unit.empty())
       return fmt::format("a unit is written in brackets: `{} {}`", left->text, unit);
+  Token const* const next = gap.next();
+  if (left->kind == TokenKind::number && gap.found->is("to") && next != nullptr && next->kind == TokenKind::number)
+    return fmt::format("a range is written `{}..{}`", left->text, next->text);
+  if (left->kind == TokenKind::word && depth > 0 && begins_argument && gap.found->is("in") && next != nullptr) {
+    std::size_t end = gap.at + 1;
+    while (end < gap.statement.size() && !gap.statement[end].is(",") && !gap.statement[end].is(")")) ++end;
+    if (end > gap.at + 1) return fmt::format("a named argument is written `{} = {}`", left->text, gap.text(gap.at + 1, end));
+  }
   if (left->kind == TokenKind::word && depth > 0 && begins_argument && gap.found->kind != TokenKind::symbol)
     return fmt::format("a named argument is written `{} = {}`", left->text, gap.found->text);
   // An option of a task stands behind `with` or a comma.

@@ -59,6 +59,8 @@ std::string instead_of_list(std::span<Token const> tokens, std::size_t line, std
   if (behind_keyword && tokens[line].is("initial")) return "an initial value names its state: `initial y = 0, y' = 0`";
   if (opener == line + 2 && words::contains(lists_of_terms, tokens[line].text))
     return fmt::format("write it without brackets: `{} = {}`", tokens[line].text, inside);
+  if (words::contains(words::prepositions, tokens[opener - 1].text))
+    return fmt::format("list the data without brackets: `{} {}`", tokens[opener - 1].text, inside);
   bool const lone_argument = opener >= 2 && tokens[opener - 1].is("(") && tokens[opener - 2].kind == TokenKind::word &&
                              close + 1 < tokens.size() && tokens[close + 1].is(")");
   if (lone_argument) return fmt::format("arguments stand in parentheses alone: `{}({})`", tokens[opener - 2].text, inside);

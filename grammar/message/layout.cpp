@@ -178,6 +178,10 @@ class LayoutPass {
       return fmt::format("a range of values is written as a prior: {}", list_as_range(tokens_, i, close));
     if (declares && !before.is("^")) return fmt::format("a unit is written in brackets: `{} [{}]`", before.text, inside);
     if (first.is("function")) return fmt::format("a function is written with `=`: `= {}`", inside);
+    if (words::contains(words::prepositions, before.text)) return fmt::format("list the data without braces: `{} {}`", before.text, inside);
+    bool const several = inside.find(',') != std::string_view::npos && tokens_[close - 1].kind != TokenKind::symbol;
+    if (before.is("=") && several && !open_.empty() && tokens_[open_.back()].is("("))
+      return fmt::format("write a list in parentheses: `({})`", inside);
     if (before.is("=") || before.is("initial")) return fmt::format("write it without braces: `{}`", inside);
     bool const calls = before.kind == TokenKind::word;
     return calls ? fmt::format("arguments stand in parentheses: `{}({})`", before.text, inside)

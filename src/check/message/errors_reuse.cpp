@@ -112,6 +112,11 @@ Diagnostic model_argument_by_position(Span span, std::string const& model, Names
   return about({model}, error("E2804", span, fmt::format("the arguments of model `{}` must be given by name", model),
                               known.empty() ? "it takes none" : fmt::format("write `{} = ...`", known.front())));
 }
+Diagnostic model_arguments_in_a_row(Span span, std::string const& model, std::string const& name, Names const& values) {
+  return about({model, name}, error("E2804", span, fmt::format("the arguments of model `{}` must be given by name", model),
+                                    fmt::format("several values of one argument stand in parentheses: `{} = ({})`", name,
+                                                fmt::join(values, ", "))));
+}
 Diagnostic model_argument_twice(Span second, Span first, std::string const& name) {
   return with(about({name}, error("E2805", second, fmt::format("`{}` is given twice", name), "keep one", "again here")), first,
               "first here");

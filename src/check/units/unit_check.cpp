@@ -13,6 +13,7 @@
 #include "check/units/product.hpp"
 #include "check/units/unit_errors.hpp"
 #include "check/units/unit_words.hpp"
+#include "core/text/number.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
 
@@ -278,7 +279,37 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   return false;
 }
 
+namespace {
+
+/// A bare number that is an angle in degrees if it is one at all: 45 alone, 90 as a phase.
+ast::Number const* number_of_degrees(ast::Expression const& tree, bool alone) {
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return number_of_degrees(*(*unary)->operand, alone);
+  if (auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node)) {
+    if ((*binary)->symbol != "+" && (*binary)->symbol != "-") return nullptr;
+    auto const* const left = number_of_degrees(*(*binary)->left, false);
+    return left != nullptr ? left : number_of_degrees(*(*binary)->right, false);
+  }
+  auto const* number = std::get_if<ast::Number>(&tree.node);
+  if (number == nullptr || number->unit) return nullptr;
+  bool const usual = std::fmod(number->value, 30) == 0 || std::fmod(number->value, 45) == 0;
+  bool const degrees = alone ? number->value >= 10 && std::fmod(number->value, 5) == 0 : usual && number->value != 0;
+  return degrees && number->value <= 720 ? number : nullptr;
+}
+
+}  // namespace
+
+void UnitCheck::hint_degrees(std::string const& function, UnitOperand const& argument) {
+  ast::Number const* const number = argument.tree == nullptr ? nullptr : number_of_degrees(*argument.tree, true);
+  if (number == nullptr) return;
+  auto const& before = diagnostics_->all();
+  bool const reported = std::ranges::any_of(before, [&](Diagnostic const& each) {
+    return each.code == "E2213" && each.primary && each.primary->span.begin == number->span.begin;
+  });
+  if (!reported) report(errors::degrees_as_radians(number->span, function, shortest(number->value)));
+}
+
 bool UnitCheck::pure(std::string const& function, UnitOperand const& argument, bool angle) {
+  if (angle) hint_degrees(function, argument);
   if (argument.value.kind == Typed::Kind::unknown) remember(argument);
   if (!is_known(argument)) return true;
   Unit const& unit = argument.value.unit;

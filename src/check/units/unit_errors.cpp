@@ -155,6 +155,11 @@ Diagnostic number_beside(Span number, Label other, bool angle, std::string const
             fmt::format("`{}` has no unit: beside what is in [{}] it is {}", text, unit, angle ? "in radians" : "a pure number"),
             help);
 }
+Diagnostic degrees_as_radians(Span number, std::string const& function, std::string const& text) {
+  return errors::about({function}, at(Severity::warning, "E2213", {number, "in radians"}, {},
+                                      fmt::format("`{}` has no unit: in `{}` it counts radians", text, function),
+                                      fmt::format("write `{0} [deg]` or `{0} [rad]`", text)));
+}
 Diagnostic converted_twice(Label shown, Label declared, std::string const& factor, std::string const& unit,
                            std::string const& written) {
   return at(Severity::warning, "E2214", std::move(shown), {std::move(declared)},
