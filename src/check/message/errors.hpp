@@ -180,6 +180,8 @@ Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& colu
 
 // tasks (E60)
 Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names const& known);
+/// What to do where the subject of a task is of another kind, which has this verb.
+std::string verb_of_subject(ast::Task const& task, std::string const& kind, std::string const& verb);
 /// is_data: the name is that of a data block.
 Diagnostic unknown_fit(ast::Name const& name, Names const& known, bool is_data);
 /// A part of something named: "data `bench` has no range `trian`".

@@ -190,6 +190,12 @@ Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names co
                error("E6001", name.span, fmt::format("there is no {} `{}` in this file", kind, name.text), std::move(help)), kind);
 }
 
+std::string verb_of_subject(ast::Task const& task, std::string const& kind, std::string const& verb) {
+  std::string_view const preposition = verb == "discover" ? "from" : "to";
+  std::string const data = task.data.empty() ? "DATA" : task.data.front().data.text;
+  return fmt::format("`{0}` is a {1}: write `{2} {0} {3} {4}`", task.subject.text, kind, verb, preposition, data);
+}
+
 Diagnostic unknown_fit(ast::Name const& name, Names const& known, bool is_data) {
   Diagnostic result = unknown_item(name, "fit", known);
   if (is_data)

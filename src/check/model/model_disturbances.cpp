@@ -88,6 +88,7 @@ std::optional<std::vector<NodeId>> ModelChecker::law_arguments(ast::DisturbanceD
   std::vector<std::string> known;
   for (DisturbanceArgumentRow const& argument : row.arguments) known.emplace_back(argument.name);
   std::vector<ast::Argument const*> given(row.arguments.size(), nullptr);
+  std::size_t unnamed = 0;
   bool good = true;
   auto const fail = [&](Diagnostic diagnostic) {
     diagnostics_.add(std::move(diagnostic));
@@ -95,7 +96,13 @@ std::optional<std::vector<NodeId>> ModelChecker::law_arguments(ast::DisturbanceD
   };
   for (ast::Argument const& argument : tree.law.arguments) {
     if (!argument.name) {
-      fail(errors::must_be_named(tree.law, argument, known));
+      // Those that no name claims, in their order: this one is probably the next.
+      std::vector<std::string> open = known;
+      for (ast::Argument const& other : tree.law.arguments)
+        if (other.name) std::erase(open, other.name->text);
+      if (unnamed < open.size()) std::rotate(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(unnamed), open.end());
+      ++unnamed;
+      fail(errors::must_be_named(tree.law, argument, open.empty() ? known : open));
       continue;
     }
     auto const place = std::find(known.begin(), known.end(), argument.name->text);

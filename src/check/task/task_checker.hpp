@@ -24,6 +24,8 @@ class TaskChecker {
 
  private:
   // --- tasks.cpp
+  // The subject is no such item: it may be one of another kind.
+  void explain_subject(Diagnostic& unknown) const;
   std::optional<int> item(ast::Name const& name, std::map<std::string, std::optional<int>> const& items, std::string const& kind);
   // Equations that cannot be solved for their highest derivatives need a solver that does without.
   void suit(SolverSettings& solver, Model const& model);

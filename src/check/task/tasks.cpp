@@ -46,13 +46,25 @@ std::optional<Task> TaskChecker::run() {
   return task;
 }
 
+void TaskChecker::explain_subject(Diagnostic& unknown) const {
+  std::string const& name = tree_.subject.text;
+  char const* verb = nullptr;
+  char const* kind = nullptr;
+  if (names_.dictionaries.contains(name)) verb = "discover", kind = "dictionary";
+  if (names_.candidates.contains(name)) verb = "select", kind = "set of candidates";
+  if (names_.models.contains(name)) verb = "fit", kind = "model";
+  if (verb != nullptr) unknown.help = errors::verb_of_subject(tree_, kind, verb);
+}
+
 std::optional<int> TaskChecker::item(ast::Name const& name, std::map<std::string, std::optional<int>> const& items,
                                      std::string const& kind) {
   auto const place = items.find(name.text);
   if (place == items.end()) {
     std::vector<std::string> known;
     for (auto const& [each, index] : items) known.push_back(each);
-    diagnostics_.add(errors::unknown_item(name, kind, known));
+    Diagnostic unknown = errors::unknown_item(name, kind, known);
+    if (&name == &tree_.subject) explain_subject(unknown);
+    diagnostics_.add(std::move(unknown));
     return std::nullopt;
   }
   if (!place->second) unresolved_ = true;
