@@ -197,14 +197,17 @@ ColumnNeeds needs_of(RecordRequest const& request) {
   return needs;
 }
 
+/// What has a time has steps.
+int fewest_rows(RecordRequest const& request) { return request.independent_rows ? 1 : 2; }
+
 }  // namespace
 
 std::optional<Record> load(RecordRequest const& request, Diagnostics& diagnostics) {
   std::optional<std::unique_ptr<RecordFile>> const file = collect(diagnostics, request.mention, [&] {
     std::unique_ptr<RecordFile> opened =
         open_record(request.path, request.rules, needs_of(request), request.mention, request.shown_path);
-    if (auto const rows = opened->row_count(); rows && *rows < 2)
-      throw UserError(data_errors::too_few_rows(opened->name(), *rows, request.mention));
+    if (auto const rows = opened->row_count(); rows && *rows < fewest_rows(request))
+      throw UserError(data_errors::too_few_rows(opened->name(), *rows, fewest_rows(request), request.mention));
     return opened;
   });
   return file ? read_record(request, **file, diagnostics, true) : std::nullopt;
@@ -234,8 +237,9 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
     if (samples) record.measured.push_back(std::move(*samples));
   }
   if (!request.time) time = columns.counted_times();
-  if (complete_record && whole && time->size() < 2) {
-    diagnostics.add(data_errors::too_few_rows(file.name(), static_cast<int>(time->size()), request.mention));
+  if (complete_record && whole && static_cast<int>(time->size()) < fewest_rows(request)) {
+    diagnostics.add(
+        data_errors::too_few_rows(file.name(), static_cast<int>(time->size()), fewest_rows(request), request.mention));
     return std::nullopt;
   }
   // Inputs of independent rows are read at rows alone.

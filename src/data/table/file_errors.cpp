@@ -128,9 +128,9 @@ Diagnostic too_many_rows(std::string const& file, int most, Mention mention) {
   return error("E4020", mention, fmt::format("`{}` has more than {} rows", file, most), "cut the record into several files");
 }
 
-Diagnostic too_few_rows(std::string const& file, int rows, Mention mention) {
+Diagnostic too_few_rows(std::string const& file, int rows, int fewest, Mention mention) {
   return error("E4007", mention, fmt::format("`{}` has {}", file, rows == 0 ? "no rows" : counted(rows, "row")),
-               "a record needs at least 2 rows");
+               fmt::format("a record needs at least {}", counted(fewest, "row")));
 }
 
 Diagnostic no_such_line(std::string const& file, std::string const& setting, int line, int lines, Mention mention) {

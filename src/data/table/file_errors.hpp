@@ -45,7 +45,7 @@ Diagnostic cut_row(std::string const& file, int row, int line, int cells, int co
 Diagnostic broken_table(std::string const& file, int line, Mention mention);
 Diagnostic comment_in_data(std::string const& file, std::int64_t row, std::int64_t line, Mention mention);
 Diagnostic too_many_rows(std::string const& file, int most, Mention mention);
-Diagnostic too_few_rows(std::string const& file, int rows, Mention mention);
+Diagnostic too_few_rows(std::string const& file, int rows, int fewest, Mention mention);
 /// E4025: what `read` says of a file, and the file does not have.
 Diagnostic no_such_line(std::string const& file, std::string const& setting, int line, int lines, Mention mention);
 Diagnostic other_number_of_columns(std::string const& file, int line, int cells, int names, Mention mention);

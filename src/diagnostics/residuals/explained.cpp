@@ -5,6 +5,9 @@
 
 #include <utility>
 
+#include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
+
 namespace sysid {
 
 Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, std::string const& channel, double nmse,
@@ -15,8 +18,9 @@ Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, s
 }
 
 double as_bad_as_the_mean(std::size_t samples) {
-  constexpr double excess = 13.8;
-  return 100 * (1 + excess / static_cast<double>(samples));
+  constexpr double by_chance = 1e-3;
+  if (samples < 2) return infinity;
+  return 100 * elementary::pow(by_chance, -2 / static_cast<double>(samples - 1));
 }
 
 }  // namespace sysid
