@@ -134,3 +134,39 @@ TEST_CASE("what is declared as a pure number takes an angle, a share of the nois
   CHECK(count.find("number of radians") != std::string::npos);
   CHECK(count.find("remove the unit") == std::string::npos);
 }
+
+TEST_CASE("a factor of an equation that has the size of the unit of another factor converts twice") {
+  auto const in_equation = [](std::string const& spring) {
+    return messages(
+        "model m {\ninput x [N]\nstate y [mm]\ninitial y = 0, y' = 0\nparameter k [N/mm] ~ log_uniform(1, 100)\n"
+        "parameter tau [min] ~ log_uniform(1, 100)\nparameter c [N s/m] ~ log_uniform(1, 100)\n1 [kg]*y'' + " +
+        spring + " = x\nobserve d ~ normal(y, sd = 0.1)\nderive t [s] = tau\nderive s = c*1 [m/N] + k*0\n}\n");
+  };
+  for (auto const& [spring, cure] : {std::pair("c*y' + 1000*k*y", "write `k*y`"),
+                                     {"k*y + c*y/(60*tau)", "write `c*y/tau`"},
+                                     {"c*y' + 0.001*y*c/1 [s]", "write `y*c/1 [s]`"}}) {
+    CAPTURE(spring);
+    std::string const said = in_equation(spring);
+    CHECK(said.find("warning[E2214]") != std::string::npos);
+    CHECK(said.find(cure) != std::string::npos);
+  }
+  for (char const* const spring : {"c*y' + k*y", "c*y' + 3*k*y", "1000*c*y' + k*y", "c*y' + k*y*(1 + 1000*y/1 [km])"}) {
+    CAPTURE(spring);
+    CHECK(in_equation(spring).find("E2214") == std::string::npos);
+  }
+}
+
+TEST_CASE("a number inside a sine that is one of degrees is in radians, which is said") {
+  for (auto const& [statement, cure] :
+       {std::pair("derive a = sin(45)", "`45 [deg]`"), {"derive a = cos(f*T + 90)", "`90 [deg]`"}, {"derive a = sin(-30)", "`30 [deg]`"}}) {
+    CAPTURE(statement);
+    std::string const said = with(statement);
+    CHECK(said.find("warning[E2213]") != std::string::npos);
+    CHECK(said.find(cure) != std::string::npos);
+  }
+  for (char const* const statement : {"derive a = sin(1.5)", "derive a = cos(f*T + 2)", "derive a = sin(90 [deg] + phi)",
+                                      "derive a = exp(-30)", "derive a = sin(f*T + 100)", "derive a = sin(30*f*T)"}) {
+    CAPTURE(statement);
+    CHECK(with(statement).find("E2213") == std::string::npos);
+  }
+}

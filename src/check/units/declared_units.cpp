@@ -300,6 +300,11 @@ bool DeclaredUnits::used_as_angular(ast::Expression const* cycles, Unit const& o
          });
 }
 
+Unit const* DeclaredUnits::unit_of(std::string const& name) const {
+  auto const found = std::ranges::find(declared_, name, &DeclaredUnit::name);
+  return found == declared_.end() ? nullptr : &found->unit;
+}
+
 std::string DeclaredUnits::frequency_in(ast::Expression const& tree) const {
   for (std::string const& name : names_in(tree))
     for (DeclaredUnit const& each : declared_)

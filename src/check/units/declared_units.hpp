@@ -60,6 +60,8 @@ class DeclaredUnits {
   /// -omega y). A displacement per revolution times a speed in Hz is a flow: a frequency alone is no mistake. Null for a
   /// declaration.
   bool used_as_angular(ast::Expression const* cycles, Unit const& ours, ast::Expression const* other, Unit const& theirs) const;
+  /// Of a declared name; null where it has no unit.
+  Unit const* unit_of(std::string const& name) const;
   /// A name declared in a unit that counts cycles; empty without one.
   std::string frequency_in(ast::Expression const& tree) const;
 

@@ -174,7 +174,21 @@ bool UnitCheck::hint_converted_twice(std::span<UnitOperand const> operands) {
         return true;
       }
     }
-    if (converted_angle(each, false)) return true;
+    if (converted_angle(each, false) || (declared == operands.end() && converted_factor(each))) return true;
+  }
+  return false;
+}
+
+// `1000*k*y` with k in [N/mm], among terms of an equation. Of a pure number the number itself may be wanted.
+bool UnitCheck::converted_factor(UnitOperand const& operand) {
+  for (ProductFactor const& factor : product_factors(*operand.tree)) {
+    auto const* name = std::get_if<ast::Reference>(&factor.tree->node);
+    Unit const* const unit = name == nullptr ? nullptr : declared_.unit_of(name->name.text);
+    if (unit == nullptr || !is_scaled(*unit) || unit->dimension == Dimension{}) continue;
+    auto const taken = taken_from_product(*operand.tree, factor.divides ? 1 / unit->scale : unit->scale);
+    if (!taken) continue;
+    report(errors::factor_converted(operand.value.span, taken->factor, name->name.text, words(*unit), taken->sign + taken->rest));
+    return true;
   }
   return false;
 }

@@ -48,6 +48,8 @@ Diagnostic degrees_as_radians(Span number, std::string const& function, std::str
 /// factor: what the declared unit does already; written: the product without it.
 Diagnostic converted_twice(Label shown, Label declared, std::string const& factor, std::string const& unit,
                            std::string const& written);
+Diagnostic factor_converted(Span shown, std::string const& factor, std::string const& name, std::string const& unit,
+                            std::string const& written);
 Diagnostic angle_converted(Span shown, std::string const& factor, std::string const& written);
 
 /// Quantities whose units do not agree, as an error.
