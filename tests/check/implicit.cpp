@@ -107,3 +107,17 @@ TEST_CASE("in discrete time a step back that is implicit is solved in silence, a
   CHECK(refused_model(start + "u - lag(u, 1) = a*u\n" + rest).empty());
   CHECK(refused_model(start + "u = a*u + x\n" + rest).find("warning[E3114]") != std::string::npos);
 }
+
+TEST_CASE("an initial value of what the equations give is warned of where they contradict it, and only there") {
+  auto const said = [](std::string const& given) {
+    return refused_model("state y [m], F [N]\nparameter k [N/m] ~ log_uniform(10, 1000)\ninitial y = 0.1, y' = 0, F = " + given +
+                         "\nF = k*y\n1 [kg]*y'' + F = 0\nobserve d ~ normal(y, sd = 0.01)\n");
+  };
+  CHECK(said("5").find("warning[E3021]") != std::string::npos);
+  CHECK(said("2*k*0.1 [m]").find("warning[E3021]") != std::string::npos);
+  CHECK(said("k*0.1 [m]").empty());
+  CHECK(said("0").empty());  // a place holder
+  CHECK(refused_model("input x [N]\nstate y [m], F [N]\nparameter k [N/m] ~ log_uniform(10, 1000)\n"
+                      "initial y = 0.1, y' = 0, F = 5\nF = k*y + x\n1 [kg]*y'' + F = 0\nobserve d ~ normal(y, sd = 0.01)\n")
+            .empty());  // depends on the record
+}

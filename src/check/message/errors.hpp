@@ -102,6 +102,7 @@ Diagnostic input_of_exact_solver(Span input, std::string const& name, Span optio
 Diagnostic constraint_of_input(ast::Equation const& equation, std::string const& input);
 Diagnostic constraint_of_unknown(ast::Equation const& equation, std::string const& unknown);
 Diagnostic start_off_constraint(Span equation, Span initial);
+Diagnostic start_not_used(Span initial, std::string const& unknown);
 Diagnostic estimated_start_of_constraint(Span start, Span equation);
 Diagnostic undetermined(Span declaration, std::string const& unknown);
 Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order);

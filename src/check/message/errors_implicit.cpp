@@ -103,6 +103,16 @@ Diagnostic start_off_constraint(Span equation, Span initial) {
   return result;
 }
 
+Diagnostic start_not_used(Span initial, std::string const& unknown) {
+  return about({unknown}, {Severity::warning,
+                           "E3021",
+                           fmt::format("this initial value is not used: the equations give `{}` another one at the start", unknown),
+                           Label{initial, {}},
+                           {},
+                           fmt::format("remove it, and choose the initial values of the states from which `{}` follows", unknown),
+                           {}});
+}
+
 Diagnostic estimated_start_of_constraint(Span start, Span equation) {
   Diagnostic result{Severity::error,  "E3018", "an estimated start would violate a constraint between the states",
                     Label{start, {}}, {},      "use `start = record`, with parameters for unknown initial values"};

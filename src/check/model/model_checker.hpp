@@ -118,6 +118,8 @@ class ModelChecker {
   errors::StartValue start_of_temperature(State const& state, std::set<std::string> const& read) const;
   // Where the search for an unknown's first value begins.
   void guess(ast::InitialValue const& initial, Unknown& unknown);
+  // Initial values of unknowns that the equations give otherwise.
+  void unused_starts(std::vector<NodeId> const& initial);
   // Equations that were differentiated must hold at the start.
   void constraints();
 
@@ -162,6 +164,12 @@ class ModelChecker {
   ast::TimeDeclaration const* first_time_ = nullptr;
   ast::DiscreteTimeDeclaration const* first_discrete_ = nullptr;
   std::vector<ast::ParameterDeclaration const*> parameter_trees_;
+  struct GivenUnknown {
+    std::size_t unknown;
+    NodeId value;
+    Span span;
+  };
+  std::vector<GivenUnknown> given_unknowns_;         // by `initial`
   std::vector<NodeId> highest_;                      // solutions for the unknowns; none for an implicit model
   std::vector<Invariant> constraints_;               // of every differentiation
   bool orders_doubtful_ = false;                     // after a mistake in the units of an equation: a prime may be missing there

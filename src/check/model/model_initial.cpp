@@ -194,10 +194,23 @@ void ModelChecker::guess(ast::InitialValue const& initial, Unknown& unknown) {
   }
   auto const value = scope_.expression_in(unknown.unit, unknown.span, *initial.value, {Occasion::Kind::declared, unknown.name});
   if (!value) return;
-  if (moving_part(model_.graph, value->node).empty())
-    unknown.guess = adapt(model_.graph, *value, unknown.unit);
-  else
+  if (!moving_part(model_.graph, value->node).empty()) {
     diagnostics_.add(errors::initial_moves(initial.value->span));
+    return;
+  }
+  unknown.guess = adapt(model_.graph, *value, unknown.unit);
+  if (!model_.implicit)
+    given_unknowns_.push_back({static_cast<std::size_t>(&unknown - model_.unknowns.data()), unknown.guess, initial.span});
+}
+
+void ModelChecker::unused_starts(std::vector<NodeId> const& initial) {
+  Graph& graph = model_.graph;
+  for (GivenUnknown const& each : given_unknowns_) {
+    if (graph.is_constant(each.value, 0)) continue;  // stands for no value
+    NodeId const difference = graph.subtract(each.value, highest_[each.unknown]);
+    if (violated_at_start(model_, {difference, constraint_size(graph, difference), each.span}, initial))
+      diagnostics_.add(errors::start_not_used(each.span, model_.unknowns[each.unknown].name));
+  }
 }
 
 void ModelChecker::constraints() {
@@ -205,6 +218,7 @@ void ModelChecker::constraints() {
   each<ast::InitialDeclaration>([&](ast::InitialDeclaration const& declaration) { given = given.value_or(declaration.span); });
   std::vector<NodeId> initial;
   for (State const& state : model_.states) initial.push_back(state.initial);
+  unused_starts(initial);
   std::set<std::size_t> seen;
   for (Invariant const& constraint : constraints_) {
     bool const original = seen.insert(constraint.span.begin).second;
