@@ -72,6 +72,7 @@ class DistributionChecker {
     use_.upper = bound(upper_, "upper");
     if (!good_ || use_.arguments.size() != row_.arguments.size()) return std::nullopt;
     if (!unit_fits() || !arguments_fit() || !bounds_fit()) return std::nullopt;
+    doubt_width_of_logarithm();
     return use_;
   }
 
@@ -179,10 +180,24 @@ class DistributionChecker {
     }
   }
 
+  bool is_of_logarithm() const { return std::ranges::any_of(row_.arguments.front().spellings, &Spelling::logarithm); }
+
+  /// `sd = 15` of a logarithm: more than any prior that is meant to be vague.
+  void doubt_width_of_logarithm() {
+    constexpr double absurd = 10;
+    if (!is_of_logarithm() || use_.arguments.size() < 2 || given_[1].value == nullptr) return;
+    if (auto const width = graph_.constant_value(use_.arguments[1]); width && *width > absurd)
+      diagnostics_.add(errors::wide_logarithm(given_[1].span, name_, std::string(given_[1].spelling->name), unparse(*given_[1].value)));
+  }
+
   /// `variance = sigma` of a sigma in the unit of an sd: by the spelling that has its unit, or as the power that was asked for.
   std::vector<std::pair<Dimension, std::string>> other_spellings(Given const& given, ArgumentRow const& row) const {
     std::vector<std::pair<Dimension, std::string>> cures;
     if (!variate_.unit || variate_.unit->dimensionless()) return cures;
+    if (is_of_logarithm() && given.spelling->unit_power == 0)
+      cures.emplace_back(variate_.unit->dimension,
+                         fmt::format("it is the {} of the natural logarithm, a pure number: `{} = 0.1` is about 10 %",
+                                     given.spelling->name, given.spelling->name));
     for (Spelling const& other : row.spellings)
       if (other.unit_power != given.spelling->unit_power && other.unit_power != 0)
         cures.emplace_back(unit_of_argument(variate_.unit, other.unit_power)->dimension, as_other_spelling(given, other));

@@ -81,6 +81,7 @@ Diagnostic never_allowed(Span span, std::string const& distribution, std::string
                          std::vector<std::string> const& names);
 /// of: "sd of `y`".
 Diagnostic width_below_zero(Span parameter, std::string const& name, std::string const& of);
+Diagnostic wide_logarithm(Span width, std::string const& distribution, std::string const& spelling, std::string const& written);
 Diagnostic no_mass(Span span, std::string const& distribution);
 Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit);
 Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit);

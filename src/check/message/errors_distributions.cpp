@@ -364,6 +364,18 @@ Diagnostic width_below_zero(Span parameter, std::string const& name, std::string
   return result;
 }
 
+Diagnostic wide_logarithm(Span width, std::string const& distribution, std::string const& spelling, std::string const& written) {
+  Diagnostic result = about(
+      {distribution},
+      error("E2121", width,
+            fmt::format("`{} = {}` of `{}` is that of the natural logarithm: a factor of more than 20000 in either direction", spelling,
+                        written, distribution),
+            fmt::format("10 % is `{0} = 0.1`, a factor of 2 `{0} = 0.7`; a width in the unit of the quantity is that of `normal`",
+                        spelling)));
+  result.severity = Severity::warning;
+  return result;
+}
+
 Diagnostic no_mass(Span span, std::string const& distribution) {
   return about({distribution}, error("E2115", span, fmt::format("`{}` has no probability between its bounds", distribution),
                                      "widen `lower` and `upper`, or move the distribution"));
