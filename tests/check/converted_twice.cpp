@@ -170,3 +170,15 @@ TEST_CASE("a number inside a sine that is one of degrees is in radians, which is
     CHECK(with(statement).find("E2213") == std::string::npos);
   }
 }
+
+TEST_CASE("a named number without a unit beside millimetres is in metres, which is said") {
+  auto const said = [](std::string const& constant, std::string const& force) {
+    return messages("model m {\nstate y [mm]\ninitial y = 1, y' = 0\nparameter k [N/m] ~ log_uniform(1, 100)\n" + constant +
+                    "\n1 [kg]*y'' + " + force + " = 0\nobserve d ~ normal(y, sd = 0.1)\n}\n");
+  };
+  std::string const stop = "k*max(y - gap, 0)";
+  CHECK(said("let gap = 0.1", stop).find("declare `gap` in [mm] or in [m]") != std::string::npos);
+  CHECK(said("let gap [mm] = 0.1", stop).empty());
+  CHECK(said("let gap = 0", stop).empty());
+  CHECK(said("let gap [mm] = 0.1", "k*max(y - 0.1, 0)").find("E2213") == std::string::npos);
+}

@@ -19,6 +19,7 @@ struct UnitOperand {
   ast::Expression const* tree = nullptr;
   int side = 0;  // of an equation: 0 left, 1 right
 };
+inline bool is_known(UnitOperand const& operand) { return operand.value.kind == Typed::Kind::known; }
 
 /// Why things must have one unit.
 struct Occasion {
@@ -88,6 +89,7 @@ class UnitCheck {
   // in_function: an argument of one that takes an angle.
   bool converted_angle(UnitOperand const& operand, bool in_function);
   bool converted_factor(UnitOperand const& operand);
+  void hint_constants(std::span<UnitOperand const> operands);
   void hint_degrees(std::string const& function, UnitOperand const& argument);
   void hint_bare_numbers(std::span<UnitOperand const> operands);
   Label unit_label(UnitOperand const& operand) const;

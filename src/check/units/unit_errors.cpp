@@ -155,6 +155,11 @@ Diagnostic number_beside(Span number, Label other, bool angle, std::string const
             fmt::format("`{}` has no unit: beside what is in [{}] it is {}", text, unit, angle ? "in radians" : "a pure number"),
             help);
 }
+Diagnostic constant_beside(Span constant, Label other, std::string const& name, std::string const& unit, std::string const& base) {
+  return errors::about({name}, at(Severity::warning, "E2213", {constant, fmt::format("in [{}]", base)}, {std::move(other)},
+                                  fmt::format("`{}` has no unit: beside what is in [{}] it is in [{}]", name, unit, base),
+                                  fmt::format("declare `{}` in [{}] or in [{}]", name, unit, base)));
+}
 Diagnostic degrees_as_radians(Span number, std::string const& function, std::string const& text) {
   return errors::about({function}, at(Severity::warning, "E2213", {number, "in radians"}, {},
                                       fmt::format("`{}` has no unit: in `{}` it counts radians", text, function),

@@ -43,6 +43,8 @@ Diagnostic cycles_in_angle(Span argument, std::string const& function);
 /// Warnings. A bare number beside what is in a dimensionless unit; name: of the constant that it is, "1" for an expression.
 Diagnostic number_beside(Span number, Label other, bool angle, std::string const& text, std::string const& unit,
                          std::string const& name);
+/// Of a named number without a unit beside what is in `unit`; base: the unit that it has then.
+Diagnostic constant_beside(Span constant, Label other, std::string const& name, std::string const& unit, std::string const& base);
 /// Of a number in an angle: 45 in `sin(45)`.
 Diagnostic degrees_as_radians(Span number, std::string const& function, std::string const& text);
 /// factor: what the declared unit does already; written: the product without it.
