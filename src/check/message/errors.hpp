@@ -226,6 +226,7 @@ Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, 
 Diagnostic prediction_without_lags(Span span, std::string const& model, bool random);
 Diagnostic nothing_measured_to_predict_from(Span span, std::string const& model);
 Diagnostic other_step(Span span, double given, double declared, std::string const& model);
+Diagnostic value_outside_prior(Span value, std::string const& name, Span parameter);
 Diagnostic task_too_late(ast::Name const& name);
 
 // candidate models and their selection (E65)

@@ -359,6 +359,14 @@ Diagnostic solver_of_nothing(Span option, std::string const& subject) {
   return result;
 }
 
+Diagnostic value_outside_prior(Span value, std::string const& name, Span parameter) {
+  Diagnostic result = about({name}, conflict("E6020", value, "this value", parameter, "its prior",
+                                             fmt::format("this value of `{}` is outside the bounds of its prior", name),
+                                             "check the value and its unit, or widen the prior: a fit of this model cannot find it"));
+  result.severity = Severity::warning;
+  return result;
+}
+
 Diagnostic task_too_late(ast::Name const& name) {
   Diagnostic result = about({name.text}, error("E6012", name.span, fmt::format("task `{}` comes later in the file", name.text),
                                                "tasks run in the order of the file: move that task before this one"));

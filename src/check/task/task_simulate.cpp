@@ -195,6 +195,18 @@ void TaskChecker::complete_simulation(SimulateOptions const& options) {
       if (options.given[i]) check_band(task.inputs[i], task, options.places[i], diagnostics_);
 }
 
+namespace {
+
+/// Beyond bounds that are numbers.
+bool outside(Graph graph, Distribution const& prior, double value) {
+  Support const bounds = support(graph, prior);
+  auto const number = [&](std::optional<NodeId> const& bound) { return bound ? graph.constant_value(*bound) : std::nullopt; };
+  auto const lower = number(bounds.lower), upper = number(bounds.upper);
+  return (lower && value < *lower) || (upper && value > *upper);
+}
+
+}  // namespace
+
 void TaskChecker::values(ast::Call const& call, Model const& model, SimulateTask& task) {
   std::vector<std::string> known;
   for (Parameter const& parameter : model.parameters) known.push_back(parameter.name);
@@ -204,7 +216,11 @@ void TaskChecker::values(ast::Call const& call, Model const& model, SimulateTask
       return;
     }
     std::optional<Unit> const& unit = model.parameters[index].unit;
-    if (auto const value = options_.number(argument.value, argument.name->text, unit, -1e300, 1e300)) task.values[index] = *value;
+    auto const value = options_.number(argument.value, argument.name->text, unit, -1e300, 1e300);
+    if (!value) return;
+    task.values[index] = *value;
+    if (model.parameters[index].prior && outside(model.graph, *model.parameters[index].prior, *value))
+      diagnostics_.add(errors::value_outside_prior(argument.span, argument.name->text, model.parameters[index].span));
   });
 }
 
