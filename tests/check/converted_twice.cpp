@@ -182,3 +182,20 @@ TEST_CASE("a named number without a unit beside millimetres is in metres, which 
   CHECK(said("let gap = 0", stop).empty());
   CHECK(said("let gap [mm] = 0.1", "k*max(y - 0.1, 0)").find("E2213") == std::string::npos);
 }
+
+TEST_CASE("the numbers of a prior that look like those of the other unit of angles are doubted") {
+  auto const of_prior = [](std::string const& parameter) {
+    return messages("model m {\nstate y\ninitial y = 1, y' = 0\nparameter " + parameter +
+                    "\ny'' + y*cos(lean)/1 [s^2] = 0\nobserve d ~ normal(y, sd = 0.1)\n}\n");
+  };
+  for (char const* const wrong : {"lean [rad] ~ uniform(-180, 180)", "lean [rad] ~ normal(45, sd = 5)", "lean [deg] ~ uniform(0, 2*pi)",
+                                  "lean [deg] ~ normal(pi/4, sd = 0.1)"}) {
+    CAPTURE(wrong);
+    CHECK(of_prior(wrong).find("warning[E2213]") != std::string::npos);
+  }
+  for (char const* const right : {"lean [rad] ~ uniform(-pi, pi)", "lean [deg] ~ uniform(-180, 180)", "lean [rad] ~ normal(0.8, sd = 0.1)",
+                                  "lean [rad] ~ uniform(0, 180 [deg])", "lean ~ uniform(0, 45)"}) {
+    CAPTURE(right);
+    CHECK(of_prior(right).find("E2213") == std::string::npos);
+  }
+}

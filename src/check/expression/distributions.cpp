@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "check/expression/leaves.hpp"
+#include "check/expression/doubtful_arguments.hpp"
 #include "check/expression/log_normal.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_numbers.hpp"
@@ -72,7 +73,7 @@ class DistributionChecker {
     use_.upper = bound(upper_, "upper");
     if (!good_ || use_.arguments.size() != row_.arguments.size()) return std::nullopt;
     if (!unit_fits() || !arguments_fit() || !bounds_fit()) return std::nullopt;
-    doubt_width_of_logarithm();
+    doubt_arguments();
     return use_;
   }
 
@@ -180,14 +181,17 @@ class DistributionChecker {
     }
   }
 
-  bool is_of_logarithm() const { return std::ranges::any_of(row_.arguments.front().spellings, &Spelling::logarithm); }
+  bool is_of_logarithm() const { return sysid::is_of_logarithm(row_); }
 
-  /// `sd = 15` of a logarithm: more than any prior that is meant to be vague.
-  void doubt_width_of_logarithm() {
-    constexpr double absurd = 10;
-    if (!is_of_logarithm() || use_.arguments.size() < 2 || given_[1].value == nullptr) return;
-    if (auto const width = graph_.constant_value(use_.arguments[1]); width && *width > absurd)
-      diagnostics_.add(errors::wide_logarithm(given_[1].span, name_, std::string(given_[1].spelling->name), unparse(*given_[1].value)));
+  void doubt_arguments() {
+    for (std::size_t i = 0; i < given_.size(); ++i)
+      if (given_[i].value != nullptr) {
+        WrittenArgument const written{*given_[i].value, *given_[i].spelling, given_[i].span};
+        if (auto doubt = doubtful_angle(written, variate_)) return diagnostics_.add(std::move(*doubt));
+        if (i > 0 && is_of_logarithm())
+          if (auto doubt = doubtful_width_of_logarithm(written, graph_.constant_value(use_.arguments[i]), name_))
+            return diagnostics_.add(std::move(*doubt));
+      }
   }
 
   /// `variance = sigma` of a sigma in the unit of an sd: by the spelling that has its unit, or as the power that was asked for.

@@ -82,6 +82,9 @@ Diagnostic never_allowed(Span span, std::string const& distribution, std::string
 /// of: "sd of `y`".
 Diagnostic width_below_zero(Span parameter, std::string const& name, std::string const& of);
 Diagnostic wide_logarithm(Span width, std::string const& distribution, std::string const& spelling, std::string const& written);
+/// A number of an angle in `unit` that looks like one in `meant`.
+Diagnostic angle_in_other_unit(Span argument, std::string const& text, std::string const& name, std::string const& unit,
+                               std::string const& meant);
 Diagnostic no_mass(Span span, std::string const& distribution);
 Diagnostic unit_of_share(Span span, std::string const& distribution, std::string const& unit);
 Diagnostic unit_of_count(Span span, std::string const& distribution, std::string const& unit);

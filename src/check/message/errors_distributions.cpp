@@ -376,6 +376,15 @@ Diagnostic wide_logarithm(Span width, std::string const& distribution, std::stri
   return result;
 }
 
+Diagnostic angle_in_other_unit(Span argument, std::string const& text, std::string const& name, std::string const& unit,
+                               std::string const& meant) {
+  Diagnostic result = about({name}, error("E2213", argument, fmt::format("`{}` is in [{}], as `{}` is", text, unit, name),
+                                          fmt::format("if it is in [{0}], declare `{1}` in [{0}]; an equation takes it as it is", meant,
+                                                      name)));
+  result.severity = Severity::warning;
+  return result;
+}
+
 Diagnostic no_mass(Span span, std::string const& distribution) {
   return about({distribution}, error("E2115", span, fmt::format("`{}` has no probability between its bounds", distribution),
                                      "widen `lower` and `upper`, or move the distribution"));
