@@ -68,6 +68,8 @@ class DeclaredUnits {
  private:
   // A pound or a kilogram in place of its weight; empty where `g` may have been forgotten, or the mass is needed elsewhere.
   std::string by_weight(ast::Expression const& odd, Wanted const& wanted) const;
+  // Of a bare number in a product, so that the numbers of the text keep their meaning: [kN/mm] of `0.5*x` beside what is in kN.
+  std::string unit_of_number(ast::Expression const& odd, Wanted const& wanted) const;
   std::string by_inverse(ast::Expression const& odd, Dimension const& missing) const;
   // The term as it is declared, with another factor. what: is to be changed, "this" or "this term"; in_text: it is an expression,
   // no declaration; but: names that the factor must not be.
