@@ -197,6 +197,15 @@ ColumnNeeds needs_of(RecordRequest const& request) {
   return needs;
 }
 
+/// Of independent rows, which are read where they stand. A signal has an interval, though one row has none.
+InputSignal signal_of_rows(InputRule rule, std::vector<double> samples) {
+  int const rows = static_cast<int>(samples.size());
+  if (rows == 1) samples.push_back(samples.front());
+  std::vector<double> counted;
+  for (std::size_t i = 0; i < samples.size(); ++i) counted.push_back(static_cast<double>(i + 1));
+  return InputSignal(rule, std::move(counted), std::move(samples)).view(0, rows);
+}
+
 /// What has a time has steps.
 int fewest_rows(RecordRequest const& request) { return request.independent_rows ? 1 : 2; }
 
@@ -242,14 +251,15 @@ std::optional<Record> read_record(RecordRequest const& request, RecordFile const
         data_errors::too_few_rows(file.name(), static_cast<int>(time->size()), fewest_rows(request), request.mention));
     return std::nullopt;
   }
-  // Inputs of independent rows are read at rows alone.
-  std::vector<double> rows(time ? time->size() : 0);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i + 1);
   for (std::size_t i = 0; i < inputs.size() && time; ++i) {
     InputRequest const& input = request.inputs[i];
     if (!inputs[i]) continue;
-    auto signal = keep([&] { return InputSignal(input.rule, request.independent_rows ? rows : *time, std::move(*inputs[i])); },
-                       input.mention);
+    auto signal = keep(
+        [&] {
+          return request.independent_rows ? signal_of_rows(input.rule, std::move(*inputs[i]))
+                                          : InputSignal(input.rule, *time, std::move(*inputs[i]));
+        },
+        input.mention);
     if (signal) record.inputs.push_back(std::move(*signal));
   }
   if (!complete_record) return std::nullopt;
