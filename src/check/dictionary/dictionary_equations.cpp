@@ -111,7 +111,8 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
       return;
     }
   }
-  if (!term.factors.powers.empty() && term.factors.proportional(factors_of(out_.numbers.graph, split.known))) {
+  if (split.free.empty() && !out_.numbers.discrete && !term.factors.powers.empty() &&
+      term.factors.proportional(factors_of(out_.numbers.graph, split.known))) {
     Target const& target = targets_[static_cast<std::size_t>(index)];
     auto const* name = std::get_if<ast::Reference>(&target.tree->node);
     bool const rate = name != nullptr && name->primes == 0 && !out_.numbers.discrete && find_state(name->name.text) != nullptr;
