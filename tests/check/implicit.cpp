@@ -104,7 +104,7 @@ TEST_CASE("in discrete time a step back that is implicit is solved in silence, a
   std::string const rest = "parameter a ~ uniform(0, 1)\nobserve d ~ normal(u, sd = 1)\n";
   std::string const start = "time discrete 1 [s]\ninput x\nstate u\ninitial u = 0\n";
   CHECK(refused_model(start + "u = lag(u, 1) + a*(x - u)\n" + rest).empty());
-  CHECK(refused_model(start + "u - lag(u, 1) = a*u\n" + rest).empty());
+  CHECK(refused_model(start + "u - lag(u, 1) = a*u + x\n" + rest).empty());
   CHECK(refused_model(start + "u = a*u + x\n" + rest).find("warning[E3114]") != std::string::npos);
 }
 

@@ -79,8 +79,8 @@ Diagnostic bad_arguments(Span span, std::string const& distribution, std::string
 /// names: of the parameters that the argument reads.
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
                          std::vector<std::string> const& names);
-/// of: "sd of `y`".
-Diagnostic width_below_zero(Span parameter, std::string const& name, std::string const& of);
+/// argument: "sd"; of: what has it.
+Diagnostic width_below_zero(Span parameter, std::string const& name, std::string const& argument, std::string const& of);
 Diagnostic wide_logarithm(Span width, std::string const& distribution, std::string const& spelling, std::string const& written);
 /// A number of an angle in `unit` that looks like one in `meant`.
 Diagnostic angle_in_other_unit(Span argument, std::string const& text, std::string const& name, std::string const& unit,

@@ -135,7 +135,7 @@ class ModelChecker {
   // --- model_widths.cpp
   void positive_widths();
   // Of a parameter that is a width and whose prior gives more than next to nothing to negative values.
-  void report_negative_width(NodeId width, std::string const& of);
+  void report_negative_width(NodeId width, std::string const& argument, std::string const& of);
   std::vector<std::string> parameters_of(NodeId root) const;
 
   // --- model_samples.cpp

@@ -224,7 +224,7 @@ void ModelChecker::positive_laws(ValueRanges& ranges) {
     ValueRange const range = ranges.of(each.node);
     Disturbance const& disturbance = model_.disturbances[each.disturbance];
     if (!range.empty && range.high > 0) {
-      report_negative_width(each.node, fmt::format("{} of `{}`", each.argument, disturbance.name));
+      report_negative_width(each.node, each.argument, disturbance.name);
       continue;
     }
     diagnostics_.add(errors::law_never_positive(disturbance.span, disturbance.name, each.argument, parameters_of(each.node)));

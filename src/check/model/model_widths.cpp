@@ -1,7 +1,5 @@
 // Widths that are invalid for all values of a prior, because every draw would have zero likelihood; and those whose prior reaches
 // below zero.
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "check/expression/value_range.hpp"
@@ -31,14 +29,14 @@ double negative_share(Graph& graph, Distribution const& prior) {
 
 }  // namespace
 
-void ModelChecker::report_negative_width(NodeId width, std::string const& of) {
+void ModelChecker::report_negative_width(NodeId width, std::string const& argument, std::string const& of) {
   constexpr double hardly_any = 0.01;
   Node const& node = model_.graph[width];
   if (!is_leaf(node, LeafKind::parameter)) return;
   Parameter const& parameter = model_.parameters[static_cast<std::size_t>(node.index)];
   if (!parameter.prior || !(negative_share(model_.graph, *parameter.prior) > hardly_any)) return;
   if (!negative_widths_.insert(parameter.name).second) return;
-  diagnostics_.add(errors::width_below_zero(parameter.span, parameter.name, of));
+  diagnostics_.add(errors::width_below_zero(parameter.span, parameter.name, argument, of));
 }
 
 std::vector<std::string> ModelChecker::parameters_of(NodeId root) const {
@@ -57,7 +55,7 @@ void ModelChecker::positive_widths() {
         diagnostics_.add(
             errors::never_allowed(variate.span, std::string(use.row->name), variate.name, reason, parameters_of(use.arguments[i])));
       else if (!never_allowed(*use.row, i, {-1, -1}).empty())
-        report_negative_width(use.arguments[i], fmt::format("{} of `{}`", use.row->arguments[i].spellings.front().name, variate.name));
+        report_negative_width(use.arguments[i], std::string(use.row->arguments[i].spellings.front().name), variate.name);
     }
   };
   for (Parameter const& parameter : model_.parameters)
@@ -73,7 +71,7 @@ void ModelChecker::positive_widths() {
           NodeId const node = kernel.hyper_parameters[k++];
           ValueRange const range = ranges.of(node);
           if (!range.empty && range.high > 0) {
-            report_negative_width(node, fmt::format("{} of `{}`", row.name, process.name));
+            report_negative_width(node, std::string(row.name), process.name);
             continue;
           }
           diagnostics_.add(

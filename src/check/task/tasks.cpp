@@ -52,7 +52,7 @@ void TaskChecker::explain_subject(Diagnostic& unknown) const {
   char const* kind = nullptr;
   if (names_.dictionaries.contains(name)) verb = "discover", kind = "dictionary";
   if (names_.candidates.contains(name)) verb = "select", kind = "set of candidates";
-  if (names_.models.contains(name)) verb = "fit", kind = "model";
+  if (names_.models.contains(name) && tree_.verb.text != "discover") verb = "fit", kind = "model";
   if (verb != nullptr) unknown.help = errors::verb_of_subject(tree_, kind, verb);
 }
 

@@ -191,7 +191,8 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
     bool const coefficient = std::any_of(declared_.begin(), declared_.end(), [&](DeclaredUnit const& each) {
       return !each.moves && std::find(used.begin(), used.end(), each.name) != used.end();
     });
-    if (number != nullptr && !coefficient && !used.empty()) return errors::tag_the_number(unparse(*number), unit_of_number(*odd, wanted));
+    if (number != nullptr && !coefficient && !used.empty())
+      return errors::tag_the_number(unparse(*number), unit_of_number(*odd, wanted));
   }
   if (odd != nullptr && !pure)
     if (std::string inverse_meant = by_inverse(*odd, missing); !inverse_meant.empty()) return inverse_meant;
@@ -225,14 +226,19 @@ std::string DeclaredUnits::cure(ast::Expression const* odd, Wanted const& wanted
 std::string DeclaredUnits::unit_of_number(ast::Expression const& odd, Wanted const& wanted) const {
   Unit si;
   si.dimension = wanted.missing;
-  auto const simple = [](std::string const& text) { return text.find_first_of(" */^") == std::string::npos; };
+  auto const simple = [](std::string const& text) { return !text.empty() && text.find_first_of(" */^") == std::string::npos; };
   std::vector<std::string> const used = names_in(odd);
   Unit const* const other = used.size() == 1 ? unit_of(used.front()) : nullptr;
-  std::optional<int> const power = used.size() == 1 ? factor_power(odd, used.front()) : std::nullopt;
-  bool const written = other != nullptr && power && *power == 1 && wanted.unit != "-" && !wanted.unit.empty() && simple(wanted.unit);
-  if (!written || !simple(other->text)) return words(si);
-  if (other->dimension == Dimension{} && other->scale == 1) return wanted.unit;
-  return other->text.empty() ? words(si) : wanted.unit + "/" + other->text;
+  if (other == nullptr || (wanted.scale == 1 && other->scale == 1) || !simple(wanted.unit) || !simple(other->text))
+    return words(si);
+  bool rate = false;
+  each_expression(odd, [&](ast::Expression const& part) {
+    auto const* name = std::get_if<ast::Reference>(&part.node);
+    rate = rate || (name != nullptr && name->primes > 0);
+  });
+  std::optional<int> const power = factor_power(odd, used.front());
+  if (rate || !power || *power != 1) return words(si);
+  return other->dimension == Dimension{} && other->scale == 1 ? wanted.unit : wanted.unit + "/" + other->text;
 }
 
 // `c/k` of a rate k, `c*tau` of a time: on the other side of the fraction line the coefficient would fit.

@@ -173,10 +173,10 @@ Diagnostic converted_twice(Label shown, Label declared, std::string const& facto
 }
 Diagnostic factor_converted(Span shown, std::string const& factor, std::string const& name, std::string const& unit,
                             std::string const& written) {
-  return errors::about({name}, at(Severity::warning, "E2214", {shown, ""}, {},
-                                  fmt::format("`{}` looks like the conversion of `{}` from [{}], which is made automatically", factor,
-                                              name, unit),
-                                  fmt::format("write `{}`, unless `{}` is a factor of the formula itself", written, factor)));
+  return errors::about(
+      {name}, at(Severity::warning, "E2214", {shown, ""}, {},
+                 fmt::format("`{}` looks like the conversion of `{}` from [{}], which is made automatically", factor, name, unit),
+                 fmt::format("write `{}`, unless `{}` is a factor of the formula itself", written, factor)));
 }
 Diagnostic angle_converted(Span shown, std::string const& factor, std::string const& written) {
   return at(Severity::warning, "E2214", {shown, "an angle with a unit"}, {},
