@@ -43,7 +43,7 @@ std::string sampled_well(double a, double q, std::uint64_t seed, double noise = 
   double const step = 0.25 / fine;
   double x = stream.normal();
   std::string text = "t,m\n";
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 200; ++i) {
     text += fmt::format("{},{}\n", 0.25 * i, x + noise * stream.normal());
     for (int k = 0; k < fine; ++k) x += -a * x * x * x * step + std::sqrt(q * step) * stream.normal();
   }

@@ -184,7 +184,7 @@ TEST_CASE("the spread of a population is refused under log_flat, and under flat 
       out += "data " + name + " { file \"" + name + ".csv\"; measure y = y }\n";
       all += (k == 0 ? "" : ", ") + name;
     }
-    return out + "posterior = fit level to " + all + " with mh, seed = 1\n";
+    return out + "posterior = fit level to " + all + " with mh(samples = 400, burn_in = 200, thin = 1), seed = 1\n";
   };
   std::vector<std::pair<std::string, std::string>> files;
   Stream stream({.seed = 12, .purpose = Purpose::test, .index = 0, .step = 0});

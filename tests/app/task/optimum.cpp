@@ -75,7 +75,7 @@ model swing {
   observe position ~ normal(y, sd = sigma)
 }
 data record { file "results/truth/swing.csv"; time t [s]; measure position = position [m] }
-truth = simulate swing with values(k = 150, c = 0.1, sigma = 1e-5), noise = model, samples = 40, rate = 1 [Hz], solver = dopri5(relative = 1e-12), seed = 1, file = "swing.csv"
+truth = simulate swing with values(k = 150, c = 0.1, sigma = 1e-5), noise = model, samples = 25, rate = 1 [Hz], solver = dopri5(relative = 1e-12), seed = 1, file = "swing.csv"
 tight = fit swing to record with map, solver = dopri5(relative = 1e-11), seed = 1
 loose = fit swing to record with map, solver = dopri5(relative = 1e-5), search = near(tight), seed = 1
 )";

@@ -71,7 +71,7 @@ TEST_CASE("particles sample the posterior that the Kalman filter computes") {
   std::string const text = relaxing + "exact = fit relaxing to d with " + short_chain +
                            ", filter = kalman, solver = exponential, seed = 1\ncloud = fit relaxing to d with " + short_chain +
                            ", filter = particle, solver = exponential, seed = 1\n";
-  CaseRun const run(text, {{"d.csv", relaxation(1, 0.5, 3, 60, false)}});
+  CaseRun const run(text, {{"d.csv", relaxation(1, 0.5, 3, 40, false)}});
   json const exact = run.summary("exact"), cloud = run.summary("cloud");
   for (char const* name : {"a", "q"}) {
     CAPTURE(name);
@@ -99,10 +99,10 @@ TEST_CASE("particles sample the posterior that the Kalman filter computes") {
 TEST_CASE("a fit by particles is the same for any threads and lanes, and when it was interrupted") {
   std::string const text =
       relaxing +
-      "cloud = fit relaxing to d with mh(samples = 400, burn_in = 200, thin = 2, chains = 4), filter = particle, "
-      "particles = 60, seed = 1\n";
+      "cloud = fit relaxing to d with mh(samples = 200, burn_in = 100, thin = 2, chains = 4), filter = particle, "
+      "particles = 40, seed = 1\n";
   TemporaryFolder folder;
-  write_file(folder.path() / "d.csv", relaxation(1, 0.5, 3, 30, false));
+  write_file(folder.path() / "d.csv", relaxation(1, 0.5, 3, 20, false));
   RunOptions options;
   options.output = folder.path() / "whole";
   run_text(folder.path() / "case.sysid", text, options);
