@@ -2,6 +2,7 @@
 #include "check/units/declared_units.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <utility>
@@ -229,7 +230,8 @@ std::string DeclaredUnits::unit_of_number(ast::Expression const& odd, Wanted con
   auto const simple = [](std::string const& text) { return !text.empty() && text.find_first_of(" */^") == std::string::npos; };
   std::vector<std::string> const used = names_in(odd);
   Unit const* const other = used.size() == 1 ? unit_of(used.front()) : nullptr;
-  if (other == nullptr || (wanted.scale == 1 && other->scale == 1) || !simple(wanted.unit) || !simple(other->text))
+  auto const is_si = [](double scale) { return std::fabs(scale - 1) < 1e-9; };  // of a product, rounded
+  if (other == nullptr || (is_si(wanted.scale) && is_si(other->scale)) || !simple(wanted.unit) || !simple(other->text))
     return words(si);
   bool rate = false;
   each_expression(odd, [&](ast::Expression const& part) {

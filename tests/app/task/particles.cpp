@@ -113,7 +113,7 @@ TEST_CASE("a fit by particles is the same for any threads and lanes, and when it
   run_text(folder.path() / "case.sysid", text, options);
   CHECK(stored_draws_of(options.output, "cloud") == whole);
   CHECK(read_file(options.output / "cloud/states.csv") == read_file(folder.path() / "whole/cloud/states.csv"));
-  for (std::uint64_t const poll : {20, 150}) {
+  for (std::uint64_t const poll : {20, 60}) {
     CAPTURE(poll);
     options = {};
     options.output = folder.path() / std::to_string(poll);
