@@ -166,7 +166,7 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   conflict.help = cure != occasion.cures.end()
                       ? cure->second
                       : declared_.cure(operands[shown].tree, {conflict.wanted, missing_.back(), false, of_a_number, is_term,
-                                                              std::move(agreeing_trees), wanted.scale});
+                                                              std::move(agreeing_trees), wanted.text.empty() ? 1 : wanted.scale});
   // [g] is the gram.
   static Dimension const acceleration = unit_atom("g_n").value().dimension;
   bool const gram = conflict.wanted == "g" && dimension_of(operands[shown]) == acceleration;
