@@ -59,6 +59,12 @@ constexpr std::string_view of_tasks =
     "a command runs all its tasks of the file, and `--resume` keeps those that are complete; tasks that are run alone have a file "
     "of "
     "their own";
+/// Verbs of other programs.
+constexpr std::pair<std::string_view, std::string_view> other_verbs[] = {
+    {"validate", "check"}, {"verify", "check"},     {"lint", "check"},   {"sample", "fit"},   {"infer", "fit"},
+    {"estimate", "fit"},   {"identify", "fit"},     {"optimize", "fit"}, {"optimise", "fit"}, {"train", "fit"},
+    {"sim", "simulate"},   {"forecast", "predict"}, {"shell", "repl"},   {"console", "repl"}, {"filter", "track"},
+};
 /// Options of other programs, and what there is in their place.
 constexpr std::pair<std::string_view, std::string_view> other_options[] = {
     {"--json", "messages are written as JSON by `--error-format json`; the folder of a task has its results as JSON"},
@@ -122,6 +128,8 @@ ExitCode no_verb(Messages const& messages, CLI::App const& app) {
   for (std::string const& word : app.remaining()) {
     if (word.starts_with('-')) continue;
     std::string guess = did_you_mean(word, verb_names(app));
+    for (auto const& [foreign, ours] : other_verbs)
+      if (word == foreign) guess = fmt::format("did you mean `{}`?", ours);
     if (word.ends_with(".sysid")) guess = fmt::format("the command comes first: `sysid run {}`", word);
     messages.complain(
         fmt::format("there is no command `{}`", word),

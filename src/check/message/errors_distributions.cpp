@@ -152,6 +152,8 @@ constexpr std::array<std::string_view, 6> start_words{"start", "init", "initval"
 constexpr std::array<std::string_view, 6> truncations{"truncated", "truncate",        "trunc",
                                                       "truncnorm", "truncatednormal", "truncated_normal"};
 
+constexpr std::array<std::string_view, 5> points{"delta", "dirac", "point", "fixed", "deterministic"};
+
 /// How a distribution of another name is written here; empty where a guess is as good.
 std::string other_distribution(std::string const& small) {
   if (std::find(truncations.begin(), truncations.end(), small) != truncations.end())
@@ -159,6 +161,11 @@ std::string other_distribution(std::string const& small) {
   if (small == "half_student_t" || small == "half_t")
     return "half of Student's t is written `student_t(0, 3, scale = 1, lower = 0)`";
   if (small == "cauchy") return "write it as Student's t: for `cauchy(0, 0.05)` it is `student_t(0, 1, scale = 0.05)`";
+  if (small == "std_normal" || small == "standard_normal") return "write `normal(0, sd = 1)`";
+  if (std::find(points.begin(), points.end(), small) != points.end())
+    return "a fixed value has no distribution: write `= VALUE` in place of `~`";
+  if (small == "log10_uniform" || small == "log10uniform")
+    return "bounds are values, not logarithms: from -1 to 2 of log10 is `log_uniform(0.1, 100)`";
   if (small.starts_with("log10"))
     return "logarithms are natural: for a mean of -1.5 of log10 write `log_normal(median = 10^-1.5, sd = ...)`, with an sd log(10) "
            "times as large";
@@ -175,6 +182,8 @@ std::string other_argument(ast::Name const& argument, std::string const& distrib
   if (logarithmic && argument.text == "mean")
     return "write `log_mean` for the mean of the logarithm, `median` for the median (half of the values lie below it); "
            "the mean itself is median*exp(sd^2/2)";
+  if (logarithmic && (argument.text == "gsd" || argument.text == "geometric_sd"))
+    return "write `sd` as its logarithm: a factor of 2 is `sd = log(2)`";
   if (logarithmic && argument.text.starts_with("log10"))
     return "logarithms are natural: for a mean of -1.5 of log10 write `median = 10^-1.5`, and an sd log(10) times as large";
   return distribution == "gamma" ? gamma_by_moments(argument) : std::string();

@@ -18,7 +18,6 @@ constexpr Synonym kernel_synonyms[] = {
     {"matern_12", "matern12"},
     {"matern_32", "matern32"},
     {"matern_52", "matern52"},
-    {"matern", "matern52"},
     {"cosine", "periodic"},
     {"exp_sine_squared", "periodic"},
     {"bias", "constant"},
