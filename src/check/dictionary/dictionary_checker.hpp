@@ -84,6 +84,7 @@ class DictionaryChecker {
   StateInfo* find_state(std::string const& name);
   int index_of(std::string const& name) const;
   void require_channels();
+  void refuse_index(ast::Reference const& reference);
   void find_orders();
   // Every derivative that is mentioned is a leaf of its own; none is solved for.
   void lay_out();

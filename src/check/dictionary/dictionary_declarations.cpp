@@ -110,9 +110,16 @@ void DictionaryChecker::require_channels() {
     if (!info.measured) diagnostics_.add(errors::state_without_channel(info.span, name));
 }
 
+void DictionaryChecker::refuse_index(ast::Reference const& reference) {
+  std::optional<Diagnostic> sample;
+  if (out_.numbers.discrete && reference.index.size() == 1)
+    sample = errors::sample_by_index(reference.span, reference.index.front(), {reference.name.text});
+  diagnostics_.add(sample ? std::move(*sample) : errors::index_in_dictionary(reference));
+}
+
 void DictionaryChecker::find_orders() {
   NamesUsed uses(scope_, [&](ast::Reference const& reference) {
-    if (!reference.index.empty()) diagnostics_.add(errors::index_in_dictionary(reference));
+    if (!reference.index.empty()) refuse_index(reference);
     if (StateInfo* state = find_state(reference.name.text)) state->most_primes = std::max(state->most_primes, reference.primes);
     if (reference.primes > 0) primed_.insert(reference.name.text);
   });

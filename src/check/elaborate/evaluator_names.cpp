@@ -44,8 +44,9 @@ std::optional<Diagnostic> Evaluator::sample_index(ast::Reference const& referenc
   bool const discrete = std::any_of(statements.begin(), statements.end(), [](ast::ModelStatement const& each) {
     return std::holds_alternative<ast::DiscreteTimeDeclaration>(each);
   });
-  if (!discrete || reference.index.size() != 1 || whole_number(reference.index.front(), frame.instance.arguments))
-    return std::nullopt;
+  if (!discrete || reference.index.size() != 1) return std::nullopt;
+  bool const negative = std::holds_alternative<ast::Box<ast::Unary>>(reference.index.front().node);
+  if (!negative && whole_number(reference.index.front(), frame.instance.arguments)) return std::nullopt;
   return errors::sample_by_index(reference.span, reference.index.front(), {reference.name.text, is_channel});
 }
 

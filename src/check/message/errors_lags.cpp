@@ -9,9 +9,15 @@
 namespace sysid::errors {
 namespace {
 
-/// k of `t + k`, `t - k`, `t`: what is written with an index that counts samples; nothing for other indices.
+/// k of `t + k`, `t - k`, `t`, -1 of `-1`: what is written with an index that counts samples; nothing for other indices.
 std::optional<int> shift_of(ast::Expression const& index) {
   if (std::holds_alternative<ast::Reference>(index.node)) return 0;
+  if (auto const* minus = std::get_if<ast::Box<ast::Unary>>(&index.node)) {
+    auto const* back = std::get_if<ast::Number>(&(*minus)->operand->node);
+    bool const counts =
+        back != nullptr && !back->unit && back->value > 0 && back->value < 10000 && back->value == std::floor(back->value);
+    return counts ? std::optional(-static_cast<int>(back->value)) : std::nullopt;
+  }
   auto const* sum = std::get_if<ast::Box<ast::Binary>>(&index.node);
   if (sum == nullptr || ((*sum)->symbol != "-" && (*sum)->symbol != "+")) return std::nullopt;
   auto const* count = std::get_if<ast::Number>(&(*sum)->right->node);
@@ -106,11 +112,12 @@ Diagnostic own_sample(Span span, std::string const& channel) {
                                 fmt::format("use a past sample: `lag(measured({}), 1)`", channel)));
 }
 Diagnostic own_sample_in_function(Span call, std::string const& function, std::string const& channel) {
-  return about({function, channel},
-               error("E3108", call, fmt::format("`{}` reads the present sample of `{}`, which it helps to predict", function, channel),
-                     fmt::format("use past samples: `lag(measured({0}), 1)`; a list of lags begins at 1, as in "
-                                 "`lags(measured({0}), 1..4)`",
-                                 channel)));
+  return about(
+      {function, channel},
+      error("E3108", call, fmt::format("`{}` reads the present sample of `{}`, which it helps to predict", function, channel),
+            fmt::format("use past samples: `lag(measured({0}), 1)`; a list of lags begins at 1, as in "
+                        "`lags(measured({0}), 1..4)`",
+                        channel)));
 }
 Diagnostic prediction_cycle(Span span, std::string const& channel) {
   return about({channel},
@@ -143,9 +150,11 @@ Diagnostic implicit_in_discrete_time(Span equation, std::string const& state) {
 }
 Diagnostic forgotten_lag(Span equation, std::string const& state) {
   Diagnostic result = about(
-      {state}, error("E3114", equation,
-                     fmt::format("`{0}` is used at the same sample on both sides, and no equation uses an earlier sample of `{0}`", state),
-                     fmt::format("if the sample before is meant, write `lag({0}, 1)` on the right; if not, solve for `{0}` by hand", state)));
+      {state},
+      error(
+          "E3114", equation,
+          fmt::format("`{0}` is used at the same sample on both sides, and no equation uses an earlier sample of `{0}`", state),
+          fmt::format("if the sample before is meant, write `lag({0}, 1)` on the right; if not, solve for `{0}` by hand", state)));
   result.severity = Severity::warning;
   return result;
 }
