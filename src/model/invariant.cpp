@@ -7,7 +7,6 @@ namespace sysid {
 namespace {
 
 constexpr int points = 4;
-constexpr double tolerable = 1e-6;  // initial values are written with a few digits
 
 /// Between 0.5 and 1.5, different for every leaf and point (multiples of the golden ratio lie apart).
 double value_at(int index, int point) {
@@ -27,7 +26,7 @@ NodeId constraint_size(Graph& graph, NodeId value) {
   return sum;
 }
 
-bool violated_at_start(Model const& model, Invariant const& constraint, std::span<NodeId const> initial) {
+bool violated_at_start(Model const& model, Invariant const& constraint, std::span<NodeId const> initial, double tolerable) {
   Graph graph = model.graph;
   bool judged = true;
   auto const replaced = [&](NodeId root) {

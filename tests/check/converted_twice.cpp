@@ -142,30 +142,31 @@ TEST_CASE("a factor of an equation that has the size of the unit of another fact
         "parameter tau [min] ~ log_uniform(1, 100)\nparameter c [N s/m] ~ log_uniform(1, 100)\n1 [kg]*y'' + " +
         spring + " = x\nobserve d ~ normal(y, sd = 0.1)\nderive t [s] = tau\nderive s = c*1 [m/N] + k*0\n}\n");
   };
-  for (auto const& [spring, cure] : {std::pair("c*y' + 1000*k*y", "write `k*y`"),
-                                     {"k*y + c*y/(60*tau)", "write `c*y/tau`"},
-                                     {"c*y' + 0.001*y*c/1 [s]", "write `y*c/1 [s]`"}}) {
+  for (auto const& [spring, cure] : {std::pair("c*y' + 1000*k*y", "write `k*y`"), {"k*y + c*y/(60*tau)", "write `c*y/tau`"}}) {
     CAPTURE(spring);
     std::string const said = in_equation(spring);
     CHECK(said.find("warning[E2214]") != std::string::npos);
     CHECK(said.find(cure) != std::string::npos);
   }
-  for (char const* const spring : {"c*y' + k*y", "c*y' + 3*k*y", "1000*c*y' + k*y", "c*y' + k*y*(1 + 1000*y/1 [km])"}) {
+  for (char const* const spring :
+       {"c*y' + k*y", "c*y' + 3*k*y", "1000*c*y' + k*y", "k*y + 0.001*k*y", "c*y' + k*y*(1 + 1000*y/1 [km])"}) {
     CAPTURE(spring);
     CHECK(in_equation(spring).find("E2214") == std::string::npos);
   }
 }
 
 TEST_CASE("a number inside a sine that is one of degrees is in radians, which is said") {
-  for (auto const& [statement, cure] :
-       {std::pair("derive a = sin(45)", "`45 [deg]`"), {"derive a = cos(f*T + 90)", "`90 [deg]`"}, {"derive a = sin(-30)", "`30 [deg]`"}}) {
+  for (auto const& [statement, cure] : {std::pair("derive a = sin(45)", "`45 [deg]`"),
+                                        {"derive a = cos(f*T + 90)", "`90 [deg]`"},
+                                        {"derive a = sin(-30)", "`30 [deg]`"}}) {
     CAPTURE(statement);
     std::string const said = with(statement);
     CHECK(said.find("warning[E2213]") != std::string::npos);
     CHECK(said.find(cure) != std::string::npos);
   }
-  for (char const* const statement : {"derive a = sin(1.5)", "derive a = cos(f*T + 2)", "derive a = sin(90 [deg] + phi)",
-                                      "derive a = exp(-30)", "derive a = sin(f*T + 100)", "derive a = sin(30*f*T)"}) {
+  for (char const* const statement :
+       {"derive a = sin(1.5)", "derive a = cos(f*T + 2)", "derive a = sin(90 [deg] + phi)", "derive a = exp(-30)",
+        "derive a = sin(f*T + 100)", "derive a = sin(30*f*T)", "derive a = sin(f*T - 30)"}) {
     CAPTURE(statement);
     CHECK(with(statement).find("E2213") == std::string::npos);
   }
@@ -180,6 +181,15 @@ TEST_CASE("a named number without a unit beside millimetres is in metres, which 
   CHECK(said("let gap = 0.1", stop).find("declare `gap` in [mm] or in [m]") != std::string::npos);
   CHECK(said("let gap [mm] = 0.1", stop).empty());
   CHECK(said("let gap = 0", stop).empty());
+  CHECK(said("let eps = 1e-9", "k*y/(abs(y) + eps)*1 [mm]").find("E2213") == std::string::npos);
+  std::string const of_filter = messages(
+      "model m {\ntime discrete 1 [s]\ninput x [mm]\nstate y [mm]\ninitial y = 0\nparameter s [mm] ~ half_normal(sd = 1)\n"
+      "y = 0.999*lag(y, 1) + 0.001*x\nobserve d ~ normal(y, sd = s)\n}\n");
+  CHECK(of_filter.empty());
+  std::string const of_argument = messages(
+      "function g(u, w) = 0.001*u + w\nmodel m {\ninput u [mV], q [V]\nstate v [V]\ninitial v = 0\n1 [s]*v' = g(q, 3 [V]) "
+      "- v + u\nobserve d ~ normal(v, sd = 0.1)\n}\n");
+  CHECK(of_argument.find("E2214") == std::string::npos);
   CHECK(said("let gap [mm] = 0.1", "k*max(y - 0.1, 0)").find("E2213") == std::string::npos);
 }
 
@@ -188,13 +198,15 @@ TEST_CASE("the numbers of a prior that look like those of the other unit of angl
     return messages("model m {\nstate y\ninitial y = 1, y' = 0\nparameter " + parameter +
                     "\ny'' + y*cos(lean)/1 [s^2] = 0\nobserve d ~ normal(y, sd = 0.1)\n}\n");
   };
-  for (char const* const wrong : {"lean [rad] ~ uniform(-180, 180)", "lean [rad] ~ normal(45, sd = 5)", "lean [deg] ~ uniform(0, 2*pi)",
-                                  "lean [deg] ~ normal(pi/4, sd = 0.1)"}) {
+  for (char const* const wrong : {"lean [rad] ~ uniform(-180, 180)", "lean [rad] ~ normal(45, sd = 5)",
+                                  "lean [deg] ~ uniform(0, 2*pi)", "lean [deg] ~ normal(pi/4, sd = 0.1)"}) {
     CAPTURE(wrong);
     CHECK(of_prior(wrong).find("warning[E2213]") != std::string::npos);
   }
-  for (char const* const right : {"lean [rad] ~ uniform(-pi, pi)", "lean [deg] ~ uniform(-180, 180)", "lean [rad] ~ normal(0.8, sd = 0.1)",
-                                  "lean [rad] ~ uniform(0, 180 [deg])", "lean ~ uniform(0, 45)"}) {
+  for (char const* const right :
+       {"lean [rad] ~ uniform(-pi, pi)", "lean [deg] ~ uniform(-180, 180)", "lean [rad] ~ normal(0.8, sd = 0.1)",
+        "lean [rad] ~ uniform(0, 180 [deg])", "lean ~ uniform(0, 45)", "lean [rad] ~ uniform(0, 100)",
+        "lean [deg] ~ uniform(0, 2*pi*1 [rad])", "lean [deg] ~ normal(0, sd = 180/pi*0.05)"}) {
     CAPTURE(right);
     CHECK(of_prior(right).find("E2213") == std::string::npos);
   }

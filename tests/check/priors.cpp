@@ -191,3 +191,20 @@ TEST_CASE("an argument that is computed from one that is missing or wrong is lef
     CHECK(said.find(std::string("error[") + code + "]") != std::string::npos);
   }
 }
+
+TEST_CASE("a width whose prior reaches below zero is warned of, whatever bounds it") {
+  auto const said = [](std::string const& prior) {
+    return messages("model m {\nstate y\ninitial y = 1\nparameter a ~ uniform(0, 1)\nparameter s ~ " + prior +
+                    "\ny' = -a*y\nobserve d ~ normal(y, sd = s)\n}\n");
+  };
+  for (char const* const wrong : {"normal(0, sd = 1)", "uniform(-1, 1)", "normal(0, sd = 1, lower = -5)",
+                                  "student_t(0, 3, scale = 4)", "normal(1, sd = 1)"}) {
+    CAPTURE(wrong);
+    CHECK(said(wrong).find("warning[E2120]") != std::string::npos);
+  }
+  for (char const* const right : {"half_normal(sd = 1)", "uniform(0, 1)", "normal(0, sd = 1, lower = 0)", "normal(1, sd = 0.1)",
+                                  "log_normal(median = 1, sd = 1)", "gamma(2, mean = 1)", "exponential(mean = 1)", "log_flat()"}) {
+    CAPTURE(right);
+    CHECK(said(right).empty());
+  }
+}

@@ -113,6 +113,8 @@ class DictionaryChecker {
   // The term in this equation, unless its unit or the target forbids it.
   void add(int index, Candidate const& term, regression::SplitTarget const& split, DictionaryEquation& equation,
            regression::Equation& numbers, std::vector<Candidate const*>& kept);
+  // Whether it is the target itself, which would explain itself: refused, or left out of this equation.
+  bool is_target(int index, Candidate const& term, regression::SplitTarget const& split);
   void leave_out(int index, Candidate const& term, Unit const& unit);
 
   // Numbers for the parameters inside terms, the medians of their priors.

@@ -111,15 +111,7 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
       return;
     }
   }
-  if (split.free.empty() && !out_.numbers.discrete && !term.factors.powers.empty() &&
-      term.factors.proportional(factors_of(out_.numbers.graph, split.known))) {
-    Target const& target = targets_[static_cast<std::size_t>(index)];
-    auto const* name = std::get_if<ast::Reference>(&target.tree->node);
-    bool const rate = name != nullptr && name->primes == 0 && !out_.numbers.discrete && find_state(name->name.text) != nullptr;
-    diagnostics_.add(errors::target_among_terms(target.tree->span, term.written.tree.span, equation.text, term.written.text,
-                                                rate ? equation.text + "'" : ""));
-    return;
-  }
+  if (is_target(index, term, split)) return;
   for (std::size_t j = split.free.size(); j < kept.size(); ++j) {
     if (!kept[j]->factors.proportional(term.factors)) continue;
     out_.excluded.push_back({ExcludedTerm::Why::same, term.written.text, kept[j]->written.text, index});
@@ -134,6 +126,22 @@ void DictionaryChecker::add(int index, Candidate const& term, regression::SplitT
   equation.terms.push_back(
       {term.written.text, term.written.tree, term.written.coefficient, false, coefficient, term.written.tree.span});
   numbers.terms.push_back({term.written.text, term.node, false});
+}
+
+bool DictionaryChecker::is_target(int index, Candidate const& term, regression::SplitTarget const& split) {
+  if (!split.free.empty() || out_.numbers.discrete || term.factors.powers.empty() ||
+      !term.factors.proportional(factors_of(out_.numbers.graph, split.known)))
+    return false;
+  ast::Expression const& target = *targets_[static_cast<std::size_t>(index)].tree;
+  std::string const text = unparse(target);
+  auto const* name = std::get_if<ast::Reference>(&target.node);
+  bool const rate = name != nullptr && name->primes == 0 && find_state(name->name.text) != nullptr;
+  if (rate || targets_.size() == 1)
+    diagnostics_.add(
+        errors::target_among_terms(target.span, term.written.tree.span, text, term.written.text, rate ? text + "'" : ""));
+  else  // in the other equations it may stand
+    out_.excluded.push_back({ExcludedTerm::Why::same, term.written.text, "the target", index});
+  return true;
 }
 
 void DictionaryChecker::close_terms() {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "check/expression/leaves.hpp"
 #include "check/expression/doubtful_arguments.hpp"
+#include "check/expression/leaves.hpp"
 #include "check/expression/log_normal.hpp"
 #include "check/message/errors.hpp"
 #include "check/message/errors_numbers.hpp"
@@ -199,9 +199,9 @@ class DistributionChecker {
     std::vector<std::pair<Dimension, std::string>> cures;
     if (!variate_.unit || variate_.unit->dimensionless()) return cures;
     if (is_of_logarithm() && given.spelling->unit_power == 0)
-      cures.emplace_back(variate_.unit->dimension,
-                         fmt::format("it is the {} of the natural logarithm, a pure number: `{} = 0.1` is about 10 %",
-                                     given.spelling->name, given.spelling->name));
+      cures.emplace_back(
+          variate_.unit->dimension,
+          fmt::format("it is the {} of the natural logarithm, a pure number: `sd = 0.1` is about 10 %", given.spelling->name));
     for (Spelling const& other : row.spellings)
       if (other.unit_power != given.spelling->unit_power && other.unit_power != 0)
         cures.emplace_back(unit_of_argument(variate_.unit, other.unit_power)->dimension, as_other_spelling(given, other));

@@ -2,7 +2,7 @@
 #include "check/expression/doubtful_arguments.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 
 #include "check/message/errors.hpp"
 #include "syntax/unparse.hpp"
@@ -11,25 +11,30 @@
 namespace sysid {
 namespace {
 
-bool reads_pi(ast::Expression const& tree) {
-  bool found = false;
+/// `2*pi`, `pi/4`: pi in a numerator, and no number with a unit.
+bool looks_like_radians(ast::Expression const& tree) {
+  bool has_pi = false, otherwise = false;
   each_expression(tree, [&](ast::Expression const& part) {
-    auto const* name = std::get_if<ast::Reference>(&part.node);
-    found = found || (name != nullptr && name->name.text == "pi");
+    if (auto const* name = std::get_if<ast::Reference>(&part.node)) (name->name.text == "pi" ? has_pi : otherwise) = true;
+    if (auto const* number = std::get_if<ast::Number>(&part.node)) otherwise = otherwise || number->unit || number->value > 100;
+    if (auto const* binary = std::get_if<ast::Box<ast::Binary>>(&part.node); binary != nullptr && (*binary)->symbol == "/")
+      otherwise = otherwise || !std::holds_alternative<ast::Number>((*binary)->right->node);
   });
-  return found;
+  return has_pi && !otherwise;
 }
 
 bool looks_like_degrees(ast::Expression const& tree) {
-  constexpr double fewest = 30, step = 5;
+  constexpr double usual[] = {45, 90, 180, 270, 360};
   if (auto const* minus = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return looks_like_degrees(*(*minus)->operand);
   auto const* number = std::get_if<ast::Number>(&tree.node);
-  return number != nullptr && !number->unit && number->value >= fewest && std::fmod(number->value, step) == 0;
+  return number != nullptr && !number->unit && std::ranges::find(usual, number->value) != std::end(usual);
 }
 
 }  // namespace
 
-bool is_of_logarithm(DistributionRow const& row) { return std::ranges::any_of(row.arguments.front().spellings, &Spelling::logarithm); }
+bool is_of_logarithm(DistributionRow const& row) {
+  return std::ranges::any_of(row.arguments.front().spellings, &Spelling::logarithm);
+}
 
 std::optional<Diagnostic> doubtful_width_of_logarithm(WrittenArgument const& given, std::optional<double> width,
                                                       std::string const& distribution) {
@@ -42,9 +47,10 @@ std::optional<Diagnostic> doubtful_angle(WrittenArgument const& given, Quantity 
   std::optional<Unit> const& unit = variate.unit;
   if (!unit || !unit->dimensionless() || unit->radian.numerator != 1 || given.spelling.unit_power != 1) return std::nullopt;
   bool const radians = unit->scale == 1;
-  if (radians ? !looks_like_degrees(given.tree) : !reads_pi(given.tree)) return std::nullopt;
-  return errors::angle_in_other_unit(given.span, unparse(given.tree), variate.name, unit->text_or_dimension(),
-                                     radians ? "deg" : "rad");
+  if (!radians && unit->text_or_dimension() != "deg") return std::nullopt;
+  if (radians ? !looks_like_degrees(given.tree) : !looks_like_radians(given.tree)) return std::nullopt;
+  return errors::angle_in_other_unit(given.span, unparse(given.tree), variate.name.substr(0, variate.name.find('[')),
+                                     unit->text_or_dimension(), radians ? "deg" : "rad");
 }
 
 }  // namespace sysid

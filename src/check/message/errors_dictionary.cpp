@@ -28,15 +28,14 @@ Diagnostic target_twice(Span second, Span first, std::string const& text) {
 
 Diagnostic target_among_terms(Span target, Span term, std::string const& text, std::string const& written,
                               std::string const& derivative) {
-  return about({text}, conflict("E6618", term, "a term", target, "the target",
-                                fmt::format("`{}` is both the target and {}: `{} = 1*{}` is always right and explains nothing",
-                                            text, written == text ? "a term" : fmt::format("in the term `{}`", written), text, text),
-                                fmt::format("{}`exclude = {}`", derivative.empty()
-                                                                    ? "leave this term out: "
-                                                                    : fmt::format("if the rate of change is meant, write `target = {}`; "
-                                                                                  "else leave this term out: ",
-                                                                                  derivative),
-                                            written)));
+  std::string const message =
+      written == text ? fmt::format("`{0}` is both the target and a term: `{0} = 1*{0}` is always right and explains nothing", text)
+                      : fmt::format("the term `{}` is the target `{}` but for a factor: it is always right and explains nothing",
+                                    written, text);
+  std::string const rate =
+      derivative.empty() ? "" : fmt::format("if the rate of change is meant, write `target = {}`; else ", derivative);
+  return about({text, written}, conflict("E6618", term, "a term", target, "the target", message,
+                                         fmt::format("{}leave this term out: `exclude = {}`", rate, written)));
 }
 
 Diagnostic no_terms(ast::Name const& dictionary) {

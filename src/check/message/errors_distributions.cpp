@@ -365,23 +365,22 @@ Diagnostic never_allowed(Span span, std::string const& distribution, std::string
 }
 
 Diagnostic width_below_zero(Span parameter, std::string const& name, std::string const& argument, std::string const& of) {
-  Diagnostic result = about(
-      {name, of},
-      error("E2120", parameter,
-            fmt::format("`{}` is the {} of `{}`, which is positive, but its prior also has negative values", name, argument, of),
-            "add `lower = 0` to this prior, or use a prior of positive values, such as `half_normal(sd = ...)`"));
+  Diagnostic result =
+      about({name, of},
+            error("E2120", parameter,
+                  fmt::format("`{}`, the {} of `{}`, must be positive, but its prior also has negative values", name, argument, of),
+                  "add `lower = 0` to this prior, or use a prior of positive values, such as `half_normal(sd = ...)`"));
   result.severity = Severity::warning;
   return result;
 }
 
 Diagnostic wide_logarithm(Span width, std::string const& distribution, std::string const& spelling, std::string const& written) {
-  Diagnostic result = about(
-      {distribution},
-      error("E2121", width,
-            fmt::format("`{} = {}` of `{}` is that of the natural logarithm: a factor of more than 20000 in either direction",
-                        spelling, written, distribution),
-            fmt::format("10 % is `{0} = 0.1`, a factor of 2 `{0} = 0.7`; a width in the unit of the quantity is that of `normal`",
-                        spelling)));
+  Diagnostic result =
+      about({distribution},
+            error("E2121", width,
+                  fmt::format("`{} = {}` of `{}` is that of the natural logarithm: a factor of more than 20000 in either direction",
+                              spelling, written, distribution),
+                  "10 % is `sd = 0.1`, a factor of 2 `sd = 0.7`; a width in the unit of the quantity is that of `normal`"));
   result.severity = Severity::warning;
   return result;
 }
@@ -390,7 +389,7 @@ Diagnostic angle_in_other_unit(Span argument, std::string const& text, std::stri
                                std::string const& meant) {
   Diagnostic result =
       about({name}, error("E2213", argument, fmt::format("`{}` is in [{}], as `{}` is", text, unit, name),
-                          fmt::format("if it is in [{0}], declare `{1}` in [{0}]; an equation takes it as it is", meant, name)));
+                          fmt::format("if it is in [{0}], declare `{1}` in [{0}]; equations need no change", meant, name)));
   result.severity = Severity::warning;
   return result;
 }

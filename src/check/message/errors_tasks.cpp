@@ -193,7 +193,8 @@ Diagnostic unknown_item(ast::Name const& name, std::string const& kind, Names co
 std::string verb_of_subject(ast::Task const& task, std::string const& kind, std::string const& verb) {
   std::string_view const preposition = verb == "discover" ? "from" : "to";
   std::string const data = task.data.empty() ? "DATA" : task.data.front().data.text;
-  return fmt::format("`{0}` is a {1}: write `{2} {0} {3} {4}`", task.subject.text, kind, verb, preposition, data);
+  return fmt::format("`{0}` is a {1}: write `{2} {0} {3} {4}{5}`", task.subject.text, kind, verb, preposition, data,
+                     verb == "select" ? " with abc_smc(particles = 1000)" : "");
 }
 
 Diagnostic unknown_fit(ast::Name const& name, Names const& known, bool is_data) {
@@ -360,9 +361,10 @@ Diagnostic solver_of_nothing(Span option, std::string const& subject) {
 }
 
 Diagnostic value_outside_prior(Span value, std::string const& name, Span parameter) {
-  Diagnostic result = about({name}, conflict("E6020", value, "this value", parameter, "its prior",
-                                             fmt::format("this value of `{}` is outside the bounds of its prior", name),
-                                             "check the value and its unit, or widen the prior: a fit of this model cannot find it"));
+  Diagnostic result =
+      about({name}, conflict("E6020", value, "this value", parameter, "its prior",
+                             fmt::format("this value of `{}` is outside the bounds of its prior", name),
+                             "check the value and its unit, or widen the prior: a fit of this model cannot find it"));
   result.severity = Severity::warning;
   return result;
 }

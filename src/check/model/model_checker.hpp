@@ -183,7 +183,6 @@ class ModelChecker {
     std::size_t disturbance;
   };
   std::vector<PositiveArgument> positive_;  // of laws of disturbances
-  std::set<std::string> negative_widths_;   // reported
 };
 
 }  // namespace sysid

@@ -92,7 +92,7 @@ void ModelChecker::report_forgotten_lags(std::vector<ast::Equation const*> const
     auto const is_past = of_state(LeafKind::previous);
     if (std::ranges::none_of(read, [&](NodeId id) { return is_past(graph[id]); }) &&
         graph.depends(right[e], of_state(LeafKind::unknown)))
-      diagnostics_.add(errors::forgotten_lag(trees[e]->span, given->name.text));
+      diagnostics_.add_once(errors::forgotten_lag(trees[e]->span, given->name.text.substr(0, given->name.text.find('['))));
   }
 }
 

@@ -208,7 +208,13 @@ void ModelChecker::unused_starts(std::vector<NodeId> const& initial) {
   for (GivenUnknown const& each : given_unknowns_) {
     if (graph.is_constant(each.value, 0)) continue;  // stands for no value
     NodeId const difference = graph.subtract(each.value, highest_[each.unknown]);
-    if (violated_at_start(model_, {difference, constraint_size(graph, difference), each.span}, initial))
+    // Which branch it is on depends on the parameters.
+    auto const branches = [](Node const& node) {
+      return node.operation == Operation::select || node.operation == Operation::minimum || node.operation == Operation::maximum;
+    };
+    if (graph.depends(difference, branches)) continue;
+    constexpr double rounded = 1e-3;  // it is written with a few digits
+    if (violated_at_start(model_, {difference, constraint_size(graph, difference), each.span}, initial, rounded))
       diagnostics_.add(errors::start_not_used(each.span, model_.unknowns[each.unknown].name));
   }
 }

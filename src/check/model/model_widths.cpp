@@ -18,13 +18,14 @@ std::string_view never_allowed(DistributionRow const& row, std::size_t i, ValueR
   return row.refuse(numbers);
 }
 
-/// The probability of a negative value under a prior with numbers for arguments and no lower bound; 0 for any other.
+/// The probability of a negative value under a prior with numbers for arguments; 0 for any other.
 double negative_share(Graph& graph, Distribution const& prior) {
-  if (!prior.row->proper || prior.row->cumulative == nullptr || prior.row->lower != nullptr || prior.lower) return 0;
-  NodeId const below = prior.row->cumulative(graph, graph.constant(0), prior.arguments);
-  for (NodeId const id : graph.reachable({&below, 1}))
-    if (graph[id].operation == Operation::leaf) return 0;
-  return graph.evaluate(below, [](NodeId) { return 0.0; });
+  if (!prior.row->proper || prior.row->cumulative == nullptr) return 0;
+  auto const lowest = support(graph, prior).lower;
+  if (lowest && !(graph.constant_value(*lowest).value_or(0) < 0)) return 0;
+  NodeId below = prior.row->cumulative(graph, graph.constant(0), prior.arguments);
+  if (prior.lower) below = graph.subtract(below, prior.row->cumulative(graph, *prior.lower, prior.arguments));
+  return graph.constant_value(below).value_or(0);
 }
 
 }  // namespace
@@ -35,8 +36,7 @@ void ModelChecker::report_negative_width(NodeId width, std::string const& argume
   if (!is_leaf(node, LeafKind::parameter)) return;
   Parameter const& parameter = model_.parameters[static_cast<std::size_t>(node.index)];
   if (!parameter.prior || !(negative_share(model_.graph, *parameter.prior) > hardly_any)) return;
-  if (!negative_widths_.insert(parameter.name).second) return;
-  diagnostics_.add(errors::width_below_zero(parameter.span, parameter.name, argument, of));
+  diagnostics_.add_once(errors::width_below_zero(parameter.span, parameter.name, argument, of));
 }
 
 std::vector<std::string> ModelChecker::parameters_of(NodeId root) const {

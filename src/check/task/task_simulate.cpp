@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "check/message/errors.hpp"
@@ -202,7 +203,8 @@ bool outside(Graph graph, Distribution const& prior, double value) {
   Support const bounds = support(graph, prior);
   auto const number = [&](std::optional<NodeId> const& bound) { return bound ? graph.constant_value(*bound) : std::nullopt; };
   auto const lower = number(bounds.lower), upper = number(bounds.upper);
-  return (lower && value < *lower) || (upper && value > *upper);
+  auto const rounding = [](double bound) { return 1e-9 * std::fabs(bound); };  // of the conversion of units
+  return (lower && value < *lower - rounding(*lower)) || (upper && value > *upper + rounding(*upper));
 }
 
 }  // namespace

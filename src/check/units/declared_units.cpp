@@ -228,8 +228,9 @@ std::string DeclaredUnits::unit_of_number(ast::Expression const& odd, Wanted con
   Unit si;
   si.dimension = wanted.missing;
   auto const simple = [](std::string const& text) { return !text.empty() && text.find_first_of(" */^") == std::string::npos; };
-  std::vector<std::string> const used = names_in(odd);
-  Unit const* const other = used.size() == 1 ? unit_of(used.front()) : nullptr;
+  std::vector<std::string> used = names_in(odd);
+  std::erase(used, "pi");
+  Unit const* const other = used.size() == 1 && wanted.scale > 0 ? unit_of(used.front()) : nullptr;
   auto const is_si = [](double scale) { return std::fabs(scale - 1) < 1e-9; };  // of a product, rounded
   if (other == nullptr || (is_si(wanted.scale) && is_si(other->scale)) || !simple(wanted.unit) || !simple(other->text))
     return words(si);

@@ -50,7 +50,7 @@ class DeclaredUnits {
     bool of_a_number = false;                           // the expression is one
     bool is_term = false;                               // of a sum or an equation, whose coefficient is its own
     std::vector<ast::Expression const*> agreeing = {};  // what is in this unit beside the expression
-    double scale = 1;                                   // of the unit as its words say, in the SI
+    double scale = 1;                                   // of the unit as its words say, in the SI; 0: names are not those declared
   };
   /// How an expression could be mended ("multiply it by a length, such as `y`"); odd: null where it is a declaration. Names are
   /// those that may stand in its place.

@@ -165,8 +165,11 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   bool const is_term = occasion.kind == Occasion::Kind::terms;
   conflict.help = cure != occasion.cures.end()
                       ? cure->second
-                      : declared_.cure(operands[shown].tree, {conflict.wanted, missing_.back(), false, of_a_number, is_term,
-                                                              std::move(agreeing_trees), wanted.text.empty() ? 1 : wanted.scale});
+                      : declared_.cure(operands[shown].tree,
+                                       {conflict.wanted, missing_.back(), false, of_a_number, is_term, std::move(agreeing_trees),
+                                        !calls_.empty()       ? 0
+                                        : wanted.text.empty() ? 1
+                                                              : wanted.scale});
   // [g] is the gram.
   static Dimension const acceleration = unit_atom("g_n").value().dimension;
   bool const gram = conflict.wanted == "g" && dimension_of(operands[shown]) == acceleration;

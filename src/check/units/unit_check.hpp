@@ -88,7 +88,7 @@ class UnitCheck {
   bool hint_converted_twice(std::span<UnitOperand const> operands);
   // in_function: an argument of one that takes an angle.
   bool converted_angle(UnitOperand const& operand, bool in_function);
-  bool converted_factor(UnitOperand const& operand);
+  bool converted_factor(UnitOperand const& operand, std::span<UnitOperand const> operands);
   void hint_constants(std::span<UnitOperand const> operands);
   void hint_degrees(std::string const& function, UnitOperand const& argument);
   void hint_bare_numbers(std::span<UnitOperand const> operands);

@@ -10,6 +10,7 @@
 #include "check/units/unit_words.hpp"
 #include "core/text/number.hpp"
 #include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -36,9 +37,19 @@ ast::Number const* number_of_degrees(ast::Expression const& tree, bool alone) {
   }
   auto const* number = std::get_if<ast::Number>(&tree.node);
   if (number == nullptr || number->unit) return nullptr;
-  bool const usual = std::fmod(number->value, 30) == 0 || std::fmod(number->value, 45) == 0;
-  bool const degrees = alone ? number->value >= 10 && std::fmod(number->value, 5) == 0 : usual && number->value != 0;
-  return degrees && number->value <= 720 ? number : nullptr;
+  constexpr double phases[] = {45, 90, 180, 270, 360};
+  bool const degrees = alone ? number->value >= 10 && number->value <= 720 && std::fmod(number->value, 5) == 0
+                             : std::ranges::find(phases, number->value) != std::end(phases);
+  return degrees ? number : nullptr;
+}
+
+bool reads(ast::Expression const& tree, std::string const& name) {
+  bool found = false;
+  each_expression(tree, [&](ast::Expression const& part) {
+    auto const* reference = std::get_if<ast::Reference>(&part.node);
+    found = found || (reference != nullptr && reference->name.text == name);
+  });
+  return found;
 }
 
 }  // namespace
@@ -97,17 +108,24 @@ bool UnitCheck::hint_converted_twice(std::span<UnitOperand const> operands) {
         return true;
       }
     }
-    if (converted_angle(each, false) || (declared == operands.end() && converted_factor(each))) return true;
+    if (converted_angle(each, false) || (declared == operands.end() && converted_factor(each, operands))) return true;
   }
   return false;
 }
 
-// `1000*k*y` with k in [N/mm], among terms of an equation. Of a pure number the number itself may be wanted.
-bool UnitCheck::converted_factor(UnitOperand const& operand) {
+// `1000*k*y` with k in [N/mm], among terms of an equation. Of a pure number the number itself may be wanted; a number times a name
+// alone, or beside other terms with the name, is a coefficient: 0.001*x in a smoothing filter.
+bool UnitCheck::converted_factor(UnitOperand const& operand, std::span<UnitOperand const> operands) {
+  if (!calls_.empty()) return false;  // names are arguments there
   for (ProductFactor const& factor : product_factors(*operand.tree)) {
     auto const* name = std::get_if<ast::Reference>(&factor.tree->node);
     Unit const* const unit = name == nullptr ? nullptr : declared_.unit_of(name->name.text);
-    if (unit == nullptr || !is_scaled(*unit) || unit->dimension == Dimension{}) continue;
+    if (unit == nullptr || !is_scaled(*unit) || unit->dimension == Dimension{} || name->name.text.find('[') != std::string::npos)
+      continue;
+    bool const elsewhere = std::ranges::any_of(operands, [&](UnitOperand const& each) {
+      return each.tree != nullptr && each.tree != operand.tree && reads(*each.tree, name->name.text);
+    });
+    if (elsewhere || unit->dimension == operand.value.unit.dimension) continue;
     auto const taken = taken_from_product(*operand.tree, factor.divides ? 1 / unit->scale : unit->scale);
     if (!taken) continue;
     report(errors::factor_converted(operand.value.span, taken->factor, name->name.text, words(*unit), taken->sign + taken->rest));
@@ -145,16 +163,21 @@ void UnitCheck::hint_bare_numbers(std::span<UnitOperand const> operands) {
 
 // `let gap = 0.1` beside y in [mm]: written in place it would be 0.1 mm, by its name it is 0.1 m.
 void UnitCheck::hint_constants(std::span<UnitOperand const> operands) {
-  auto const scaled = std::ranges::find_if(operands, [](UnitOperand const& each) {
-    return is_known(each) && each.value.unit.dimension != Dimension{} && is_scaled(each.value.unit) &&
-           !each.value.unit.text.empty();
-  });
-  if (scaled == operands.end()) return;
+  constexpr double regulariser = 1e-3;  // `abs(v) + eps` keeps a quotient finite
+  if (!calls_.empty()) return;          // names are arguments there
+  UnitOperand const* scaled = nullptr;
+  for (UnitOperand const& each : operands) {
+    if (each.tree == nullptr || !is_known(each) || each.value.unit.dimension == Dimension{}) continue;
+    if (!is_scaled(each.value.unit)) return;
+    if (!each.value.unit.text.empty()) scaled = &each;
+  }
+  if (scaled == nullptr) return;
   for (UnitOperand const& each : operands) {
     auto const* name = each.tree == nullptr ? nullptr : std::get_if<ast::Reference>(&each.tree->node);
-    if (name == nullptr || each.value.kind != Typed::Kind::unknown) continue;
+    if (name == nullptr || each.value.kind != Typed::Kind::unknown || name->name.text.find_first_of(".[") != std::string::npos)
+      continue;
     auto const value = graph_->constant_value(each.value.node);
-    if (!value || *value == 0 || std::isinf(*value)) continue;
+    if (!value || std::fabs(*value) < regulariser || std::isinf(*value)) continue;
     Unit base = scaled->value.unit;
     base.scale = 1;
     base.text.clear();

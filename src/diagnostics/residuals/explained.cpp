@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <boost/math/distributions/students_t.hpp>
 #include <utility>
 
-#include "core/numeric/elementary.hpp"
 #include "core/numeric/not_finite.hpp"
 
 namespace sysid {
@@ -20,7 +20,9 @@ Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, s
 double as_bad_as_the_mean(std::size_t samples) {
   constexpr double by_chance = 1e-3;
   if (samples < 2) return infinity;
-  return 100 * elementary::pow(by_chance, -2 / static_cast<double>(samples - 1));
+  double const freedom = static_cast<double>(samples - 1);
+  double const t = boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), by_chance / 2));
+  return 100 * (1 + t * t / freedom);
 }
 
 }  // namespace sysid

@@ -16,10 +16,10 @@ Finding worse_than_the_mean(Severity severity, std::vector<std::string> names, s
 inline constexpr double useless_nmse = 200;
 
 /// The nmse [%] that a prediction exceeds by chance once in a thousand records where the mean explains all there is. Of n samples
-/// of noise about the right prediction the sums of squares about it and about the mean differ by less than sigma^2 chi-squared(2),
-/// and the second is sigma^2 chi-squared(n - 1): their quotient is that of an F(2, n - 1) variable, whose quantiles are powers,
+/// of noise about the right prediction the sum of squares about it exceeds the sum about their mean by sigma^2 chi-squared(1), and
+/// that sum is sigma^2 chi-squared(n - 1), independent of it:
 ///
-///   nmse = 100 p^(-2/(n - 1)),   about 100 (1 + 13.8/n) for many samples and p = 0.001
+///   nmse = 100 (1 + t^2/(n - 1)),   t the quantile of Student's t with n - 1 degrees of freedom; 100 (1 + 10.8/n) of many samples
 ///
 /// A channel that did not change has no nmse, which exceeds nothing.
 double as_bad_as_the_mean(std::size_t samples);
