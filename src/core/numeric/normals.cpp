@@ -2,6 +2,7 @@
 #include "core/numeric/normals.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <vector>
 
@@ -26,6 +27,16 @@ void draw_normals(std::span<Stream> streams, Lanes out) {
   elementary::sin_lanes(cosine, sine, static_cast<int>(count));
   elementary::cos_lanes(cosine, cosine, static_cast<int>(count));
   for (std::size_t i = 0; i < count; ++i) radius[i] = std::sqrt(-2 * radius[i]);
+  if (width == 1 && rows > 1) {
+    double* to = out.row(0).data();
+    std::ptrdiff_t const step = out.row(1).data() - to;
+    for (std::size_t pair = 0; pair < rows / 2; ++pair, to += 2 * step) {
+      to[0] = radius[pair] * cosine[pair];
+      to[step] = radius[pair] * sine[pair];
+    }
+    if (rows % 2 == 1) *to = radius[pairs - 1] * cosine[pairs - 1];
+    return;
+  }
   for (std::size_t r = 0; r < rows; ++r) {
     std::size_t const first = r / 2 * width;
     double const* const wave = r % 2 == 0 ? cosine : sine;
