@@ -14,7 +14,6 @@
 #include "check/elaborate/frame.hpp"
 #include "check/elaborate/tree.hpp"
 #include "check/message/errors_reuse.hpp"
-#include "syntax/unparse.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid {
@@ -196,14 +195,7 @@ class Elaborator {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
       ast::Argument const& argument = arguments[i];
       if (!argument.name) {
-        std::size_t end = i;
-        while (end < arguments.size() && !arguments[end].name) ++end;
-        errors::Names values;
-        for (std::size_t k = i == 0 ? 0 : i - 1; k < end; ++k) values.push_back(unparse(arguments[k].value));
-        diagnostics_.add(
-            i == 0 ? errors::model_argument_by_position(argument.span, model.name.text, known)
-                   : errors::model_arguments_in_a_row(argument.span, model.name.text, arguments[i - 1].name->text, values));
-        i = end - 1;
+        diagnostics_.add(errors::model_argument_by_position(arguments, i, model.name.text, known));
       } else if (std::find(known.begin(), known.end(), argument.name->text) == known.end()) {
         diagnostics_.add(errors::unknown_model_argument(*argument.name, model.name.text, known));
       } else if (auto const [first, fresh] = given.emplace(argument.name->text, argument.name->span); !fresh) {

@@ -192,9 +192,10 @@ void FrameBuilder::bind(Frame& inner, ast::Part const& part) {
     if (symbol.kind == FrameSymbol::Kind::input || symbol.kind == FrameSymbol::Kind::parameter) known.push_back(name);
   std::map<std::string, Span> given;
   bool misnamed = false;  // what stands under a wrong name may be meant for an input
-  for (ast::Argument const& argument : part.model.arguments) {
+  for (std::size_t i = 0; i < part.model.arguments.size(); ++i) {
+    ast::Argument const& argument = part.model.arguments[i];
     if (!argument.name) {
-      diagnostics_.add(errors::model_argument_by_position(argument.span, model, known));
+      diagnostics_.add(errors::model_argument_by_position(part.model.arguments, i, model, known));
       misnamed = true;
       continue;
     }

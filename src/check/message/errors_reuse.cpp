@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "check/message/error_words.hpp"
+#include "syntax/unparse.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -108,14 +109,22 @@ Diagnostic unknown_model_argument(ast::Name const& name, std::string const& mode
                error("E2803", name.span, fmt::format("model `{}` has no argument `{}`", model, name.text),
                      guess_or(name.text, known, known.empty() ? "it takes none" : fmt::format("it takes {}", quoted(known)))));
 }
-Diagnostic model_argument_by_position(Span span, std::string const& model, Names const& known) {
-  return about({model}, error("E2804", span, fmt::format("the arguments of model `{}` must be given by name", model),
-                              known.empty() ? "it takes none" : fmt::format("write `{} = ...`", known.front())));
-}
-Diagnostic model_arguments_in_a_row(Span span, std::string const& model, std::string const& name, Names const& values) {
-  return about({model, name}, error("E2804", span, fmt::format("the arguments of model `{}` must be given by name", model),
-                                    fmt::format("several values of one argument stand in parentheses: `{} = ({})`", name,
-                                                fmt::join(values, ", "))));
+Diagnostic model_argument_by_position(std::span<ast::Argument const> arguments, std::size_t& i, std::string const& model,
+                                      Names const& known) {
+  std::size_t const first = i;
+  while (i + 1 < arguments.size() && !arguments[i + 1].name) ++i;
+  Names open = known;
+  for (ast::Argument const& each : arguments)
+    if (each.name) std::erase(open, each.name->text);
+  std::string help = known.empty() ? "it takes none" : open.empty() ? "remove it" : fmt::format("write `{} = ...`", open.front());
+  if (first > 0 && std::holds_alternative<ast::Number>(arguments[first - 1].value.node)) {  // of `n = 1, 2, 3`
+    Names values;
+    for (std::size_t k = first - 1; k <= i; ++k) values.push_back(unparse(arguments[k].value));
+    help = fmt::format("several values of one argument stand in parentheses: `{} = ({})`", arguments[first - 1].name->text,
+                       fmt::join(values, ", "));
+  }
+  return about({model}, error("E2804", arguments[first].span,
+                              fmt::format("the arguments of model `{}` must be given by name", model), std::move(help)));
 }
 Diagnostic model_argument_twice(Span second, Span first, std::string const& name) {
   return with(about({name}, error("E2805", second, fmt::format("`{}` is given twice", name), "keep one", "again here")), first,

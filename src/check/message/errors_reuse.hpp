@@ -27,9 +27,9 @@ Diagnostic models_too_large(Span span);
 Diagnostic part_cycle(Span span, Names const& loop);
 Diagnostic model_argument_missing(Span span, std::string const& model, std::string const& argument);
 Diagnostic unknown_model_argument(ast::Name const& name, std::string const& model, Names const& known);
-Diagnostic model_argument_by_position(Span span, std::string const& model, Names const& known);
-/// `n = 1, 2, 3`: the values as written.
-Diagnostic model_arguments_in_a_row(Span span, std::string const& model, std::string const& name, Names const& values);
+/// Of the i-th argument and those without a name behind it, at the last of which i is then: `n = 1, 2, 3`.
+Diagnostic model_argument_by_position(std::span<ast::Argument const> arguments, std::size_t& i, std::string const& model,
+                                      Names const& known);
 Diagnostic model_argument_twice(Span second, Span first, std::string const& name);
 Diagnostic input_of_part_unbound(Span span, std::string const& part, Names const& inputs, std::string const& model);
 Diagnostic no_rate_of_binding(Span use, Span binding, std::string const& input);
