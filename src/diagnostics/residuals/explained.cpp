@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <boost/math/distributions/students_t.hpp>
+#include <array>
 #include <utility>
 
 #include "core/numeric/not_finite.hpp"
+#include "distribution/distribution.hpp"
 
 namespace sysid {
 
@@ -21,7 +22,8 @@ double as_bad_as_the_mean(std::size_t samples) {
   constexpr double by_chance = 1e-3;
   if (samples < 2) return infinity;
   double const freedom = static_cast<double>(samples - 1);
-  double const t = boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), by_chance / 2));
+  std::array<double, 3> const standard = {0, freedom, 1};
+  double const t = find_distribution("student_t")->quantile(by_chance / 2, Tail::upper, standard);
   return 100 * (1 + t * t / freedom);
 }
 
