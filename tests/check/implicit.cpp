@@ -106,6 +106,9 @@ TEST_CASE("in discrete time a step back that is implicit is solved in silence, a
   CHECK(refused_model(start + "u = lag(u, 1) + a*(x - u)\n" + rest).empty());
   CHECK(refused_model(start + "u - lag(u, 1) = a*u + x\n" + rest).empty());
   CHECK(refused_model(start + "u = a*u + x\n" + rest).find("warning[E3114]") != std::string::npos);
+  CHECK(refused_model("time discrete 1 [s]\ninput x\nstate u, v\ninitial u = 0, v = 0\nu = a*u + x\nv - lag(u, 1) = 0\n" + rest +
+                      "observe e ~ normal(v, sd = 1)\n")
+            .empty());  // on the left side of another equation
 }
 
 TEST_CASE("an initial value of what the equations give is warned of where they contradict it, and only there") {

@@ -2,9 +2,9 @@
 #include "check/expression/doubtful_arguments.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 #include "check/message/errors.hpp"
+#include "check/units/units.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
 
@@ -24,10 +24,9 @@ bool looks_like_radians(ast::Expression const& tree) {
 }
 
 bool looks_like_degrees(ast::Expression const& tree) {
-  constexpr double usual[] = {45, 90, 180, 270, 360};
   if (auto const* minus = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return looks_like_degrees(*(*minus)->operand);
   auto const* number = std::get_if<ast::Number>(&tree.node);
-  return number != nullptr && !number->unit && std::ranges::find(usual, number->value) != std::end(usual);
+  return number != nullptr && !number->unit && is_usual_in_degrees(number->value);
 }
 
 }  // namespace

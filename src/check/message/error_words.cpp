@@ -13,6 +13,11 @@ Diagnostic error(std::string code, Span span, std::string message, std::string h
   return {Severity::error, std::move(code), std::move(message), Label{span, std::move(label)}, {}, std::move(help)};
 }
 
+Diagnostic as_warning(Diagnostic diagnostic) {
+  diagnostic.severity = Severity::warning;
+  return diagnostic;
+}
+
 Diagnostic conflict(std::string code, Span span, std::string label, Span other, std::string other_label, std::string message,
                     std::string help) {
   Diagnostic result = error(std::move(code), span, std::move(message), std::move(help), std::move(label));

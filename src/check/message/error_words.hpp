@@ -10,6 +10,7 @@
 namespace sysid::errors {
 
 Diagnostic error(std::string code, Span span, std::string message, std::string help = {}, std::string label = {});
+Diagnostic as_warning(Diagnostic diagnostic);
 Diagnostic conflict(std::string code, Span span, std::string label, Span other, std::string other_label, std::string message,
                     std::string help = {});
 

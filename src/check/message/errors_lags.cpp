@@ -149,14 +149,12 @@ Diagnostic implicit_in_discrete_time(Span equation, std::string const& state) {
                      fmt::format("not linear in `{}`", state)));
 }
 Diagnostic forgotten_lag(Span equation, std::string const& state) {
-  Diagnostic result = about(
+  return as_warning(about(
       {state},
       error(
           "E3114", equation,
           fmt::format("`{0}` is used at the same sample on both sides, and no equation uses an earlier sample of `{0}`", state),
-          fmt::format("if the sample before is meant, write `lag({0}, 1)` on the right; if not, solve for `{0}` by hand", state)));
-  result.severity = Severity::warning;
-  return result;
+          fmt::format("if the sample before is meant, write `lag({0}, 1)` on the right; if not, solve for `{0}` by hand", state))));
 }
 
 Diagnostic prediction_without_lags(Span span, std::string const& model, bool random) {

@@ -125,9 +125,7 @@ namespace {
 char const* word(Declarer where) { return where == Declarer::dictionary ? "dictionary" : "model"; }
 
 Diagnostic unused(Span declaration, std::string const& name, std::string message, std::string help) {
-  Diagnostic result = about({name}, error("E3019", declaration, std::move(message), std::move(help)));
-  result.severity = Severity::warning;
-  return result;
+  return as_warning(about({name}, error("E3019", declaration, std::move(message), std::move(help))));
 }
 
 }  // namespace

@@ -353,20 +353,15 @@ Diagnostic multisine_without_harmonic(Span span, double lowest, double highest, 
 }
 
 Diagnostic solver_of_nothing(Span option, std::string const& subject) {
-  Diagnostic result =
-      about({subject}, error("E6019", option, fmt::format("`{}` has no differential equations to integrate", subject),
-                             "remove the option: it has no effect"));
-  result.severity = Severity::warning;
-  return result;
+  return as_warning(about({subject}, error("E6019", option, fmt::format("`{}` has no differential equations to integrate", subject),
+                                           "remove the option: it has no effect")));
 }
 
 Diagnostic value_outside_prior(Span value, std::string const& name, Span parameter) {
-  Diagnostic result =
+  return as_warning(
       about({name}, conflict("E6020", value, "this value", parameter, "its prior",
                              fmt::format("this value of `{}` is outside the bounds of its prior", name),
-                             "check the value and its unit, or widen the prior: a fit of this model cannot find it"));
-  result.severity = Severity::warning;
-  return result;
+                             "check the value and its unit, or widen the prior: a fit of this model cannot find it")));
 }
 
 Diagnostic task_too_late(ast::Name const& name) {

@@ -69,7 +69,8 @@ class ModelChecker {
   // --- model_equations.cpp
   void equations();
   // In discrete time: a state on both sides of its equation, whose past nothing reads.
-  void report_forgotten_lags(std::vector<ast::Equation const*> const& trees, std::vector<NodeId> const& right);
+  void report_forgotten_lags(std::vector<ast::Equation const*> const& trees, std::vector<NodeId> const& residuals,
+                             std::vector<NodeId> const& right);
   std::string unknown_name(std::size_t state) const;
   // A state that is never differentiated is an algebraic unknown, where others are.
   bool may_be_algebraic(std::string const& name, StateInfo const& info);

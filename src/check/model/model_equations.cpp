@@ -57,7 +57,7 @@ void ModelChecker::equations() {
   else
     highest_ = std::get<std::vector<NodeId>>(solved);
   if (scope_.samples().discrete) {  // they are the states at the present sample
-    report_forgotten_lags(trees, right);
+    report_forgotten_lags(trees, residuals, right);
     return;
   }
   bool const algebraic = std::any_of(states_.begin(), states_.end(), [](auto const& each) { return each.second.order == 0; });
@@ -79,9 +79,10 @@ void ModelChecker::equations() {
   }
 }
 
-void ModelChecker::report_forgotten_lags(std::vector<ast::Equation const*> const& trees, std::vector<NodeId> const& right) {
+void ModelChecker::report_forgotten_lags(std::vector<ast::Equation const*> const& trees, std::vector<NodeId> const& residuals,
+                                         std::vector<NodeId> const& right) {
   Graph const& graph = model_.graph;
-  std::vector<NodeId> const read = graph.reachable(right);
+  std::vector<NodeId> const read = graph.reachable(residuals);
   for (std::size_t e = 0; e < trees.size(); ++e) {
     auto const* given = std::get_if<ast::Reference>(&trees[e]->left.node);
     StateInfo const* const state = given != nullptr ? find_state(given->name.text) : nullptr;

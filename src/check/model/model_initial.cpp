@@ -204,7 +204,9 @@ void ModelChecker::guess(ast::InitialValue const& initial, Unknown& unknown) {
 }
 
 void ModelChecker::unused_starts(std::vector<NodeId> const& initial) {
-  Graph& graph = model_.graph;
+  if (given_unknowns_.empty()) return;
+  Model copy = model_;  // need not hold the nodes of a question
+  Graph& graph = copy.graph;
   for (GivenUnknown const& each : given_unknowns_) {
     if (graph.is_constant(each.value, 0)) continue;  // stands for no value
     NodeId const difference = graph.subtract(each.value, highest_[each.unknown]);
@@ -214,7 +216,7 @@ void ModelChecker::unused_starts(std::vector<NodeId> const& initial) {
     };
     if (graph.depends(difference, branches)) continue;
     constexpr double rounded = 1e-3;  // it is written with a few digits
-    if (violated_at_start(model_, {difference, constraint_size(graph, difference), each.span}, initial, rounded))
+    if (violated_at_start(copy, {difference, constraint_size(graph, difference), each.span}, initial, rounded))
       diagnostics_.add(errors::start_not_used(each.span, model_.unknowns[each.unknown].name));
   }
 }

@@ -18,8 +18,9 @@ std::string_view never_allowed(DistributionRow const& row, std::size_t i, ValueR
   return row.refuse(numbers);
 }
 
-/// The probability of a negative value under a prior with numbers for arguments; 0 for any other.
-double negative_share(Graph& graph, Distribution const& prior) {
+/// The probability of a negative value under a prior with numbers for arguments; 0 for any other. A copy of the graph: the model
+/// need not hold these nodes, and their ids would decide the order of operands.
+double negative_share(Graph graph, Distribution const& prior) {
   if (!prior.row->proper || prior.row->cumulative == nullptr) return 0;
   auto const lowest = support(graph, prior).lower;
   if (lowest && !(graph.constant_value(*lowest).value_or(0) < 0)) return 0;

@@ -235,10 +235,7 @@ std::string DeclaredUnits::unit_of_number(ast::Expression const& odd, Wanted con
   if (other == nullptr || (is_si(wanted.scale) && is_si(other->scale)) || !simple(wanted.unit) || !simple(other->text))
     return words(si);
   bool rate = false;
-  each_expression(odd, [&](ast::Expression const& part) {
-    auto const* name = std::get_if<ast::Reference>(&part.node);
-    rate = rate || (name != nullptr && name->primes > 0);
-  });
+  each_reference(odd, [&](ast::Reference const& reference) { rate = rate || reference.primes > 0; });
   std::optional<int> const power = factor_power(odd, used.front());
   if (rate || !power || *power != 1) return words(si);
   return other->dimension == Dimension{} && other->scale == 1 ? wanted.unit : wanted.unit + "/" + other->text;

@@ -8,6 +8,7 @@
 #include "check/units/unit_check.hpp"
 #include "check/units/unit_errors.hpp"
 #include "check/units/unit_words.hpp"
+#include "check/units/units.hpp"
 #include "core/text/number.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
@@ -37,18 +38,14 @@ ast::Number const* number_of_degrees(ast::Expression const& tree, bool alone) {
   }
   auto const* number = std::get_if<ast::Number>(&tree.node);
   if (number == nullptr || number->unit) return nullptr;
-  constexpr double phases[] = {45, 90, 180, 270, 360};
-  bool const degrees = alone ? number->value >= 10 && number->value <= 720 && std::fmod(number->value, 5) == 0
-                             : std::ranges::find(phases, number->value) != std::end(phases);
+  bool const degrees =
+      alone ? number->value >= 10 && number->value <= 720 && std::fmod(number->value, 5) == 0 : is_usual_in_degrees(number->value);
   return degrees ? number : nullptr;
 }
 
 bool reads(ast::Expression const& tree, std::string const& name) {
   bool found = false;
-  each_expression(tree, [&](ast::Expression const& part) {
-    auto const* reference = std::get_if<ast::Reference>(&part.node);
-    found = found || (reference != nullptr && reference->name.text == name);
-  });
+  each_reference(tree, [&](ast::Reference const& reference) { found = found || reference.name.text == name; });
   return found;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -122,6 +123,11 @@ std::optional<Diagnostic> refuse_number(Span span, errors::Subject const& what, 
     return errors::number_of_other_kind(span, what, given, wanted);
   if (cycles_against_radians(given, wanted)) return errors::number_in_cycles(span, what, given, wanted);
   return std::nullopt;
+}
+
+bool is_usual_in_degrees(double number) {
+  constexpr double usual[] = {45, 90, 180, 270, 360};
+  return std::ranges::find(usual, number) != std::end(usual);
 }
 
 void check_time_unit(std::optional<Unit> const& unit, Span span, Diagnostics& diagnostics) {
