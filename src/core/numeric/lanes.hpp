@@ -47,6 +47,10 @@ class LaneArray {
     if (!data_) throw std::bad_alloc();
     for (std::size_t i = 0; i < static_cast<std::size_t>(rows) * static_cast<std::size_t>(width); ++i) data_.get()[i] = 0;
   }
+  explicit LaneArray(ConstLanes other) : LaneArray(other.rows(), other.width()) {
+    for (int r = 0; r < rows_; ++r)
+      for (int w = 0; w < width_; ++w) view()(r, w) = other(r, w);
+  }
   LaneArray(LaneArray const& other) : LaneArray(other.rows_, other.width_) { copy(other); }
   LaneArray(LaneArray&&) = default;
   LaneArray& operator=(LaneArray const& other) {

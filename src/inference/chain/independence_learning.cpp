@@ -9,6 +9,7 @@
 #include "core/numeric/statistics.hpp"
 #include "inference/backend/checkpoint.hpp"
 #include "inference/chain/candidates.hpp"
+#include "inference/evidence/mixture.hpp"
 #include "search/laplace.hpp"
 
 namespace sysid::metropolis {
@@ -23,6 +24,8 @@ constexpr double least_weight = 0.02;
 
 /// States of an archive; per coordinate, those that a candidate is made from at least.
 constexpr std::size_t most_archived = 8192, least_archived = 10;
+/// Of them, those that several components are fitted to.
+constexpr std::size_t most_fitted = 1000;
 
 /// Parameters; with more, places along a ridge cost a part of the run.
 constexpr int most_of_ridge = 24;
@@ -33,6 +36,14 @@ constexpr std::uint64_t windows_before_ridge = 5;
 /// mixture hardly reaches; a single one is met by chance.
 constexpr double too_long = 500;
 constexpr std::uint64_t enough_windows = 2;
+
+/// Acceptance of independence moves from which on no scouts are sent.
+constexpr double near_normal = 0.7;
+/// Independence moves that it takes to lead away from where a scout ends: their 64 ends would hardly be in such a place if chains
+/// were as often in it as they should be.
+constexpr double long_for_scouts = 50;
+/// By chance none of them is in a tail that holds a hundredth of the mass.
+constexpr std::uint64_t most_scoutings = 2, windows_between_scoutings = 3;
 
 constexpr int most_moves = 15;
 /// Independence moves that a chain spends in one place at most, between two moves of the random walk that lead out of it.
@@ -116,12 +127,37 @@ bool IndependenceLearning::wants_ridge_moves() const {
          dimension <= most_of_ridge;
 }
 
+bool IndependenceLearning::wants_scouts() const {
+  return active() && acceptance_ < near_normal && !wants_ridge() && scoutings_ < most_scoutings &&
+         windows_ > windows_before_ridge + windows_between_scoutings * scoutings_ && weights_.size() == 1 &&
+         long_stays_ < enough_windows && mixture().dimension() <= most_of_ridge && !archives_.front().iterations.empty();
+}
+
+LaneArray IndependenceLearning::archived(int count) const {
+  Archive const& archive = archives_.front();
+  auto const dimension = static_cast<std::size_t>(mixture().dimension());
+  LaneArray states(static_cast<int>(dimension), count);
+  for (int w = 0; w < count; ++w) {
+    std::size_t const n = static_cast<std::size_t>(w) * archive.iterations.size() / static_cast<std::size_t>(count);
+    for (int p = 0; p < states.rows(); ++p) states(p, w) = archive.states[n * dimension + static_cast<std::size_t>(p)];
+  }
+  return states;
+}
+
+void IndependenceLearning::see_scouts(LaneArray walked, std::span<double const> log_weights) {
+  ++scoutings_;
+  walked_ = std::move(walked);
+  double const far = elementary::log(long_for_scouts);
+  for (double const each : log_weights)
+    if (each - log_mean_weight_ > far) long_stays_ = std::max(long_stays_, enough_windows);
+}
+
 void IndependenceLearning::see_ridge(Independence const& mixture, double worth) {
   ridge_seen_ = true;
   if (worth <= acceptance_) return;
   on_ridge_ = true;
   long_stays_ = 0;  // they were those of another mixture
-  mixtures_ = {mixture, {}, {}, {}};
+  mixtures_ = {mixture, {}, {}, {}, {}};
 }
 
 int IndependenceLearning::moves_in_burn_in() const {
@@ -200,7 +236,7 @@ void IndependenceLearning::learn(Target const& target, State const& state, Info 
   archive(state, away);
   Framed const plain = framed(target, false, state.theta);
   Framed const declared = sees_declared() ? framed(target, true, state.theta) : Framed{};
-  std::array<std::vector<double>, 4> log_q;
+  std::array<std::vector<double>, 5> log_q;
   for (std::size_t m = 0; m < mixtures_.size(); ++m) {
     log_q[m].assign(info.size(), 0.0);
     if (!compared(m)) continue;
@@ -222,7 +258,7 @@ void IndependenceLearning::learn(Target const& target, State const& state, Info 
   }
 }
 
-bool IndependenceLearning::end_cycle(Target const& target, std::span<Adaptation const> groups) {
+bool IndependenceLearning::end_cycle(Target const& target, std::span<Adaptation const> groups, std::uint64_t seed) {
   ++cycles_;
   if (window_.iterations < std::max(shortest_window, iterations_ / 4)) return false;
   std::size_t best = 0;
@@ -232,17 +268,39 @@ bool IndependenceLearning::end_cycle(Target const& target, std::span<Adaptation 
   if (window_.states > 0) {
     // E w over q is 1 / E(1 / w) over p, of which the states are.
     Fit const& fit = window_.fits[best];
-    longest_stay_ = elementary::exp(fit.log_highest + fit.log_inverse) / static_cast<double>(window_.states);
+    log_mean_weight_ = elementary::log(static_cast<double>(window_.states)) - fit.log_inverse;
+    longest_stay_ = elementary::exp(fit.log_highest - log_mean_weight_);
     if (windows_ + 1 >= windows_before_ridge && longest_stay_ > too_long) ++long_stays_;
   }
   if (window_.moves > 0) acceptance_ = window_.acceptance / static_cast<double>(window_.moves);
   ++windows_;
   window_ = {};
-  propose_mixtures(target, groups);
+  propose_mixtures(target, groups, seed);
   return true;
 }
 
-void IndependenceLearning::propose_mixtures(Target const& target, std::span<Adaptation const> groups) {
+Independence IndependenceLearning::several(std::uint64_t seed) const {
+  std::vector<double> const& all = archives_.front().states;
+  auto const dimension = static_cast<std::size_t>(mixture().dimension());
+  std::size_t const count = all.size() / dimension, first = count / 3, every = 1 + (count - first) / most_fitted;
+  int const archived = static_cast<int>((count - first) / every), walked = walked_.width();
+  LaneArray states(static_cast<int>(dimension), archived + walked);
+  // Spread evenly: the last third of the columns decides how many components there are.
+  for (int n = 0, a = 0, s = 0; n < states.width(); ++n) {
+    bool const of_walkers = static_cast<long>(n + 1) * walked / states.width() > s;
+    for (int p = 0; p < states.rows(); ++p)
+      states(p, n) =
+          of_walkers ? walked_(p, s) : all[(first + static_cast<std::size_t>(a) * every) * dimension + static_cast<std::size_t>(p)];
+    ++(of_walkers ? s : a);
+  }
+  marginal::Mixture const fitted = marginal::fit_mixture({}, states, seed, {});
+  std::vector<Independence::Component> components;
+  for (marginal::Mixture::Part const& part : fitted.parts())
+    components.push_back({part.normal + part.student, part.shape.centre, part.shape.root * part.shape.root.transpose()});
+  return components.empty() || !usable(components) ? Independence() : Independence(components);
+}
+
+void IndependenceLearning::propose_mixtures(Target const& target, std::span<Adaptation const> groups, std::uint64_t seed) {
   if (on_ridge_) return;
   std::vector<Independence::Component> plain, over_values;
   for (std::size_t k = 0; k < weights_.size(); ++k) {
@@ -255,6 +313,7 @@ void IndependenceLearning::propose_mixtures(Target const& target, std::span<Adap
   // Modes without a chain have nothing new: a candidate that lost them would lose the posterior's mass there.
   mixtures_[1] = plain.size() == weights_.size() && usable(plain) ? Independence(plain) : Independence();
   mixtures_[2] = over_values.size() == weights_.size() && usable(over_values) ? Independence(over_values, true) : Independence();
+  mixtures_[4] = too_few() && weights_.size() == 1 ? several(seed) : Independence();
 }
 
 nlohmann::json IndependenceLearning::store() const {
@@ -264,13 +323,15 @@ nlohmann::json IndependenceLearning::store() const {
     archives.push_back({{"states", checkpoint::encode(std::span<double const>(each.states))},
                         {"iterations", each.iterations},
                         {"interval", each.interval}});
-  std::vector<double> sums{window_.acceptance, acceptance_, longest_stay_};
+  std::vector<double> sums{window_.acceptance, acceptance_, longest_stay_, log_mean_weight_};
   for (Fit const& fit : window_.fits) sums.insert(sums.end(), {fit.log_density, fit.log_highest, fit.log_inverse});
   return {{"component_of_chain", component_of_chain_},
           {"weights", checkpoint::encode(std::span<double const>(weights_))},
           {"mixtures", mixtures},
           {"archives", archives},
+          {"walked", {{"count", walked_.width()}, {"states", checkpoint::encode(walked_)}}},
           {"ridge", {ridge_seen_, on_ridge_}},
+          {"scoutings", scoutings_},
           {"long_stays", long_stays_},
           {"counts", {window_.iterations, window_.states, window_.moves, iterations_, cycles_, windows_}},
           {"sums", checkpoint::encode(std::span<double const>(sums))}};
@@ -287,7 +348,7 @@ IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored,
   all.component_of_chain_ = stored.at("component_of_chain").get<std::vector<int>>();
   all.weights_ = checkpoint::decode(stored.at("weights"));
   auto const counts = stored.at("counts").get<std::vector<std::uint64_t>>();
-  std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 15);
+  std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 19);
   if (counts.size() != 6 || stored.at("mixtures").size() != all.mixtures_.size() ||
       stored.at("archives").size() != all.weights_.size() || !all.fits(chains))
     throw checkpoint::Mismatch("its independence moves differ in form");
@@ -299,17 +360,21 @@ IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored,
     all.archives_.push_back(
         {std::move(states), std::move(iterations), std::max<std::uint64_t>(1, each.at("interval").get<std::uint64_t>())});
   }
+  if (int const walked = stored.at("walked").at("count").get<int>(); walked > 0)
+    all.walked_ = checkpoint::decode(stored.at("walked").at("states"), dimension, walked);
   all.window_ = {counts[0], counts[1], counts[2], {}, sums[0]};
   for (std::size_t m = 0; m < all.window_.fits.size(); ++m)
-    all.window_.fits[m] = {sums[3 + 3 * m], sums[4 + 3 * m], sums[5 + 3 * m]};
+    all.window_.fits[m] = {sums[4 + 3 * m], sums[5 + 3 * m], sums[6 + 3 * m]};
   all.ridge_seen_ = stored.at("ridge").at(0).get<bool>();
   all.on_ridge_ = stored.at("ridge").at(1).get<bool>();
+  all.scoutings_ = stored.at("scoutings").get<std::uint64_t>();
   all.iterations_ = counts[3];
   all.cycles_ = counts[4];
   all.windows_ = counts[5];
   all.long_stays_ = stored.at("long_stays").get<std::uint64_t>();
   all.acceptance_ = sums[1];
   all.longest_stay_ = sums[2];
+  all.log_mean_weight_ = sums[3];
   return all;
 }
 

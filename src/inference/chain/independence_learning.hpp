@@ -16,7 +16,9 @@ namespace sysid::metropolis {
 /// of one a mixture with the means and covariances that the chains had before it replaces the one in use if it gives the states
 /// *of* the window, which it has not seen, a higher mean log density. Where less than half of the moves of the window before were
 /// accepted, two mixtures over the declared values are candidates as well, one from the modes and one from the states: noise that
-/// is added to what is measured makes normal what a response is linear in, which is more often a value than its logarithm.
+/// is added to what is measured makes normal what a response is linear in, which is more often a value than its logarithm. So is,
+/// with one mode, a mixture of several components, which are fitted to the states by expectation maximisation: a density that
+/// narrows towards one side, or bends, is not like one normal distribution in any coordinates.
 ///
 /// How many independence moves follow each local move is decided by the share of them that is accepted, and by how long a chain
 /// may stay in one place: at x it takes w(x) / E w independence moves to leave, w = p / q, E over q (Mengersen and Tweedie 1996).
@@ -43,7 +45,7 @@ class IndependenceLearning {
   void learn(Target const& target, State const& state, Info const& info, std::span<char const> away);
   /// Between cycles: ends the window when it is long enough, and returns whether it did. Candidates that are drawn already must
   /// have been decided on.
-  bool end_cycle(Target const& target, std::span<Adaptation const> groups);
+  bool end_cycle(Target const& target, std::span<Adaptation const> groups, std::uint64_t seed);
 
   /// Whether the ridge through the mode is to be followed now: once, with one mode and not too many parameters, where too few
   /// moves were accepted, or chains stayed in one place for long.
@@ -52,6 +54,17 @@ class IndependenceLearning {
   /// moves, it is used from now on and no other is compared with it, since states of chains tell nothing of where they have not
   /// been.
   void see_ridge(Independence const& mixture, double worth);
+
+  /// Whether scouts are to look now for mass that neither the mixture nor the chains have reached: twice, with one mode, where many
+  /// moves are refused. What is learnt from chains misses a tail so narrow that none has entered it in burn-in.
+  bool wants_scouts() const;
+  /// `count` states of the chains, in the order of their iterations. [P x count]
+  LaneArray archived(int count) const;
+  /// How often they have looked.
+  std::uint64_t scoutings() const { return scoutings_; }
+  /// walked [P x n]: where scouts have been; log_weights [n] of these places, as above. One that independence moves hardly lead
+  /// away from has the consequence of a chain that stays there for long.
+  void see_scouts(LaneArray walked, std::span<double const> log_weights);
 
   /// Whether chains need moves along ridges: where the mixture in use, that along a ridge if there is one, has again and again left
   /// a chain in one place for long.
@@ -73,7 +86,7 @@ class IndependenceLearning {
   };
   struct Window {
     std::uint64_t iterations = 0, states = 0, moves = 0;
-    std::array<Fit, 4> fits;  // of the mixtures
+    std::array<Fit, 5> fits;  // of the mixtures
     double acceptance = 0;    // sum over moves
   };
   /// States of the chains of one mode while they were near it, of iterations at equal intervals, which double when there are too
@@ -86,9 +99,12 @@ class IndependenceLearning {
   void archive(State const& state, std::span<char const> away);
   /// Over the declared values of the last two thirds of an archive; nothing where they are too few.
   std::optional<Independence::Component> declared(Target const& target, std::size_t component) const;
-  void propose_mixtures(Target const& target, std::span<Adaptation const> groups);
+  /// Of several components over theta, fitted to the last two thirds of the archive and to where scouts have been; empty where
+  /// these are too few.
+  Independence several(std::uint64_t seed) const;
+  void propose_mixtures(Target const& target, std::span<Adaptation const> groups, std::uint64_t seed);
   /// Whether a mixture takes part in the comparison.
-  bool compared(std::size_t m) const { return !mixtures_[m].empty() && (m < 2 || sees_declared()); }
+  bool compared(std::size_t m) const { return !mixtures_[m].empty() && (!mixtures_[m].declared() || sees_declared()); }
   bool sees_declared() const { return too_few() || mixture().declared(); }
   int worth() const;
   /// Whether each of `chains` has its component.
@@ -96,14 +112,17 @@ class IndependenceLearning {
 
   std::vector<int> component_of_chain_;
   std::vector<double> weights_;
-  /// In use (one along a ridge ends the comparison); candidates over theta, over declared values, and over these as the modes are;
-  /// empty where there are none.
-  std::array<Independence, 4> mixtures_;
+  /// In use (one along a ridge ends the comparison); candidates over theta, over declared values, over these as the modes are, and
+  /// of several components over theta; empty where there are none.
+  std::array<Independence, 5> mixtures_;
   std::vector<Archive> archives_;  // of the components
+  LaneArray walked_;               // [P x n] where scouts have been
   Window window_;
   std::uint64_t iterations_ = 0, cycles_ = 0, windows_ = 0;
+  std::uint64_t scoutings_ = 0;
   std::uint64_t long_stays_ = 0;                // windows with a place from which independence moves hardly lead
   double acceptance_ = 0, longest_stay_ = 1;    // of the last window
+  double log_mean_weight_ = 0;                  // of the last window, over the mixture
   bool ridge_seen_ = false, on_ridge_ = false;  // whether the mixture in use is one along a ridge
 };
 

@@ -19,6 +19,7 @@
 #include "inference/chain/ridge.hpp"
 #include "inference/chain/ridge_moves.hpp"
 #include "inference/chain/ridge_worth.hpp"
+#include "inference/chain/scouts.hpp"
 #include "inference/chain/watch.hpp"
 #include "search/laplace.hpp"
 
@@ -166,6 +167,23 @@ void follow_ridge(Target const& target, std::uint64_t seed, Ledger& ledger, Stat
   ledger.merge(spent);
 }
 
+/// Whether scouts cost a small part of the run; an estimated density would hold them where it is too high by chance.
+bool can_be_scouted(Target const& target, Plan const& plan) {
+  std::uint64_t const run = plan.samples * static_cast<std::uint64_t>(plan.chains);
+  return !target.is_expensive() && !target.is_estimated() && 3 * metropolis::cost_of_scouts(target.dimension()) <= run;
+}
+
+/// Looks for mass that neither the mixture nor the chains have reached. Interrupted, it has changed nothing.
+void send_scouts(Target const& target, std::uint64_t seed, Ledger& ledger, State& state) {
+  Ledger spent;
+  Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, 0);
+  LaneArray const from = state.independence.archived(metropolis::scouts);
+  LaneArray walked = metropolis::scout(objective, from, seed, state.independence.scoutings(), spent);
+  metropolis::State const visited = metropolis::init(target, walked, spent);
+  state.independence.see_scouts(std::move(walked), state.independence.log_weights(target, visited));
+  ledger.merge(spent);
+}
+
 /// Whether the next iteration is a move along ridges.
 bool at_ridge(State const& state) { return state.ridge.active() && state.next.front() % ridge_interval == 0; }
 
@@ -220,7 +238,8 @@ void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Propo
   }
   if (ridge) state.ridge_worth.spend(along_ridge, spent.solves());
   ledger.merge(spent);
-  if (!state.independence.active() || !state.independence.end_cycle(target, state.groups)) return;
+  if (!state.independence.active() || !state.independence.end_cycle(target, state.groups, key.seed)) return;
+  if (state.independence.wants_scouts() && can_be_scouted(target, plan)) send_scouts(target, key.seed, ledger, state);
   state.local.end_window(state.independence.too_few());
   choose_ridge_moves(target, key.seed, state);
 }

@@ -108,12 +108,7 @@ void gather(Objective const& objective, WalkedDraws const& draws, std::vector<do
   }
 }
 
-LaneArray last_of(LaneArray const& states, int count) {
-  LaneArray out(states.rows(), count);
-  ConstLanes const last = states.view().columns(states.width() - count, count);
-  for (int i = 0; i < out.rows(); ++i) std::ranges::copy(last.row(i), out.row(i).begin());
-  return out;
-}
+LaneArray last_of(LaneArray const& states, int count) { return LaneArray(states.view().columns(states.width() - count, count)); }
 
 }  // namespace
 
