@@ -24,7 +24,7 @@ TestTarget banana() {
                     [](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[1] - w[0] * w[0]) / 0.01; });
 }
 
-std::vector<Independence::Component> ridge_from(Target const& target, std::vector<double> const& declared) {
+RidgeRow ridge_row_from(Target const& target, std::vector<double> const& declared) {
   Objective const objective = make_objective(target, ObjectiveKind::posterior, 1, 0);
   LaneArray values(target.dimension(), 1), theta(target.dimension(), 1);
   for (int p = 0; p < values.rows(); ++p) values(p, 0) = declared[static_cast<std::size_t>(p)];
@@ -33,6 +33,12 @@ std::vector<Independence::Component> ridge_from(Target const& target, std::vecto
   Eigen::VectorXd const start = column(theta, 0);
   Mode const mode = laplace_mode(objective, start, slope_at(objective, start, ledger).curvature, ledger);
   return along_ridge(objective, mode, ledger);
+}
+
+std::vector<Independence::Component> ridge_from(Target const& target, std::vector<double> const& declared) {
+  RidgeRow const row = ridge_row_from(target, declared);
+  CHECK(row.complete);
+  return row.components;
 }
 
 /// Draws of a mixture, weighed by the density: the share of independent draws that they are worth, and the sd of the first value.
@@ -129,4 +135,28 @@ TEST_CASE("chains cross a curved ridge that walks do not cross, and go on from w
   CHECK(found[0].sd == doctest::Approx(1).epsilon(0.06));
   int const end = whole.questions;
   check_stops(mh::run, target, settings_of("adaptive"), whole, {end - 1, end * 3 / 4, end / 2, end / 4, end / 8});
+}
+
+TEST_CASE("a ridge that is hundreds of its widths long is followed to its ends, and one that is longer is called incomplete") {
+  // b = 30 a^2 within `width`, a ~ N(0, 1): the mean of b is 30, its variance 2 * 30^2.
+  auto const banana = [](double width) {
+    return TestTarget(
+        {"a", "b"}, {{Prior::normal, 0, 1}, {Prior::normal, 0, 1000}}, 1, 0,
+        [width](std::vector<double> const& w, std::vector<double>& rows) { rows[0] = (w[1] - 30 * w[0] * w[0]) / width; });
+  };
+  TestTarget const followed = banana(0.02);
+  RidgeRow const row = ridge_row_from(followed, {0, 0});
+  CHECK(row.complete);
+  CHECK(row.components.size() > 100);
+  double farthest = 0;
+  for (auto const& each : row.components) farthest = std::max(farthest, std::abs(each.mean(0)));
+  CHECK(farthest > 3.5);
+  CHECK_FALSE(ridge_row_from(banana(1e-5), {0, 0}).complete);
+  Settings settings(mh::settings());
+  settings.set("samples", std::int64_t{12000});
+  Bench bench(1);
+  FitResult const result = mh::run(followed, settings, bench.context);
+  REQUIRE_FALSE(result.failure);
+  CHECK(std::abs(result.summaries[1].mean - 30) < 4 * result.summaries[1].mcse_mean);
+  CHECK(result.summaries[1].sd == doctest::Approx(30 * std::sqrt(2.0)).epsilon(0.1));
 }

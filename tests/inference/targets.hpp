@@ -143,9 +143,11 @@ class GivenUp : public TestTarget {
   GivenUp(TestTarget target, int last) : TestTarget(std::move(target)), last_(last) {}
   void log_likelihood(ConstLanes theta, std::span<double> out, Ledger& ledger) const override {
     if (++batches == last_) throw Interrupted();
+    widths.push_back(theta.width());
     TestTarget::log_likelihood(theta, out, ledger);
   }
   mutable int batches = 0;
+  mutable std::vector<int> widths;
 
  private:
   int last_;

@@ -21,7 +21,7 @@ namespace {
 using json = nlohmann::json;
 
 // Of the file and of all that back ends store in it: raised with any change of either. A file of another form is refused.
-constexpr int form = 8;
+constexpr int form = 9;
 
 UserError refused(char const* code, std::filesystem::path const& path, std::string const& what, char const* help) {
   return UserError({Severity::error, code, fmt::format("`{}` {}", path.string(), what), std::nullopt, {}, help});

@@ -22,9 +22,9 @@ constexpr std::uint64_t trial_interval = 8;
 /// Laplace's shares may be far off: each mode is visited.
 constexpr double least_weight = 0.02;
 
-/// States of an archive; per coordinate, those that a candidate is made from at least.
-constexpr std::size_t most_archived = 8192, least_archived = 10;
-/// Of them, those that several components are fitted to.
+/// Archived states, per coordinate, that a candidate over declared values is made from at least.
+constexpr std::size_t least_archived = 10;
+/// Those that several components are fitted to.
 constexpr std::size_t most_fitted = 1000;
 
 /// Parameters; with more, places along a ridge cost a part of the run.
@@ -39,11 +39,13 @@ constexpr std::uint64_t enough_windows = 2;
 
 /// Acceptance of independence moves from which on no scouts are sent.
 constexpr double near_normal = 0.7;
-/// Independence moves that it takes to lead away from where a scout ends: their 64 ends would hardly be in such a place if chains
-/// were as often in it as they should be.
+/// Independence moves that it takes to lead away from a place where a scout has been: if chains were as often in such places as
+/// they should be, the mixture that is fitted to their states would lead there.
 constexpr double long_for_scouts = 50;
 /// By chance none of them is in a tail that holds a hundredth of the mass.
 constexpr std::uint64_t most_scoutings = 2, windows_between_scoutings = 3;
+/// What two more windows lengthen burn-in by: each is a third of what lies before it.
+constexpr double two_windows = 16.0 / 9.0;
 
 constexpr int most_moves = 15;
 /// Independence moves that a chain spends in one place at most, between two moves of the random walk that lead out of it.
@@ -100,7 +102,7 @@ IndependenceLearning::IndependenceLearning(Target const& target, std::vector<Mod
   }
   mixtures_[0] = Independence(components);
   if (usable(declared)) mixtures_[3] = Independence(declared, true);
-  archives_.resize(modes.size());
+  archives_.assign(modes.size(), StateArchive(target.dimension()));
 }
 
 // A move of the random walk is worth 0.33 / P independent draws at best (Gelman, Roberts and Gilks 1996), an independence move at
@@ -127,37 +129,46 @@ bool IndependenceLearning::wants_ridge_moves() const {
          dimension <= most_of_ridge;
 }
 
-bool IndependenceLearning::wants_scouts() const {
-  return active() && acceptance_ < near_normal && !wants_ridge() && scoutings_ < most_scoutings &&
-         windows_ > windows_before_ridge + windows_between_scoutings * scoutings_ && weights_.size() == 1 &&
-         long_stays_ < enough_windows && mixture().dimension() <= most_of_ridge && !archives_.front().iterations.empty();
+bool IndependenceLearning::wants_scouts(std::uint64_t end) const {
+  return active() && acceptance_ < near_normal && windows_ > windows_before_ridge && !wants_ridge() && weights_.size() == 1 &&
+         long_stays_ < enough_windows && mixture().dimension() <= most_of_ridge && archives_.front().size() > 0 &&
+         scoutings_ < most_scoutings && windows_ >= next_scouting_ &&
+         two_windows * static_cast<double>(iterations_) <= static_cast<double>(end);
 }
 
-LaneArray IndependenceLearning::archived(int count) const {
-  Archive const& archive = archives_.front();
-  auto const dimension = static_cast<std::size_t>(mixture().dimension());
-  LaneArray states(static_cast<int>(dimension), count);
-  for (int w = 0; w < count; ++w) {
-    std::size_t const n = static_cast<std::size_t>(w) * archive.iterations.size() / static_cast<std::size_t>(count);
-    for (int p = 0; p < states.rows(); ++p) states(p, w) = archive.states[n * dimension + static_cast<std::size_t>(p)];
-  }
-  return states;
-}
-
-void IndependenceLearning::see_scouts(LaneArray walked, std::span<double const> log_weights) {
+std::optional<std::size_t> IndependenceLearning::see_scouts(Target const& target, State const& walked) {
   ++scoutings_;
-  walked_ = std::move(walked);
-  double const far = elementary::log(long_for_scouts);
-  for (double const each : log_weights)
-    if (each - log_mean_weight_ > far) long_stays_ = std::max(long_stays_, enough_windows);
+  next_scouting_ = windows_ + windows_between_scoutings;
+  double const far = log_mean_weight_ + elementary::log(long_for_scouts);
+  std::vector<double> const weights = log_weights(target, walked);
+  std::vector<std::size_t> back;
+  std::optional<std::size_t> farthest;
+  for (std::size_t w = 0; w < weights.size(); ++w) {
+    if (!(walked.log_prior[w] + walked.log_likelihood[w] >= usual_density_)) continue;
+    back.push_back(w);
+    if (weights[w] > far && (!farthest || weights[w] > weights[*farthest])) farthest = w;
+  }
+  if (farthest) {
+    mass_found_ = true;
+    long_stays_ = std::max(long_stays_, enough_windows);
+  }
+  walked_ = LaneArray(walked.theta.rows(), static_cast<int>(back.size()));
+  for (int p = 0; p < walked_.rows(); ++p)
+    for (int w = 0; w < walked_.width(); ++w) walked_(p, w) = walked.theta(p, static_cast<int>(back[static_cast<std::size_t>(w)]));
+  return farthest;
 }
 
-void IndependenceLearning::see_ridge(Independence const& mixture, double worth) {
+void IndependenceLearning::see_ridge(Independence const& mixture, double worth, bool complete) {
   ridge_seen_ = true;
   if (worth <= acceptance_) return;
+  if (!complete) {
+    long_stays_ = std::max(long_stays_, enough_windows);
+    return;
+  }
   on_ridge_ = true;
-  long_stays_ = 0;  // they were those of another mixture
-  mixtures_ = {mixture, {}, {}, {}, {}};
+  if (!mass_found_) long_stays_ = 0;  // they were those of another mixture
+  mixtures_.fill({});
+  mixtures_[0] = mixture;
 }
 
 int IndependenceLearning::moves_in_burn_in() const {
@@ -188,38 +199,17 @@ std::vector<char> IndependenceLearning::away(Target const& target, State const& 
 }
 
 void IndependenceLearning::archive(State const& state, std::span<char const> away) {
-  auto const dimension = static_cast<std::size_t>(state.theta.rows());
-  for (std::size_t w = 0; w < away.size(); ++w) {
-    Archive& archive = archives_[static_cast<std::size_t>(component_of_chain_[w])];
-    if (away[w] != 0 || iterations_ % archive.interval != 0) continue;
-    for (int p = 0; p < state.theta.rows(); ++p) archive.states.push_back(state.theta(p, static_cast<int>(w)));
-    archive.iterations.push_back(iterations_);
-  }
-  for (Archive& archive : archives_) {
-    if (archive.iterations.size() < most_archived) continue;
-    archive.interval *= 2;
-    std::size_t kept = 0;
-    // Whole iterations go: every second state would be those of every second chain.
-    for (std::size_t n = 0; n < archive.iterations.size(); ++n) {
-      if (archive.iterations[n] % archive.interval != 0) continue;
-      std::copy_n(archive.states.begin() + static_cast<std::ptrdiff_t>(n * dimension), dimension,
-                  archive.states.begin() + static_cast<std::ptrdiff_t>(kept * dimension));
-      archive.iterations[kept++] = archive.iterations[n];
-    }
-    archive.states.resize(kept * dimension);
-    archive.iterations.resize(kept);
-  }
+  for (std::size_t w = 0; w < away.size(); ++w)
+    if (away[w] == 0)
+      archives_[static_cast<std::size_t>(component_of_chain_[w])].add(state.theta, static_cast<int>(w), iterations_);
+  for (StateArchive& each : archives_) each.thin();
 }
 
 std::optional<Independence::Component> IndependenceLearning::declared(Target const& target, std::size_t component) const {
-  std::vector<double> const& all = archives_[component].states;
-  auto const dimension = static_cast<std::size_t>(target.dimension());
-  std::size_t const count = all.size() / dimension, first = count / 3;
-  if (count - first < least_archived * dimension) return std::nullopt;
-  LaneArray theta(target.dimension(), static_cast<int>(count - first)), values(theta.rows(), theta.width());
-  for (int p = 0; p < theta.rows(); ++p)
-    for (int n = 0; n < theta.width(); ++n)
-      theta(p, n) = all[(first + static_cast<std::size_t>(n)) * dimension + static_cast<std::size_t>(p)];
+  StateArchive const& archive = archives_[component];
+  LaneArray const theta = archive.picked(archive.early(), archive.size());
+  if (theta.width() < static_cast<int>(least_archived) * theta.rows()) return std::nullopt;
+  LaneArray values(theta.rows(), theta.width());
   target.constrain(theta, values);
   Eigen::MatrixXd states(values.rows(), values.width());
   for (int p = 0; p < values.rows(); ++p)
@@ -236,7 +226,7 @@ void IndependenceLearning::learn(Target const& target, State const& state, Info 
   archive(state, away);
   Framed const plain = framed(target, false, state.theta);
   Framed const declared = sees_declared() ? framed(target, true, state.theta) : Framed{};
-  std::array<std::vector<double>, 5> log_q;
+  std::array<std::vector<double>, mixture_count> log_q;
   for (std::size_t m = 0; m < mixtures_.size(); ++m) {
     log_q[m].assign(info.size(), 0.0);
     if (!compared(m)) continue;
@@ -251,6 +241,8 @@ void IndependenceLearning::learn(Target const& target, State const& state, Info 
     if (finite) {
       for (std::size_t m = 0; m < mixtures_.size(); ++m) window_.fits[m].add(density, log_q[m][chain], window_.states == 0);
       ++window_.states;
+      window_.density += density;
+      window_.square += density * density;
     }
     if (info[chain].kind != MoveKind::independent) continue;
     window_.acceptance += info[chain].acceptance_probability;
@@ -270,6 +262,8 @@ bool IndependenceLearning::end_cycle(Target const& target, std::span<Adaptation 
     Fit const& fit = window_.fits[best];
     log_mean_weight_ = elementary::log(static_cast<double>(window_.states)) - fit.log_inverse;
     longest_stay_ = elementary::exp(fit.log_highest - log_mean_weight_);
+    double const mean = window_.density / static_cast<double>(window_.states);
+    usual_density_ = mean - std::sqrt(std::max(0.0, window_.square / static_cast<double>(window_.states) - mean * mean));
     if (windows_ + 1 >= windows_before_ridge && longest_stay_ > too_long) ++long_stays_;
   }
   if (window_.moves > 0) acceptance_ = window_.acceptance / static_cast<double>(window_.moves);
@@ -280,18 +274,13 @@ bool IndependenceLearning::end_cycle(Target const& target, std::span<Adaptation 
 }
 
 Independence IndependenceLearning::several(std::uint64_t seed) const {
-  std::vector<double> const& all = archives_.front().states;
-  auto const dimension = static_cast<std::size_t>(mixture().dimension());
-  std::size_t const count = all.size() / dimension, first = count / 3, every = 1 + (count - first) / most_fitted;
-  int const archived = static_cast<int>((count - first) / every), walked = walked_.width();
-  LaneArray states(static_cast<int>(dimension), archived + walked);
-  // Spread evenly: the last third of the columns decides how many components there are.
-  for (int n = 0, a = 0, s = 0; n < states.width(); ++n) {
-    bool const of_walkers = static_cast<long>(n + 1) * walked / states.width() > s;
-    for (int p = 0; p < states.rows(); ++p)
-      states(p, n) =
-          of_walkers ? walked_(p, s) : all[(first + static_cast<std::size_t>(a) * every) * dimension + static_cast<std::size_t>(p)];
-    ++(of_walkers ? s : a);
+  LaneArray const of_chains = archives_.front().picked(archives_.front().early(), most_fitted);
+  LaneArray states(of_chains.rows(), of_chains.width() + walked_.width());
+  // Scouts are spread evenly among the others: the last third of the columns decides how many components there are.
+  for (int n = 0, scouts = 0; n < states.width(); ++n) {
+    bool const of_scout = static_cast<long>(n + 1) * walked_.width() / states.width() > scouts;
+    for (int p = 0; p < states.rows(); ++p) states(p, n) = of_scout ? walked_(p, scouts) : of_chains(p, n - scouts);
+    if (of_scout) ++scouts;
   }
   marginal::Mixture const fitted = marginal::fit_mixture({}, states, seed, {});
   std::vector<Independence::Component> components;
@@ -319,19 +308,17 @@ void IndependenceLearning::propose_mixtures(Target const& target, std::span<Adap
 nlohmann::json IndependenceLearning::store() const {
   nlohmann::json mixtures = nlohmann::json::array(), archives = nlohmann::json::array();
   for (Independence const& mixture : mixtures_) mixtures.push_back(mixture.store());
-  for (Archive const& each : archives_)
-    archives.push_back({{"states", checkpoint::encode(std::span<double const>(each.states))},
-                        {"iterations", each.iterations},
-                        {"interval", each.interval}});
-  std::vector<double> sums{window_.acceptance, acceptance_, longest_stay_, log_mean_weight_};
+  for (StateArchive const& each : archives_) archives.push_back(each.store());
+  std::vector<double> sums{window_.acceptance, acceptance_,     longest_stay_, log_mean_weight_,
+                           usual_density_,     window_.density, window_.square};
   for (Fit const& fit : window_.fits) sums.insert(sums.end(), {fit.log_density, fit.log_highest, fit.log_inverse});
   return {{"component_of_chain", component_of_chain_},
           {"weights", checkpoint::encode(std::span<double const>(weights_))},
           {"mixtures", mixtures},
           {"archives", archives},
           {"walked", {{"count", walked_.width()}, {"states", checkpoint::encode(walked_)}}},
-          {"ridge", {ridge_seen_, on_ridge_}},
-          {"scoutings", scoutings_},
+          {"ridge", {ridge_seen_, on_ridge_, mass_found_}},
+          {"scoutings", {scoutings_, next_scouting_}},
           {"long_stays", long_stays_},
           {"counts", {window_.iterations, window_.states, window_.moves, iterations_, cycles_, windows_}},
           {"sums", checkpoint::encode(std::span<double const>(sums))}};
@@ -348,26 +335,23 @@ IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored,
   all.component_of_chain_ = stored.at("component_of_chain").get<std::vector<int>>();
   all.weights_ = checkpoint::decode(stored.at("weights"));
   auto const counts = stored.at("counts").get<std::vector<std::uint64_t>>();
-  std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 19);
+  std::vector<double> const sums = checkpoint::decode(stored.at("sums"), 7 + 3 * mixture_count);
   if (counts.size() != 6 || stored.at("mixtures").size() != all.mixtures_.size() ||
       stored.at("archives").size() != all.weights_.size() || !all.fits(chains))
     throw checkpoint::Mismatch("its independence moves differ in form");
   for (std::size_t m = 0; m < all.mixtures_.size(); ++m)
     all.mixtures_[m] = Independence::restore(stored.at("mixtures").at(m), dimension);
-  for (nlohmann::json const& each : stored.at("archives")) {
-    auto iterations = each.at("iterations").get<std::vector<std::uint64_t>>();
-    std::vector<double> states = checkpoint::decode(each.at("states"), iterations.size() * static_cast<std::size_t>(dimension));
-    all.archives_.push_back(
-        {std::move(states), std::move(iterations), std::max<std::uint64_t>(1, each.at("interval").get<std::uint64_t>())});
-  }
+  for (nlohmann::json const& each : stored.at("archives")) all.archives_.push_back(StateArchive::restore(each, dimension));
   if (int const walked = stored.at("walked").at("count").get<int>(); walked > 0)
     all.walked_ = checkpoint::decode(stored.at("walked").at("states"), dimension, walked);
-  all.window_ = {counts[0], counts[1], counts[2], {}, sums[0]};
+  all.window_ = {counts[0], counts[1], counts[2], {}, sums[0], sums[5], sums[6]};
   for (std::size_t m = 0; m < all.window_.fits.size(); ++m)
-    all.window_.fits[m] = {sums[4 + 3 * m], sums[5 + 3 * m], sums[6 + 3 * m]};
+    all.window_.fits[m] = {sums[7 + 3 * m], sums[8 + 3 * m], sums[9 + 3 * m]};
   all.ridge_seen_ = stored.at("ridge").at(0).get<bool>();
   all.on_ridge_ = stored.at("ridge").at(1).get<bool>();
-  all.scoutings_ = stored.at("scoutings").get<std::uint64_t>();
+  all.mass_found_ = stored.at("ridge").at(2).get<bool>();
+  all.scoutings_ = stored.at("scoutings").at(0).get<std::uint64_t>();
+  all.next_scouting_ = stored.at("scoutings").at(1).get<std::uint64_t>();
   all.iterations_ = counts[3];
   all.cycles_ = counts[4];
   all.windows_ = counts[5];
@@ -375,6 +359,7 @@ IndependenceLearning IndependenceLearning::restore(nlohmann::json const& stored,
   all.acceptance_ = sums[1];
   all.longest_stay_ = sums[2];
   all.log_mean_weight_ = sums[3];
+  all.usual_density_ = sums[4];
   return all;
 }
 

@@ -8,6 +8,7 @@
 
 #include "inference/chain/adaptation.hpp"
 #include "inference/chain/independence.hpp"
+#include "inference/chain/state_archive.hpp"
 #include "result/mode.hpp"
 
 namespace sysid::metropolis {
@@ -52,19 +53,23 @@ class IndependenceLearning {
   bool wants_ridge() const;
   /// A mixture along it, and the share of independent draws that its draws are worth: if that is more than the share of accepted
   /// moves, it is used from now on and no other is compared with it, since states of chains tell nothing of where they have not
-  /// been.
-  void see_ridge(Independence const& mixture, double worth);
+  /// been. Where it is not complete it is not used: chains would hardly leave what it covers. That it would have been worth it has
+  /// the consequence of a chain that stays in one place for long.
+  void see_ridge(Independence const& mixture, double worth, bool complete);
 
-  /// Whether scouts are to look now for mass that neither the mixture nor the chains have reached: twice, with one mode, where many
-  /// moves are refused. What is learnt from chains misses a tail so narrow that none has entered it in burn-in.
-  bool wants_scouts() const;
-  /// `count` states of the chains, in the order of their iterations. [P x count]
-  LaneArray archived(int count) const;
+  /// Whether scouts are to look now for mass that neither the mixture nor the chains have reached: with one mode, where many moves
+  /// are refused, and once more some windows later, if chains still lack moves along ridges. What is learnt from chains misses a
+  /// tail so narrow that none has entered it in burn-in. end: of burn-in, before which at least two more windows have to end.
+  bool wants_scouts(std::uint64_t end) const;
+  /// At most `most` states that the chains have been in. [P x n]
+  LaneArray archived(int most) const { return archives_.front().picked(0, static_cast<std::size_t>(most)); }
   /// How often they have looked.
   std::uint64_t scoutings() const { return scoutings_; }
-  /// walked [P x n]: where scouts have been; log_weights [n] of these places, as above. One that independence moves hardly lead
-  /// away from has the consequence of a chain that stays there for long.
-  void see_scouts(LaneArray walked, std::span<double const> log_weights);
+  /// walked: places of scouts, with the densities there. One that independence moves hardly lead away from has the consequence of a
+  /// chain that stays there for long; the one that they lead away from least is returned. Only places count whose density is as
+  /// chains know it, at least their mean of the last window less one sd, of the logarithm: what is narrow and has mass has no low
+  /// density, while some scouts are still on their way back from a flatter one.
+  std::optional<std::size_t> see_scouts(Target const& target, State const& walked);
 
   /// Whether chains need moves along ridges: where the mixture in use, that along a ridge if there is one, has again and again left
   /// a chain in one place for long.
@@ -84,17 +89,12 @@ class IndependenceLearning {
     double log_highest = 0, log_inverse = 0;  // of the weights w: log max w, log sum 1/w
     void add(double log_posterior, double log_q, bool first);
   };
+  static constexpr std::size_t mixture_count = 5;
   struct Window {
     std::uint64_t iterations = 0, states = 0, moves = 0;
-    std::array<Fit, 5> fits;  // of the mixtures
-    double acceptance = 0;    // sum over moves
-  };
-  /// States of the chains of one mode while they were near it, of iterations at equal intervals, which double when there are too
-  /// many.
-  struct Archive {
-    std::vector<double> states;             // P numbers each
-    std::vector<std::uint64_t> iterations;  // of each state
-    std::uint64_t interval = 1;
+    std::array<Fit, mixture_count> fits;
+    double acceptance = 0;           // sum over moves
+    double density = 0, square = 0;  // sums of the log density of the states, and of its square
   };
   void archive(State const& state, std::span<char const> away);
   /// Over the declared values of the last two thirds of an archive; nothing where they are too few.
@@ -114,16 +114,18 @@ class IndependenceLearning {
   std::vector<double> weights_;
   /// In use (one along a ridge ends the comparison); candidates over theta, over declared values, over these as the modes are, and
   /// of several components over theta; empty where there are none.
-  std::array<Independence, 5> mixtures_;
-  std::vector<Archive> archives_;  // of the components
-  LaneArray walked_;               // [P x n] where scouts have been
+  std::array<Independence, mixture_count> mixtures_;
+  std::vector<StateArchive> archives_;  // of the chains of each component, while they were near it
+  LaneArray walked_;                    // [P x n] where scouts have come back to
   Window window_;
   std::uint64_t iterations_ = 0, cycles_ = 0, windows_ = 0;
-  std::uint64_t scoutings_ = 0;
-  std::uint64_t long_stays_ = 0;                // windows with a place from which independence moves hardly lead
-  double acceptance_ = 0, longest_stay_ = 1;    // of the last window
-  double log_mean_weight_ = 0;                  // of the last window, over the mixture
-  bool ridge_seen_ = false, on_ridge_ = false;  // whether the mixture in use is one along a ridge
+  std::uint64_t scoutings_ = 0, next_scouting_ = 0;  // how many there were, and the window from which on there may be another
+  std::uint64_t long_stays_ = 0;                     // windows with a place from which independence moves hardly lead
+  double acceptance_ = 0, longest_stay_ = 1;         // of the last window
+  double log_mean_weight_ = 0;                       // of the last window, over the mixture
+  double usual_density_ = 0;                         // mean less sd of the log density of its states
+  bool ridge_seen_ = false, on_ridge_ = false;       // whether the mixture in use is one along a ridge
+  bool mass_found_ = false;                          // by scouts
 };
 
 }  // namespace sysid::metropolis

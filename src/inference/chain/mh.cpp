@@ -60,6 +60,7 @@ struct State : ChainRun {
   metropolis::LocalLearning local;
   metropolis::RidgeMoves ridge;
   metropolis::RidgeWorth ridge_worth;
+  bool window_ended = false;  // one of burn-in, and what follows from it is still to be done
 };
 
 struct Plan {
@@ -99,6 +100,7 @@ nlohmann::json store(State const& state, Ledger const& ledger, nlohmann::json co
   stored["local"] = state.local.store();
   stored["ridge"] = state.ridge.store();
   stored["ridge_worth"] = state.ridge_worth.store();
+  stored["window_ended"] = state.window_ended;
   return stored;
 }
 
@@ -116,6 +118,7 @@ void restore(nlohmann::json const& stored, Target const& target, Plan const& pla
   state.local = metropolis::LocalLearning::restore(stored.at("local"));
   state.ridge = metropolis::RidgeMoves::restore(stored.at("ridge"), target.dimension());
   state.ridge_worth = metropolis::RidgeWorth::restore(stored.at("ridge_worth"), target.dimension());
+  state.window_ended = stored.at("window_ended").get<bool>();
 }
 
 /// Chains of one mode learn together.
@@ -162,15 +165,16 @@ metropolis::LocalMoves local_moves(std::span<metropolis::Proposal const* const> 
 void follow_ridge(Target const& target, std::uint64_t seed, Ledger& ledger, State& state) {
   Ledger spent;
   Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, 0);
-  metropolis::Independence const along(metropolis::along_ridge(objective, state.modes.front(), spent));
-  state.independence.see_ridge(along, metropolis::worth_of_draws(objective, along, seed, spent));
+  metropolis::RidgeRow const row = metropolis::along_ridge(objective, state.modes.front(), spent);
+  metropolis::Independence const along(row.components);
+  state.independence.see_ridge(along, metropolis::worth_of_draws(objective, along, seed, spent), row.complete);
   ledger.merge(spent);
 }
 
 /// Whether scouts cost a small part of the run; an estimated density would hold them where it is too high by chance.
 bool can_be_scouted(Target const& target, Plan const& plan) {
   std::uint64_t const run = plan.samples * static_cast<std::uint64_t>(plan.chains);
-  return !target.is_expensive() && !target.is_estimated() && 3 * metropolis::cost_of_scouts(target.dimension()) <= run;
+  return !target.is_expensive() && !target.is_estimated() && 5 * metropolis::cost_of_scouts(target.dimension()) <= run;
 }
 
 /// Looks for mass that neither the mixture nor the chains have reached. Interrupted, it has changed nothing.
@@ -179,8 +183,13 @@ void send_scouts(Target const& target, std::uint64_t seed, Ledger& ledger, State
   Objective const objective = make_objective(target, ObjectiveKind::posterior, seed, 0);
   LaneArray const from = state.independence.archived(metropolis::scouts);
   LaneArray walked = metropolis::scout(objective, from, seed, state.independence.scoutings(), spent);
-  metropolis::State const visited = metropolis::init(target, walked, spent);
-  state.independence.see_scouts(std::move(walked), state.independence.log_weights(target, visited));
+  metropolis::State const places = metropolis::init(target, std::move(walked), spent);
+  if (std::optional<std::size_t> const found = state.independence.see_scouts(target, places)) {
+    // A chain goes on from there: what moves along ridges are worth is seen where they are needed.
+    for (int p = 0; p < places.theta.rows(); ++p) state.chains.theta(p, 0) = places.theta(p, static_cast<int>(*found));
+    state.chains.log_prior.front() = places.log_prior[*found];
+    state.chains.log_likelihood.front() = places.log_likelihood[*found];
+  }
   ledger.merge(spent);
 }
 
@@ -238,10 +247,15 @@ void burn_in(Target const& target, Plan const& plan, std::span<metropolis::Propo
   }
   if (ridge) state.ridge_worth.spend(along_ridge, spent.solves());
   ledger.merge(spent);
-  if (!state.independence.active() || !state.independence.end_cycle(target, state.groups, key.seed)) return;
-  if (state.independence.wants_scouts() && can_be_scouted(target, plan)) send_scouts(target, key.seed, ledger, state);
+  state.window_ended = state.independence.active() && state.independence.end_cycle(target, state.groups, key.seed);
+}
+
+/// What follows from a window of burn-in: a batch of its own. Interrupted, it has changed nothing.
+void follow_window(Target const& target, Plan const& plan, std::uint64_t seed, Ledger& ledger, State& state) {
+  if (state.independence.wants_scouts(plan.burn_in) && can_be_scouted(target, plan)) send_scouts(target, seed, ledger, state);
   state.local.end_window(state.independence.too_few());
-  choose_ridge_moves(target, key.seed, state);
+  choose_ridge_moves(target, seed, state);
+  state.window_ended = false;
 }
 
 /// Iterates to the end, or until asked to stop or a batch is given up, of which nothing is kept; returns whether it was.
@@ -273,8 +287,14 @@ bool sample(Target const& target, Plan const& plan, RunContext& context, nlohman
     }
     return stopped;
   };
-  while (!stopped && !all_beyond(plan.burn_in) && !(stopped = context.stop_requested())) {
-    if (given_up([&] { burn_in(target, plan, walks, key, context.ledger, state); })) break;
+  auto const learn = [&] {
+    if (state.window_ended)
+      follow_window(target, plan, key.seed, context.ledger, state);
+    else
+      burn_in(target, plan, walks, key, context.ledger, state);
+  };
+  while (!stopped && (state.window_ended || !all_beyond(plan.burn_in)) && !(stopped = context.stop_requested())) {
+    if (given_up(learn)) break;
     look();
   }
   // The proposals are frozen. Without independence moves idle lanes may run ahead. How far must not depend on the machine, or the

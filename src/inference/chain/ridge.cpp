@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "core/numeric/elementary.hpp"
@@ -15,7 +16,7 @@
 namespace sysid::metropolis {
 namespace {
 
-constexpr int most_places = 60;       // to a side
+constexpr int most_places = 300;      // to a side
 constexpr double negligible = -8;     // nats below the largest mass
 constexpr double along = 0.7;         // sd of a component along the ridge, in steps
 constexpr int most_newton_steps = 8;  // back onto the ridge
@@ -71,9 +72,14 @@ class Tracer {
     return place;
   }
 
-  /// Places outwards from `from`, itself left out, whose step is set. `highest`: of density times width across, so far.
-  std::vector<Place> side(Place& from, Eigen::VectorXd const& direction, double& highest) {
+  struct Side {
     std::vector<Place> places;
+    bool complete = false;  // the end of the ridge is reached
+  };
+  /// Places outwards from `from`, itself left out, whose step is set. `highest`: of density times width across, so far.
+  Side side(Place& from, Eigen::VectorXd const& direction, double& highest) {
+    Side side;
+    std::vector<Place>& places = side.places;
     Place* last = &from;
     Eigen::VectorXd tangent = direction;
     double step = length(from) / 2;
@@ -99,10 +105,11 @@ class Tracer {
       tangent = last->tangent;
       double const mass = last->log_density + last->log_across;
       highest = std::max(highest, mass);
-      if (mass < highest + negligible) break;
+      side.complete = mass < highest + negligible;
+      if (side.complete) break;
       step = std::min(step * std::clamp(1 / std::sqrt(std::max(off, 1e-3)), 0.5, 2.0), 0.7 * length(*last));
     }
-    return places;
+    return side;
   }
 
   /// Of the ridge as its curvature has it at a place, in prior widths.
@@ -127,28 +134,29 @@ class Tracer {
 
 }  // namespace
 
-std::vector<Independence::Component> along_ridge(Objective const& objective, Mode const& mode, Ledger& ledger) {
+RidgeRow along_ridge(Objective const& objective, Mode const& mode, Ledger& ledger) {
   Eigen::VectorXd const& s = objective.scale;
   Eigen::MatrixXd const covariance = s.cwiseInverse().asDiagonal() * covariance_of(mode) * s.cwiseInverse().asDiagonal();
   SymmetricEigen const axes = symmetric_eigen(covariance);
-  std::vector<Independence::Component> const alone{{1, theta_of(mode), covariance_of(mode)}};
+  RidgeRow row{{{1, theta_of(mode), covariance_of(mode)}}};
   Tracer tracer(objective, ledger);
   std::optional<Place> centre = tracer.top(theta_of(mode).cwiseQuotient(s), axes.vectors.rightCols(1));
-  if (!centre) return alone;
+  if (!centre) return row;
   double highest = centre->log_density + centre->log_across;
-  std::vector<Place> places = tracer.side(*centre, centre->tangent, highest);
-  for (Place& place : tracer.side(*centre, -centre->tangent, highest)) places.push_back(std::move(place));
-  if (places.empty()) return alone;
+  auto [places, forward] = tracer.side(*centre, centre->tangent, highest);
+  auto [others, backward] = tracer.side(*centre, -centre->tangent, highest);
+  std::ranges::move(others, std::back_inserter(places));
+  if (places.empty()) return row;
   places.push_back(std::move(*centre));
-  std::vector<Independence::Component> components;
+  row = {{}, forward && backward};
   for (Place const& place : places) {
     Eigen::VectorXd const follows = place.inverse * place.tangent;
     double const square = place.tangent.dot(follows), sd = along * place.step;
     Eigen::MatrixXd const local = place.inverse + follows * follows.transpose() * ((sd * sd / square - 1) / square);
     double const weight = elementary::exp(std::max(-30.0, place.log_density + place.log_across - highest)) * place.step;
-    if (weight > 0) components.push_back({weight, place.x.cwiseProduct(s), s.asDiagonal() * local * s.asDiagonal()});
+    if (weight > 0) row.components.push_back({weight, place.x.cwiseProduct(s), s.asDiagonal() * local * s.asDiagonal()});
   }
-  return components;
+  return row;
 }
 
 double worth_of_draws(Objective const& objective, Independence const& mixture, std::uint64_t seed, Ledger& ledger) {

@@ -8,12 +8,10 @@
 namespace sysid::metropolis {
 namespace {
 
-constexpr double flatter = 0.2;                                         // power of the density
 constexpr std::uint64_t first_step = 20'000'000, step_count = 100'000;  // of Purpose::start; more than a walk takes
 
-// A few times what such walkers take to forget where they were.
-int steps_back(int dimension) { return 60 + 10 * dimension; }
-int steps_out(int dimension) { return steps_back(dimension) / 2; }
+int steps_out(int dimension) { return marginal::long_walk(dimension) / 2; }
+int steps_back(int dimension) { return marginal::long_walk(dimension); }
 
 }  // namespace
 
@@ -25,8 +23,9 @@ LaneArray scout(Objective const& objective, LaneArray from, std::uint64_t seed, 
   auto const never = [] { return false; };
   int const dimension = objective.dimension();
   StreamKey const key{seed, Purpose::start, 0, first_step + 2 * round * step_count};
-  LaneArray const spread = marginal::walk(objective, std::move(from), steps_out(dimension), key, ledger, never, flatter);
-  LaneArray const last(spread.view().columns(spread.width() - scouts, scouts));
+  LaneArray const spread =
+      marginal::walk(objective, std::move(from), steps_out(dimension), key, ledger, never, marginal::spreading_power);
+  LaneArray const last(spread.view().columns(spread.width() / 3 * 2, spread.width() / 3));
   return marginal::walk(objective, last, steps_back(dimension), key.with_step(key.step + step_count), ledger, never);
 }
 

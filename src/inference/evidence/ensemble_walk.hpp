@@ -8,6 +8,11 @@
 
 namespace sysid::marginal {
 
+/// Steps in which walkers forget where they were, a few times over.
+inline int long_walk(int dimension) { return 60 + 10 * dimension; }
+/// Power of the density along which walkers spread first: what is too wide shrinks sooner than what is too narrow grows.
+inline constexpr double spreading_power = 0.2;
+
 /// Moves `walkers` [P x W], W >= 8, by Metropolis steps x' = x + g (a - b), a and b two walkers of the other half, g of the optimum
 /// for a normal density and 1 once in ten moves. Each half moves in one batch. A walker at a place without a finite density takes
 /// the first step that has one.                                                           ter Braak 2006 (differential evolution)

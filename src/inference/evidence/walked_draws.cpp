@@ -19,7 +19,6 @@ constexpr int most_walks = 8, draws_per_walk = 800;
 constexpr double worst_k = 0.7, least_effective = 250;  // effective draws
 // Of the logarithm of a ratio of sds: of so many walkers it scatters by a tenth, of the draws of two rounds by less.
 constexpr double as_wide = 0.25, as_before = 0.1;
-constexpr double spread = 0.2;  // power of the density along which walkers first spread: what is too wide shrinks sooner than grows
 constexpr std::uint64_t steps_of_round = 1000;  // of the key; more than a round walks
 
 LaneArray appended(LaneArray const& left, LaneArray const& right) {
@@ -128,14 +127,14 @@ LaneArray resampled(LaneArray const& draws, std::vector<double> const& weights, 
 WalkedDraws walked_draws(Objective const& objective, LaneArray walkers, std::uint64_t most, StreamKey key, Ledger& ledger,
                          std::function<bool()> const& stop) {
   auto const stopped = [&] { return stop && stop(); };
-  int const steps = 60 + 10 * objective.dimension();  // a few times what such walkers take to forget where they were
+  int const steps = long_walk(objective.dimension());
   std::uint64_t const cost = static_cast<std::uint64_t>(steps + 1) * static_cast<std::uint64_t>(walkers.width()) + draws_per_walk;
   WalkedDraws found;
   std::vector<Mixture> mixtures;
   std::vector<double> sds;
   if (2 * cost > most) return found;
   StreamKey const apart = key.with_step(key.step + most_walks * steps_of_round);
-  walkers = last_of(walk(objective, walkers, steps / 2, apart, ledger, stopped, spread), walkers.width());
+  walkers = last_of(walk(objective, walkers, steps / 2, apart, ledger, stopped, spreading_power), walkers.width());
   for (int round = 0; round < most_walks && !found.confirmed && !stopped(); ++round) {
     if (static_cast<std::uint64_t>(round + 2) * cost > most) break;
     StreamKey const here = key.with_step(key.step + static_cast<std::uint64_t>(round) * steps_of_round);
