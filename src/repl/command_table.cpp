@@ -48,9 +48,15 @@ constexpr ForeignCommand foreign_commands[] = {
     {"source", "load {}", "write `load FILE`"},
     {"cd", {}, of_folder},
     {"pwd", {}, of_folder},
+    {"explain", "help {}", "write `help WORD`"},
+    {"man", "help {}", "write `help WORD`"},
+    {"doc", "help {}", "write `help WORD`"},
     {"bye", "quit", {}},
     {"q", "quit", {}},
 };
+
+/// Commands that editors of text begin with a colon.
+constexpr std::string_view foreign_ends[] = {":q", ":q!", ":quit", ":exit", ":wq", ":x"};
 
 }  // namespace
 
@@ -112,6 +118,7 @@ CommandRow const* command_of(std::string_view entry, std::string& arguments) {
 
 std::string instead_of_command(std::string_view entry) {
   std::string const text(trimmed(entry));
+  if (std::ranges::find(foreign_ends, text) != std::end(foreign_ends)) return "write `quit`";
   std::size_t end = 0;
   while (end < text.size() && words::continues_name(text[end])) ++end;
   std::string const rest(trimmed(std::string_view(text).substr(end)));

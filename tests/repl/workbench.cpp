@@ -195,6 +195,10 @@ TEST_CASE("commands of other prompts are answered with those of this one") {
                                     {"edit", "takes the place of the one with its name"},
                                     {"help()", "write `help`"},
                                     {"exit()", "write `quit`"},
+                                    {":q", "write `quit`"},
+                                    {":wq", "write `quit`"},
+                                    {"explain E2103", "write `help E2103`"},
+                                    {"man noise", "write `help noise`"},
                                     {"residual", "write `residual(CHANNEL)`"},
                                     {"first[\"k\"]", "write `first.k`"}}) {
     CAPTURE(entry);
