@@ -58,8 +58,8 @@ class IndependenceLearning {
   void see_ridge(Independence const& mixture, double worth, bool complete);
 
   /// Whether scouts are to look now for mass that neither the mixture nor the chains have reached: with one mode, where many moves
-  /// are refused, and once more some windows later, if chains still lack moves along ridges. What is learnt from chains misses a
-  /// tail so narrow that none has entered it in burn-in. end: of burn-in, before which at least two more windows have to end.
+  /// are refused, and, if the first find nothing, once more some windows later. What is learnt from chains misses a tail so narrow
+  /// that none has entered it in burn-in. end: of burn-in, before which at least two more windows have to end.
   bool wants_scouts(std::uint64_t end) const;
   /// At most `most` states that the chains have been in. [P x n]
   LaneArray archived(int most) const { return archives_.front().picked(0, static_cast<std::size_t>(most)); }

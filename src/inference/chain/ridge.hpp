@@ -10,6 +10,12 @@
 
 namespace sysid::metropolis {
 
+/// Normal distributions along a ridge.
+struct RidgeRow {
+  std::vector<Independence::Component> components;  // at least one
+  bool complete = false;                            // from end to end: else mass lies beyond it, which draws of it do not tell
+};
+
 /// Follows the ridge through a mode to both sides, in prior widths: a step along the tangent t, then Newton steps across it back to
 /// the top, with the Gauss-Newton curvature H. Steps are as long as their ends stay within a standard deviation across the ridge.
 /// At each place x the density is about
@@ -19,10 +25,6 @@ namespace sysid::metropolis {
 /// until that mass is e^-8 of the largest: only then is an end of the ridge reached. A side ends before where nothing can be
 /// followed, and after 300 places. The components are what integration over a grid along the posterior's axes uses, bent with it.
 ///                                                                                          Rue, Martino and Chopin 2009, 3.1
-struct RidgeRow {
-  std::vector<Independence::Component> components;  // at least one
-  bool complete = false;                            // from end to end: else mass lies beyond it, which draws of it do not tell
-};
 RidgeRow along_ridge(Objective const& objective, Mode const& mode, Ledger& ledger);
 
 /// The share of independent draws that draws of a mixture are worth, (sum w)^2 / (n sum w^2) of n = 512 with w = p/q; 0 where
