@@ -14,12 +14,12 @@
 namespace sysid {
 namespace {
 
-// A perturbation should move the outputs by this fraction of their size: small against curvature, large against rounding. One that
-// is within a factor of it serves to begin with.
+// A perturbation should move the outputs by this fraction of their size: small against curvature, large against rounding. To begin
+// with, one serves that moves them by at most 100 times as much, and at least 1/10,000, far above rounding in steps of equal length.
 constexpr double relative_effect = 1e-4;
-constexpr double near_enough = 100;
+constexpr double least_first_effect = 1e-4, most_first_effect = 100;
 constexpr int most_start_probes = 12;
-constexpr int least_moves = 6, most_rounds = 40;
+constexpr int least_moves = 2, most_rounds = 40;
 
 // What a move does to the outputs, in units of their misfit, which is the move in standard deviations of the start. Below the first
 // it is the last one; above the second, a tenth as in the tolerance guard, no start was found: steps of adaptive solvers make
@@ -154,10 +154,11 @@ void StartState::find_steps(ConstLanes parameters, std::span<Search> searches) c
       search.done = !slopes[k].residual.allFinite();  // it fails in the simulation that follows, and is counted there
       for (int s = 0; s < states; ++s) {
         double const effect = slopes[k].change.col(s).norm() / (relative_effect * data_norm_);
-        known(s) = known(s) || (effect >= 1 / near_enough && effect <= near_enough);
+        known(s) = known(s) || (effect >= least_first_effect && effect <= most_first_effect);
         if (known(s)) continue;
         search.step(s) *= !std::isfinite(effect) ? 1e-4 : std::clamp(effect > 0 ? 1 / effect : 1e6, 1e-6, 1e6);
       }
+      if (!search.done && known.all()) advance(search, slopes[k]);
     }
   }
   for (std::size_t k = 0; k < searches.size(); ++k)

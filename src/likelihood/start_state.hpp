@@ -13,9 +13,9 @@ namespace sysid {
 
 /// Least squares by Gauss-Newton on the measured channels of the window, each in units of its sd there, or along the whole record
 /// where it does not move in the window, from the model's initial values; slopes by finite differences, each perturbation as large
-/// as moves the outputs by 1e-4 of their size, whatever the unit of the state. A move that makes the fit worse is halved. At least
-/// six moves are made, more until one changes the outputs by no more than 1e-6 of the misfit: a smooth function of the parameters,
-/// the same for any lane. States the window does not determine stay where they are (a ridge of 1e-10 relative). Where no such move
+/// as moves the outputs by 1e-4 of their size, whatever the unit of the state. A move that makes the fit worse is halved. Moves
+/// are made until one, not among the first two, changes the outputs by no more than 1e-6 of the misfit: a smooth function of the
+/// parameters to that precision, the same for any lane. States the window does not determine stay where they are (a ridge of 1e-10 relative). Where no such move
 /// is found the state is NaN, so that the simulation from it fails and is counted.
 class StartState {
  public:
@@ -34,7 +34,7 @@ class StartState {
     Eigen::MatrixXd change;
   };
   void differences(ConstLanes parameters, std::span<Search* const> searches, std::vector<Slopes>& out) const;
-  /// Perturbations that show, from those that the searches begin with.
+  /// Perturbations that show, from those that the searches begin with; makes the first move of a search where all of them do.
   void find_steps(ConstLanes parameters, std::span<Search> searches) const;
   /// Judges the move on trial and makes the next one.
   void advance(Search& search, Slopes const& slopes) const;
