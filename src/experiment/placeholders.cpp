@@ -11,6 +11,7 @@
 #include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "data/cell/doubtful_number.hpp"
+#include "data/cell/dropped_samples.hpp"
 #include "data/cell/stuck_sensor.hpp"
 #include "data/table/reading_rules.hpp"
 #include "experiment/column_in_file.hpp"
@@ -87,17 +88,18 @@ std::string to_be_missing(DataBlock const& block, ExperimentData const& data, Mo
 
 namespace {
 
+/// far: from what the number is.
 Finding finding(ExperimentData const& data, ColumnUse const& column, std::string const& unit, DoubtfulNumber const& suspect,
-                std::string const& cure) {
+                std::string const& far, std::string const& cure) {
   constexpr std::size_t most_named = 5;
   std::vector<std::string> rows;
   for (std::size_t const row : suspect.places) rows.push_back(std::to_string(data.experiment.first_row + static_cast<int>(row)));
   return {FindingCode::looks_missing,
           Severity::warning,
           {column.column, data.use.name},
-          fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from all its other numbers: this may mark a missing value",
-                      column.column, data.use.name, suspect.value, unit_after_number(unit), plural("row", rows.size()),
-                      first_listed(rows, most_named)),
+          fmt::format("column `{}` of {} is {:.12g}{} in {} {}, far from {}: this may mark a missing value", column.column,
+                      data.use.name, suspect.value, unit_after_number(unit), plural("row", rows.size()),
+                      first_listed(rows, most_named), far),
           cure};
 }
 
@@ -110,13 +112,19 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
   Findings findings;
   auto const look = [&](ColumnUse const& column, Quantity const& quantity, std::vector<double> values, bool input) {
     ColumnInFile const in_file(data, column, quantity);
-    for (DoubtfulNumber const& suspect : doubtful_numbers(in_file.values(std::move(values))))
+    values = in_file.values(std::move(values));
+    auto const find = [&](DoubtfulNumber const& suspect, std::string const& far) {
       findings.push_back(
-          finding(data, column, in_file.unit_text(), suspect,
+          finding(data, column, in_file.unit_text(), suspect, far,
                   input ? "an input needs a value in every row: interpolate the missing samples in the file, or use only later "
                           "rows, with a range in `split`; if the recorder was saturated, the true values are larger"
                         : to_be_missing(block, data, model, column.column, {suspect.value}) +
                               ": the row is then not scored; if it is a sample, add `none` to the list"));
+    };
+    for (DoubtfulNumber const& suspect : doubtful_numbers(values)) find(suspect, "all its other numbers");
+    // An input may rest at zero between blows.
+    if (std::vector<std::size_t> dropped = input ? std::vector<std::size_t>() : dropped_samples(values); !dropped.empty())
+      find({0, std::move(dropped)}, "the numbers of the rows beside most of them");
   };
   for (DataInputUse const& column : block.inputs)
     for (std::size_t i = 0; i < model.inputs.size(); ++i) {

@@ -40,6 +40,7 @@ constexpr FindingRow rows[] = {
     {FindingCode::times_rounded, "times_rounded", warning},
     {FindingCode::rate_contradicted, "rate_contradicted", warning_or_note},
     {FindingCode::column_used_twice, "column_used_twice", warning},
+    {FindingCode::sign_reversed, "sign_reversed", warning},
     {FindingCode::samples_repeated, "samples_repeated", error},
     {FindingCode::unit_in_name, "unit_in_name", warning_or_note},
     {FindingCode::unit_in_file, "unit_in_file", warning},

@@ -39,6 +39,7 @@ enum class FindingCode {
   times_rounded,
   rate_contradicted,
   column_used_twice,
+  sign_reversed,
   samples_repeated,
   unit_in_name,
   unit_in_file,

@@ -167,3 +167,14 @@ TEST_CASE("a mark in a column whose unit the file states is named in that unit, 
   CHECK(found[0].find("column `level` of record is -9999 mm in rows 181, ") != std::string::npos);
   CHECK(check(replaced(stated, "missing = \"NaN\"", "missing = (\"NaN\", \"-9999\")")).empty());
 }
+
+TEST_CASE("zeros of a channel far from the rows beside them are named, those of an input at rest are not") {
+  auto const dropped = told([](int row, double& force, double& level) {
+    if (row % 9 == 0) level = 0;
+    if (row % 7 == 0) force = 0;
+  });
+  REQUIRE(dropped.size() == 1);
+  CHECK(dropped[0] ==
+        "column `level` of record is 0 mm in rows 108, 117, 126, 135, 144 and 5 more, far from the numbers of the rows beside most "
+        "of them: this may mark a missing value");
+}

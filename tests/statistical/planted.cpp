@@ -113,6 +113,41 @@ TEST_CASE("two columns that have changed places are named with the lines that ch
         std::string::npos);
 }
 
+TEST_CASE("an input with the wrong sign is named, and so is one of two channels; neither of what the model lacks") {
+  std::string table = "t,f,y,v\n", reversed = table, disturbed = table;
+  Stream stream({21, Purpose::test, 0, 0});
+  for (int i = 0; i < 300; ++i) {  // y'' + 2 y' + 100 y = 100 cos(7 t), in its steady state
+    double const t = 0.02 * i, gain = 100 / std::hypot(51, 14), lag = std::atan2(14, 51), phase = 7 * t - lag;
+    double const y = gain * std::cos(phase) + 0.01 * stream.normal(), v = -7 * gain * std::sin(phase) + 0.05 * stream.normal();
+    table += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}\n", t, 100 * std::cos(7 * t), y, v);
+    reversed += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}\n", t, 100 * std::cos(7 * t), y, -v);
+    disturbed +=
+        fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}\n", t, 100 * std::cos(7 * t), y + std::sin(2 * t), v + 7 * std::sin(2 * t));
+  }
+  std::string const both = R"(
+model rig {
+  input f [N]
+  state y [m]
+  parameter y0 [m] ~ normal(0, sd = 2), v0 [m/s] ~ normal(0, sd = 20)
+  initial y = y0, y' = v0
+  parameter c [N s/m] ~ log_uniform(0.1, 100), k [N/m] ~ log_uniform(1, 1000)
+  1 [kg]*y'' + c*y' + k*y = f
+  observe position ~ normal(y, sd = 0.01 [m])
+  observe velocity ~ normal(y', sd = 0.05 [m/s])
+}
+data rec { file "rec.csv"; time t [s]; input f = f [N] hold cubic; measure position = y [m], velocity = v [m/s] }
+post = fit rig to rec with map, seed = 1
+)";
+  CHECK_FALSE(run_file(both, {}, {{"rec.csv", table}}).found("post", "sign_reversed"));
+  Fitted const force = run_file(with(both, "= f\n", "= -f\n"), {}, {{"rec.csv", table}});
+  CHECK(force.found("post", "sign_reversed"));
+  CHECK(force.out.find("if the file is right, write `-f` in place of `f`") != std::string::npos);
+  Fitted const velocity = run_file(both, {}, {{"rec.csv", reversed}});
+  CHECK(velocity.found("post", "sign_reversed"));
+  CHECK(velocity.out.find("with the sign of column `v` of rec reversed") != std::string::npos);
+  CHECK_FALSE(run_file(both, {}, {{"rec.csv", disturbed}}).found("post", "sign_reversed"));
+}
+
 TEST_CASE("two inputs that have changed places are named, and none of a record whose motion the model lacks in part") {
   std::string table = "minutes,power,ambient,temp\n", disturbed = table;
   double temperature = 21;
@@ -148,7 +183,8 @@ warm = fit oven to day with map, seed = 1
   std::string const wrong = with(with(right, "P = power", "P = ambient"), "Ta = ambient", "Ta = power");
   Fitted const exchanged = run_file(wrong, {}, {{"oven.csv", table}});
   CHECK(exchanged.found("warm", "column_used_twice"));
-  CHECK(exchanged.out.find("if they are exchanged, write `input P = power [W] hold zero_order` and `input Ta = ambient [degC] hold zero_order`") !=
+  CHECK(exchanged.out.find(
+            "if they are exchanged, write `input P = power [W] hold zero_order` and `input Ta = ambient [degC] hold zero_order`") !=
         std::string::npos);
   CHECK_FALSE(run_file(right, {}, {{"oven.csv", table}}).found("warm", "column_used_twice"));
   Fitted const lacking = run_file(right, {}, {{"oven.csv", disturbed}});

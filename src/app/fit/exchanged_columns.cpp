@@ -1,10 +1,12 @@
-// Columns are tried the other way round; likelihoods of different records are compared by what each explains of its own.
+// Columns are tried the other way round, and with the other sign; likelihoods of different records are compared by what each
+// explains of its own.
 #include "app/fit/exchanged_columns.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -115,17 +117,41 @@ bool has_one_tone(FinishedFit const& fit, std::vector<Experiment> const& experim
   return false;
 }
 
+/// A data block as it might be instead.
+struct OtherReading {
+  DataBlock block;
+  int input = -1, channel = -1;  // whose numbers have the other sign
+  bool one_tone_explains = false;
+  std::function<Finding(std::string const& left, std::string const& stated)> finding;  // shares of the variance, in per cent
+};
+
+void reverse(std::vector<double>& values) {
+  for (double& each : values) each = -each;
+}
+
+Record with_reversed_signs(Record record, OtherReading const& reading) {
+  if (reading.input >= 0) {
+    InputSignal& input = record.inputs[static_cast<std::size_t>(reading.input)];
+    std::vector<double> values;
+    for (int row = 0; row < input.rows(); ++row) values.push_back(input.sample(row));
+    reverse(values);
+    input = InputSignal(input.rule(), record.time, std::move(values));
+  }
+  if (reading.channel >= 0) reverse(record.measured[static_cast<std::size_t>(reading.channel)]);
+  return record;
+}
+
 /// The experiments of a fit with a data block as it might be instead; nothing where that cannot be read so.
-std::vector<Experiment> read_otherwise(FinishedFit const& fit, int data, DataBlock const& block) {
+std::vector<Experiment> read_otherwise(FinishedFit const& fit, int data, OtherReading const& reading) {
   Model const& model = fit.session.file.models[static_cast<std::size_t>(fit.what.model)];
   Model const as_predicted = with_prediction(model, fit.what.prediction).value_or(model);
   std::vector<Experiment> experiments = experiments_of(fit.data);
   try {
-    Record const record = load_record(block, model, fit.session.folder());
+    Record const record = with_reversed_signs(load_record(reading.block, model, fit.session.folder()), reading);
     for (std::size_t e = 0; e < fit.data.size(); ++e) {
       if (fit.data[e].use.data != data) continue;
       std::string name = experiments[e].name;
-      experiments[e] = cut(record, block, as_predicted, fit.data[e].use.part, fit.what.start);
+      experiments[e] = cut(record, reading.block, as_predicted, fit.data[e].use.part, fit.what.start);
       experiments[e].name = std::move(name);
     }
   } catch (UserError const&) {  // an input with gaps, a unit that the file states
@@ -134,6 +160,58 @@ std::vector<Experiment> read_otherwise(FinishedFit const& fit, int data, DataBlo
     return {};
   }
   return experiments;
+}
+
+void add_exchanged(DataBlock const& block, Model const& model, std::vector<OtherReading>& readings) {
+  std::vector<ExchangedColumns> exchanges = exchanged_columns(block, model);
+  if (exchanges.size() > most_pairs) return;
+  for (ExchangedColumns& each : exchanges) {
+    DataBlock exchanged = std::move(each.block);
+    readings.push_back({std::move(exchanged), -1, -1, each.of_channel, [each, &block](auto const& left, auto const& stated) {
+                          return Finding{
+                              FindingCode::column_used_twice,
+                              Severity::warning,
+                              {each.one, each.other, block.name},
+                              fmt::format("with the columns `{}` and `{}` of {} exchanged, the model leaves {} % of the variance "
+                                          "unexplained, instead of {} %: the columns may be exchanged",
+                                          each.one, each.other, block.name, left, stated),
+                              fmt::format("if they are exchanged, write {}", each.lines)};
+                        }});
+  }
+}
+
+Finding reversed(std::string const& column, std::string const& block, std::string const& left, std::string const& stated,
+                 std::string const& cure) {
+  return {FindingCode::sign_reversed,
+          Severity::warning,
+          {column, block},
+          fmt::format("with the sign of column `{}` of {} reversed, the model leaves {} % of the variance unexplained, instead of "
+                      "{} %: the sign may be wrong in the file or in the equations",
+                      column, block, left, stated),
+          cure};
+}
+
+/// Inputs; and channels beside others, since the sign of the only one is that of all inputs.
+void add_reversed(DataBlock const& block, Model const& model, std::vector<OtherReading>& readings) {
+  if (block.inputs.size() + block.measured.size() > most_pairs) return;
+  auto const index_of = [](auto const& all, std::string const& name) {
+    return static_cast<int>(std::ranges::find(all, name, [](auto const& each) { return each.name; }) - all.begin());
+  };
+  for (DataInputUse const& each : block.inputs)
+    readings.push_back({block, index_of(model.inputs, each.input), -1, false, [&](auto const& left, auto const& stated) {
+                          return reversed(each.column, block.name, left, stated,
+                                          fmt::format("check the direction of the sensor and the sign of `{0}` in the "
+                                                      "equations; if the file is right, write `-{0}` in place of `{0}`",
+                                                      each.input));
+                        }});
+  for (DataMeasureUse const& each : block.measured)
+    if (block.measured.size() > 1)
+      readings.push_back({block, -1, index_of(model.channels, each.channel), false, [&](auto const& left, auto const& stated) {
+                            return reversed(each.column, block.name, left, stated,
+                                            fmt::format("check the direction of the sensor; if the file is right, reverse the "
+                                                        "sign of what `observe {}` expects",
+                                                        each.channel));
+                          }});
 }
 
 }  // namespace
@@ -160,27 +238,21 @@ Findings check_exchanged_columns(FinishedFit& fit) {
     if (std::ranges::find(seen, each.use.data) != seen.end()) continue;
     seen.push_back(each.use.data);
     DataBlock const& block = fit.session.file.data[static_cast<std::size_t>(each.use.data)];
-    std::vector<ExchangedColumns> const exchanges = exchanged_columns(block, model);
-    if (exchanges.size() > most_pairs) continue;
-    ExchangedColumns const* best = nullptr;
+    std::vector<OtherReading> readings;
+    add_exchanged(block, model, readings);
+    add_reversed(block, model, readings);
+    OtherReading const* best = nullptr;
     double least = std::min(share_explained_otherwise, stated / better_by);
-    for (ExchangedColumns const& exchange : exchanges) {
-      std::vector<Experiment> experiments = read_otherwise(fit, each.use.data, exchange.block);
-      if (experiments.empty() || (exchange.of_channel && has_one_tone(fit, experiments, each.use.data))) continue;
+    for (OtherReading const& reading : readings) {
+      std::vector<Experiment> experiments = read_otherwise(fit, each.use.data, reading);
+      if (experiments.empty() || (reading.one_tone_explains && has_one_tone(fit, experiments, each.use.data))) continue;
       Baseline const of = baseline(model, experiments);
       auto const target = fit.likelihood.make_target(std::move(experiments), fit.preparation.solver, fit.session.interruptible());
       double const left = unexplained(search_otherwise(fit, *target, ledger), of);
-      if (left < least) least = left, best = &exchange;
+      if (left < least) least = left, best = &reading;
     }
-    if (best == nullptr) continue;
-    findings.push_back(
-        {FindingCode::column_used_twice,
-         Severity::warning,
-         {best->one, best->other, block.name},
-         fmt::format("with the columns `{}` and `{}` of {} exchanged, the model leaves {} % of the variance unexplained, instead "
-                     "of {} %: the columns may be exchanged",
-                     best->one, best->other, block.name, significant(100 * least, 2), significant(100 * std::min(1.0, stated), 2)),
-         fmt::format("if they are exchanged, write {}", best->lines)});
+    if (best != nullptr)
+      findings.push_back(best->finding(significant(100 * least, 2), significant(100 * std::min(1.0, stated), 2)));
   }
   fit.extra.add_solves(ledger.solves());
   return findings;

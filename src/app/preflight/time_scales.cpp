@@ -23,6 +23,7 @@ constexpr int scale_draws = 64;
 constexpr std::size_t most_states = 12;
 constexpr double part_of_record = 1e-5;
 constexpr double within_a_step = 6.283185307179586;  // a whole oscillation, or a decay to 0.2 %, between two rows
+constexpr double share_within_a_step = 0.95;         // a few draws of a wide prior may be slow
 
 /// About the start of a record.
 class Linearisation {
@@ -84,8 +85,11 @@ class Linearisation {
 };
 
 struct Rates {
-  double least = std::numeric_limits<double>::infinity(), most = 0;  // [1/s] of the slowest motion, over draws
-  bool grow = false;                                                 // at any of them
+  std::vector<double> slowest;  // [1/s] of the slowest motion, ascending over draws; 0 where there is none
+  bool grow = false;            // at any of them
+  double least() const { return slowest.front(); }
+  double most() const { return slowest.back(); }
+  auto above(double rate) const { return slowest.end() - std::upper_bound(slowest.begin(), slowest.end(), rate); }
 };
 
 Rates rates_of(Linearisation const& linear, ParameterSpace const& space, LaneArray const& values, int experiment,
@@ -99,10 +103,10 @@ Rates rates_of(Linearisation const& linear, ParameterSpace const& space, LaneArr
     std::vector<double> own;
     for (int p = 0; p < parameters.rows(); ++p) own.push_back(parameters(p, w));
     auto const [rate, grows] = linear.slowest(own, inputs, along.time.front());
-    rates.least = std::min(rates.least, rate);
-    rates.most = std::max(rates.most, rate);
+    rates.slowest.push_back(rate);
     rates.grow = rates.grow || grows;
   }
+  std::sort(rates.slowest.begin(), rates.slowest.end());
   return rates;
 }
 
@@ -139,19 +143,23 @@ std::string in_milliseconds(DataBlock const& block, double scale) {
 Finding fast_finding(CheckedFile const& file, Model const& model, ExperimentData const& data, Rates const& rates, double step) {
   DataBlock const& block = file.data[static_cast<std::size_t>(data.use.data)];
   double const scale = data.experiment.time_unit ? data.experiment.time_unit->scale : 1;
-  return {FindingCode::time_scales_apart,
-          Severity::warning,
-          {data.experiment.name},
-          fmt::format("rows of {} are {} apart, but at every prior draw even the slowest motion of `{}` is over, or has made a "
-                      "whole oscillation, before the next row: its rate is {} to {} rad/s",
-                      data.experiment.name, in_seconds(step), model.name, significant(rates.least, 2), significant(rates.most, 2)),
-          fmt::format("correct the unit of {} in `{}`{}; or correct the units of the parameters that contain a time. If all units "
-                      "are right: for a motion that decays between two rows, replace its equation by its steady state; if the "
-                      "motion continues to oscillate over several rows, sample faster",
-                      block.time          ? "`time`"
-                      : block.step_stated ? "`step`"
-                                          : "`rate`",
-                      block.name, in_milliseconds(block, scale))};
+  auto const fast = rates.above(within_a_step / step);
+  double const least = rates.slowest[rates.slowest.size() - static_cast<std::size_t>(fast)];
+  std::string const draws = fast == scale_draws ? "at every prior draw" : fmt::format("at {} of {} prior draws", fast, scale_draws);
+  return {
+      FindingCode::time_scales_apart,
+      Severity::warning,
+      {data.experiment.name},
+      fmt::format("rows of {} are {} apart, but {} even the slowest motion of `{}` is over, or has made a whole oscillation, "
+                  "before the next row: its rate is {} to {} rad/s",
+                  data.experiment.name, in_seconds(step), draws, model.name, significant(least, 2), significant(rates.most(), 2)),
+      fmt::format("correct the unit of {} in `{}`{}; or correct the units of the parameters that contain a time. If all units "
+                  "are right: for a motion that decays between two rows, replace its equation by its steady state; if the "
+                  "motion continues to oscillate over several rows, sample faster",
+                  block.time          ? "`time`"
+                  : block.step_stated ? "`step`"
+                                      : "`rate`",
+                  block.name, in_milliseconds(block, scale))};
 }
 
 Finding apart_finding(CheckedFile const& file, Model const& model, ExperimentData const& data, Rates const& rates) {
@@ -169,7 +177,7 @@ Finding apart_finding(CheckedFile const& file, Model const& model, ExperimentDat
       {experiment.name},
       fmt::format("{} lasts {}, but at every prior draw even the slowest motion of `{}` takes only {} to {}: the unit of time or "
                   "the units of the rates are wrong",
-                  experiment.name, words, model.name, in_seconds(1 / rates.most), in_seconds(1 / rates.least)),
+                  experiment.name, words, model.name, in_seconds(1 / rates.most()), in_seconds(1 / rates.least())),
       declared.empty()
           ? fmt::format("correct the unit of `time` in `{}`, or the units of the parameters that contain a time", block)
           : fmt::format("write {}{}; or correct the unit of `time` in `{}`", quoted(declared),
@@ -195,10 +203,10 @@ std::optional<Finding> time_scales_apart(CheckedFile const& file, Model const& m
       double shortest = std::numeric_limits<double>::infinity();
       for (std::size_t i = 1; i < time.size(); ++i) shortest = std::min(shortest, time[i] - time[i - 1]);
       Rates const rates = rates_of(linear, space, values, static_cast<int>(e), data[e].experiment);
-      if (rates.least * (time.back() - time.front()) * part_of_record > 1 && rates.least * shortest > 1)
+      if (rates.least() * (time.back() - time.front()) * part_of_record > 1 && rates.least() * shortest > 1)
         return apart_finding(file, model, data[e], rates);
-      if (!model.filtered() && !rates.grow && rates.least * shortest > within_a_step)
-        return fast_finding(file, model, data[e], rates, shortest);
+      bool const fast = static_cast<double>(rates.above(within_a_step / shortest)) > share_within_a_step * scale_draws;
+      if (!model.filtered() && !rates.grow && fast) return fast_finding(file, model, data[e], rates, shortest);
     }
   } catch (InternalError const&) {  // a function without a derivative
   }

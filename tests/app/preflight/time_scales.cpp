@@ -124,6 +124,13 @@ TEST_CASE("milliseconds that are read as seconds are named, by any solver, and i
     CHECK(found->help.starts_with("correct the unit of `time` in `shaker`: `time t [ms]` if its numbers are milliseconds"));
     CHECK(messages(result, "stiff_prior").empty());
   }
+  CheckResult const some_slow = check_vibration(
+      with(with(with(vibration, "t [ms]", "t [s]"), "k [N/mm] ~ log_uniform(1, 500)", "k [N/mm] ~ log_uniform(0.5, 500)"),
+           "c [N s/m] ~ log_uniform(1, 200)", "c [N s/m] ~ log_uniform(1, 400)"));
+  REQUIRE(apart(some_slow) != nullptr);
+  CHECK(apart(some_slow)->message.find(" of 64 prior draws even the slowest motion") != std::string::npos);
+  CHECK(apart(check_vibration(with(with(vibration, "t [ms]", "t [s]"), "k [N/mm] ~ log_uniform(1, 500)",
+                                   "k [N/m] ~ log_uniform(1, 500)"))) == nullptr);
 }
 
 TEST_CASE("motions without damping do not count as growing by the last digit of an eigenvalue") {
