@@ -9,6 +9,7 @@
 #include "core/numeric/instruction_set.hpp"
 #include "core/ranks/ranks.hpp"
 #include "core/text/diagnostic.hpp"
+#include "core/text/words.hpp"
 #include "core/text/wrapped.hpp"
 #include "load/modules.hpp"
 
@@ -34,10 +35,16 @@ ExitCode unknown(Messages const& messages, char const* what, std::string const& 
 
 Work declare_list(CLI::App& verb) {
   auto const table = std::make_shared<std::string>();
-  std::vector<std::string> topics;
-  for (ListRow const& row : lists()) topics.emplace_back(row.name);
-  verb.add_option("TABLE", *table, list_topics())->required()->check(CLI::IsMember(topics));
-  return [table](Messages const&) { return print(find_list(*table)->text(), &wrapped_rows); };
+  verb.add_option("TABLE", *table, list_topics())->required();
+  return [table](Messages const& messages) {
+    if (ListRow const* const row = find_list(*table)) return print(row->text(), &wrapped_rows);
+    std::vector<std::string> topics;
+    for (ListRow const& row : lists()) topics.emplace_back(row.name);
+    std::string const guess = did_you_mean(*table, topics);
+    messages.complain(fmt::format("there is no list of `{}`", *table),
+                      guess.empty() ? fmt::format("there are lists of {}", quoted(topics)) : guess);
+    return ExitCode::usage;
+  };
 }
 
 Work declare_explain(CLI::App& verb) {

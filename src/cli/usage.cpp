@@ -59,6 +59,7 @@ constexpr std::string_view of_tasks =
     "a command runs all its tasks of the file, and `--resume` keeps those that are complete; tasks that are run alone have a file "
     "of "
     "their own";
+constexpr std::string_view of_values = "a value is written in the file: `parameter m [kg] = 3`";
 /// Verbs of other programs.
 constexpr std::pair<std::string_view, std::string_view> other_verbs[] = {
     {"validate", "check"}, {"verify", "check"},     {"lint", "check"},   {"sample", "fit"},   {"infer", "fit"},
@@ -72,6 +73,9 @@ constexpr std::pair<std::string_view, std::string_view> other_options[] = {
     {"--only", of_tasks},
     {"--task", of_tasks},
     {"--tasks", of_tasks},
+    {"--set", of_values},
+    {"--param", of_values},
+    {"--parameter", of_values},
 };
 
 /// Whether the command runs the tasks of a file.
@@ -123,7 +127,7 @@ ExitCode no_verb_but_option(Messages const& messages, CLI::App const& app, std::
 }
 
 ExitCode no_verb(Messages const& messages, CLI::App const& app) {
-  if (auto const words = app.remaining(); !words.empty() && words.front().starts_with("--"))
+  if (auto const words = app.remaining(); !words.empty() && words.front().starts_with('-'))
     return no_verb_but_option(messages, app, words.front().substr(0, words.front().find('=')));
   for (std::string const& word : app.remaining()) {
     if (word.starts_with('-')) continue;
@@ -151,11 +155,23 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
     messages.complain("there is no command `help`", fmt::format("write `sysid {} --help`", verb.get_name()));
     return ExitCode::usage;
   }
-  if (dynamic_cast<CLI::ExtrasError const*>(&error) == nullptr || unread.empty()) {
+  // A misspelt option may be why something is missing.
+  bool const missing = dynamic_cast<CLI::RequiredError const*>(&error) != nullptr;
+  bool const unknown =
+      dynamic_cast<CLI::ExtrasError const*>(&error) != nullptr || (missing && !unread.empty() && unread.front().starts_with("--"));
+  if (!unknown || unread.empty()) {
     messages.complain(reason(error), see);
     return ExitCode::usage;
   }
   std::string const word = unread.front().substr(0, unread.front().find('='));
+  if (auto const before = app.remaining(false); !before.empty() && before.front() == unread.front()) {
+    std::vector<std::string> const known = option_names(verb);
+    if (std::find(known.begin(), known.end(), word) != known.end()) {
+      messages.complain(fmt::format("`{}` stands before the command", word),
+                        fmt::format("options follow the command: `sysid {} FILE {}`", verb.get_name(), word));
+      return ExitCode::usage;
+    }
+  }
   if (!word.starts_with('-')) {
     messages.complain(fmt::format("`sysid {}` takes no argument `{}`", verb.get_name(), unread.front()),
                       instead_of_argument(verb, unread, see));

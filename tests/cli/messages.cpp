@@ -16,6 +16,17 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
   refused("ftt x.sysid", "sysid: error: there is no command `ftt`\nhelp: did you mean `fit` or `fmt`?\n");
   refused("fit x.sysid --ouput y", "sysid: error: `sysid fit` has no option `--ouput`\nhelp: did you mean `--output`?\n");
   refused("fit", "sysid: error: FILE is required\nhelp: `sysid fit --help` lists its arguments and options\n");
+  refused("fit --hlep", "sysid: error: `sysid fit` has no option `--hlep`\nhelp: did you mean `--help`?\n");
+  refused("list distribution", "sysid: error: there is no list of `distribution`\nhelp: did you mean `distributions`?\n");
+  refused("run x.sysid --set m=3",
+          "sysid: error: `sysid run` has no option `--set`\n"
+          "help: a value is written in the file: `parameter m [kg] = 3`\n");
+  refused("--force fit x.sysid",
+          "sysid: error: `--force` stands before the command\n"
+          "help: options follow the command: `sysid fit FILE --force`\n");
+  refused("-v",
+          "sysid: error: `-v` stands before a command, and is no option of `sysid`\n"
+          "help: the command comes first, then its file and its options: `sysid run FILE`\n");
   refused("fit x.sysid --threads",
           "sysid: error: `--threads` needs a value\nhelp: `sysid fit --help` lists its arguments and options\n");
   refused("list modules more",

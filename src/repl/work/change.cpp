@@ -244,13 +244,17 @@ void put(Editor& editor, std::string const& entry, Span at, Statement const& typ
   }
 }
 
-/// The units that the parameters of a model are declared in; empty for none.
+/// The units that the parameters of a model are declared in, and those of definitions by a number; empty for none.
 std::map<std::string, std::string> parameter_units(WorkItem const& model) {
   std::map<std::string, std::string> units;
   ast::Item const item = item_of(model.text);
-  for (ast::ModelStatement const& statement : std::get<ast::Model>(item).statements)
-    if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
-      units[parameter->name.name.text] = parameter->name.unit ? unparse(*parameter->name.unit) : "";
+  auto const add = [&](ast::Declared const& name) { units[name.name.text] = name.unit ? unparse(*name.unit) : ""; };
+  for (ast::ModelStatement const& statement : std::get<ast::Model>(item).statements) {
+    if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) add(parameter->name);
+    auto const* definition = std::get_if<ast::Definition>(&statement);
+    auto const* number = definition ? std::get_if<ast::Number>(&definition->value.node) : nullptr;
+    if (number != nullptr && !number->unit) add(definition->name);
+  }
   return units;
 }
 
