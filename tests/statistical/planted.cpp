@@ -128,14 +128,16 @@ TEST_CASE("an input with the wrong sign is named, and so is one of two channels;
 model rig {
   input f [N]
   state y [m]
-  parameter y0 [m] ~ normal(0, sd = 2), v0 [m/s] ~ normal(0, sd = 20)
+  parameter y0 [m] ~ normal(0, sd = 2)
+  parameter v0 [m/s] ~ normal(0, sd = 20)
   initial y = y0, y' = v0
-  parameter c [N s/m] ~ log_uniform(0.1, 100), k [N/m] ~ log_uniform(1, 1000)
+  parameter c [N s/m] ~ log_uniform(0.1, 100)
+  parameter k [N/m] ~ log_uniform(1, 1000)
   1 [kg]*y'' + c*y' + k*y = f
   observe position ~ normal(y, sd = 0.01 [m])
   observe velocity ~ normal(y', sd = 0.05 [m/s])
 }
-data rec { file "rec.csv"; time t [s]; input f = f [N] hold cubic; measure position = y [m], velocity = v [m/s] }
+data rec { file "rec.csv"; time t [s]; input f = f [N] hold cubic; measure position = y [m]; measure velocity = v [m/s] }
 post = fit rig to rec with map, seed = 1
 )";
   CHECK_FALSE(run_file(both, {}, {{"rec.csv", table}}).found("post", "sign_reversed"));
