@@ -47,7 +47,7 @@ struct ComparedScore {
   double elpd = 0, error = 0;                   // nats, and one standard error
   double difference = 0, difference_error = 0;  // from the best
   double stacking = 0, pseudo_bma = 0;          // weights
-  int doubtful = 0;                             // samples with a Pareto k above 0.7, by leave-one-out
+  int doubtful = 0;                             // samples with a Pareto k that is too large for the draws, by leave-one-out
   int impossible = 0;                           // samples that it gives no density: elpd is -infinity, weights are 0
   bool one_step = false;                        // each sample from measured ones before it
   std::string counted = {};                     // another fit of the same model, whose scores are weighed; empty: its own are

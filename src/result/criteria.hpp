@@ -13,7 +13,7 @@ struct LogScore {
   double sum = 0;
   double error = 0;  // one standard error, by the spread of samples as if independent; NaN for one sample
   int samples = 0;
-  double monte_carlo_error = 0;  // by the number of draws
+  double monte_carlo_error = 0;  // by the number of draws; not a number where weights are not to be trusted
 };
 
 /// What the parameters of highest density, or likelihood, have explained.
@@ -39,8 +39,10 @@ struct Deviance {
   double p_v() const { return variance / 2; }
 };
 
-/// Pareto's k above which importance weights are not to be trusted.                   Vehtari et al. 2024
-constexpr double largest_k = 0.7;
+/// Pareto's k above which importance weights of so many draws are not to be trusted: min(0.7, 1 - 1/log10 draws).
+///                                                                                      Vehtari et al. 2024
+double largest_k(int draws);
+constexpr double largest_k_of_many = 0.7;
 /// Variance of a sample's log density above which WAIC is not.                        Vehtari, Gelman and Gabry 2017
 constexpr double largest_p_waic = 0.4;
 
@@ -57,6 +59,9 @@ struct LeftOutBlocks {
   int own_draws = 0;  // so many of these blocks are predicted by draws of their own, not by weighted draws of the fit
 };
 
+/// Whether weights reach all blocks that were left out.
+bool all_reached(std::vector<LeftOutBlocks> const& blocks, int draws);
+
 /// One series for each experiment and channel: what each sample contributes. NaN where a sample has no such score.
 struct PointwiseScores {
   std::string experiment, channel;
@@ -72,6 +77,7 @@ struct Criteria {
   std::optional<LogScore> waic, loo, block, future;
   double p_waic = 0, p_loo = 0;  // effective numbers of parameters
   int unstable_waic = 0;         // samples whose log density varies by more than 0.4
+  int doubtful = 0;              // samples with a k above largest_k(draws)
   ParetoCounts pareto_counts = {};
   double worst_k = 0;
   bool in_time = false;  // rows follow one another, so that those beside a row that is left out say much about it

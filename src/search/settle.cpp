@@ -196,7 +196,9 @@ bool connected(Objective const& objective, Mode const& a, Mode const& b) {
   Box const box(objective);
   Eigen::VectorXd const from = box.inside(theta_of(a)), to = box.inside(theta_of(b));
   std::vector<Eigen::VectorXd> between;
-  for (double const part : {0.25, 0.5, 0.75}) between.push_back(box.outside(from + part * (to - from)));
+  // Unequal parts, multiples of the golden ratio: equal ones are the places of further modes where modes are equally far apart.
+  for (double const part : {0.618, 0.236, 0.854, 0.472, 0.090, 0.708, 0.326})
+    between.push_back(box.outside(from + part * (to - from)));
   Ledger looked;
   double const least = std::min(a.log_density, b.log_density) - tolerable;
   std::vector<double> const density = objective.log_density(to_lanes(between), looked);

@@ -145,9 +145,9 @@ TEST_CASE("samples, blocks and futures left out of a normal mean have their clos
   FutureOut future(NormalMean::draws, 1);
   BlockScore const block = leave_block_out(last, 1, block_influence);
   future.leave(last);
-  BlockScore const ahead = future.score(last, largest_k, future_influence);
+  BlockScore const ahead = future.score(last, largest_k_of_many, future_influence);
   future.leave(before);
-  BlockScore const earlier = future.score(before, largest_k, future_influence);
+  BlockScore const earlier = future.score(before, largest_k_of_many, future_influence);
   CHECK(block.elpd == ahead.elpd);
   REQUIRE(earlier.elpd.size() == 5);
   double difference = 0;
@@ -168,8 +168,8 @@ TEST_CASE("a future that the weights do not reach has no score and no influence"
   DrawInfluence influence(NormalMean::draws);
   FutureOut future(NormalMean::draws, 1);
   future.leave(all);
-  BlockScore const score = future.score(all, largest_k, influence);
-  CHECK(score.pareto_k > largest_k);
+  BlockScore const score = future.score(all, largest_k_of_many, influence);
+  CHECK(score.pareto_k > largest_k_of_many);
   CHECK(score.elpd.empty());
   CHECK(influence.error() == 0);
 }

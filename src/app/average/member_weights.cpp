@@ -78,7 +78,7 @@ void weigh_by_scores(Comparison const& comparison, Names const& names, AverageWe
          Severity::warning,
          {member.fit},
          fmt::format("the scores of `{}`, which determine its weight, are not reliable: {} samples have a Pareto k "
-                     "above 0.7",
+                     "that is too large",
                      member.fit, score->doubtful),
          "check these samples of the fit in its `pointwise.csv` (often outliers); or write `weights = evidence`"});
   }

@@ -106,6 +106,7 @@ std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& 
   bool const stored = interpreted(folder / "summary.json", [&] {
     if (!summary.at("versions").at("files").contains("pointwise.csv")) return false;
     fit.in_time = summary.at("criteria").at("in_time").get<bool>();
+    fit.draws = summary.at("criteria").at("draws").get<int>();
     fit.one_step = summary.value("measured_past", false);
     return true;
   });
@@ -129,7 +130,7 @@ std::optional<ScoredFit> scored_fit(std::string const& name, std::string const& 
     if (!(series[i] >= 1 && series[i] <= static_cast<double>(names.size()))) throw damaged();
     Series const& of = names[static_cast<std::size_t>(series[i]) - 1];
     samples.push_back({of.channel, place_of(of.experiment), static_cast<int>(rows[i])});
-    fit.doubtful += k[i] > largest_k ? 1 : 0;
+    fit.doubtful += k[i] > largest_k(fit.draws) ? 1 : 0;
   }
   std::vector<std::size_t> order(samples.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

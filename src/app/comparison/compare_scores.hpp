@@ -26,7 +26,8 @@ struct ScoredFit {
   std::string identity = {};  // fits that agree in it are of one and the same model
   bool in_time = false;
   bool one_step = false;                      // from measured past samples
-  int doubtful = 0;                           // samples with k above 0.7
+  int draws = 0;                              // that its scores are of
+  int doubtful = 0;                           // samples with k above largest_k(draws)
   std::vector<ScoredSample> samples;          // sorted
   std::vector<double> elpd_loo, elpd_future;  // NaN where there is no score
 };

@@ -19,7 +19,8 @@
 namespace sysid {
 namespace {
 
-constexpr int most_draws = 1000, fewest_draws = 100;
+constexpr int most_draws = 4000, usual_draws = 1000, fewest_draws = 100;
+constexpr double cheap = 2.5e5;  // densities that are taken whatever the fit took
 constexpr int most_walkers = 256, fewest_walkers = 64;
 constexpr double share_of_fit = 0.05;  // of its simulations, that the scores of its draws take
 
@@ -77,7 +78,8 @@ void add_waic_and_counts(Criteria& criteria) {
       criteria.p_loo += series.log_density[i] - series.elpd_loo[i];
       criteria.unstable_waic += series.p_waic[i] > largest_p_waic ? 1 : 0;
       double const k = series.pareto_k[i];
-      ++criteria.pareto_counts[k <= 0.5 ? 0 : k <= largest_k ? 1 : k <= 1 ? 2 : 3];
+      ++criteria.pareto_counts[k <= 0.5 ? 0 : k <= largest_k_of_many ? 1 : k <= 1 ? 2 : 3];
+      criteria.doubtful += k > largest_k(criteria.draws) ? 1 : 0;
       criteria.worst_k = std::max(criteria.worst_k, k);
     }
   criteria.waic = sum_of(elpd_waic);
@@ -115,9 +117,12 @@ struct Spans {
 int number_of_draws(FinishedFit const& fit) {
   Spans const spans(fit.data);
   auto const channels = static_cast<double>(fit.likelihood.model().channels.size());
-  int draws = std::clamp(static_cast<int>(std::min(2 * most_densities / (channels * spans.block), 1e6)), fewest_draws, most_draws);
+  auto const cheap_draws = static_cast<int>(std::min<double>(most_draws, cheap / (channels * spans.record)));
+  int draws = std::clamp(static_cast<int>(std::min(2 * most_densities / (channels * spans.block), 1e6)), fewest_draws,
+                         std::max(usual_draws, cheap_draws));
   auto const cost = [&] { return draws * (std::ceil(draws * channels * spans.record / most_densities) + 1) / 2; };
-  while (draws > fewest_draws && cost() > share_of_fit * simulations(fit)) draws = std::max(fewest_draws, draws * 19 / 20);
+  while (draws > std::max(fewest_draws, cheap_draws) && cost() > share_of_fit * simulations(fit))
+    draws = std::max(fewest_draws, draws * 19 / 20);
   return draws;
 }
 
@@ -161,9 +166,11 @@ void score_draws(FinishedFit& fit, Criteria& criteria) {
     own_variance += record.own_variance;
   }
   add_waic_and_counts(criteria);
-  criteria.loo = sum_over(criteria, &PointwiseScores::elpd_loo, loo.error());
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  criteria.loo = sum_over(criteria, &PointwiseScores::elpd_loo, criteria.doubtful > 0 ? unknown : loo.error());
   if (!criteria.in_time) return;
-  criteria.block = sum_over(criteria, &PointwiseScores::elpd_block, block.error());
+  criteria.block =
+      sum_over(criteria, &PointwiseScores::elpd_block, all_reached(criteria.blocks, criteria.draws) ? block.error() : unknown);
   LogScore const ahead = sum_over(criteria, &PointwiseScores::elpd_future, hypotenuse(future.error(), std::sqrt(own_variance)));
   if (ahead.samples > 0) criteria.future = ahead;
 }

@@ -167,7 +167,7 @@ class RecordScores {
     std::optional<BlockScore> own;
     if (!future_.tells_nothing()) own = by_own_draws(b);
     bool const by_own = own && !own->elpd.empty();
-    BlockScore const before = by_own ? *own : future_.score(block, own ? small_k : largest_k, influence);
+    BlockScore const before = by_own ? *own : future_.score(block, own ? small_k : largest_k_of_many, influence);
     going_back_ = !before.elpd.empty();
     if (!going_back_) return;
     keep(before, &PointwiseScores::elpd_future, b, futures_);
@@ -182,7 +182,7 @@ class RecordScores {
     auto const most = static_cast<int>(std::min(most_densities / samples, 1e6));
     auto const draws = earlier_draws(fit_, index_, from, own_.round, most, near_);
     if (!draws || fit_.session.interrupted()) return std::nullopt;
-    if (draws->weights.pareto_k > largest_k) return BlockScore{draws->weights.pareto_k, {}};
+    if (draws->weights.pareto_k > largest_k_of_many) return BlockScore{draws->weights.pareto_k, {}};
     LaneArray block = densities_under(draws->declared, b);
     for (int i = 0; i < block.rows(); ++i)
       for (double& each : block.row(i))

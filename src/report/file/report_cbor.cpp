@@ -98,7 +98,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScoreAtMode, log_likelihood, parameters, samp
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deviance, mean, variance, at_mean)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOutBlocks, experiment, pareto_k, asked, first_row, last_row, own_draws)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Criteria, at_mode, deviance, reason, draws, waic, loo, block, future, p_waic, p_loo,
-                                   unstable_waic, pareto_counts, worst_k, in_time, blocks, futures)
+                                   unstable_waic, doubtful, pareto_counts, worst_k, in_time, blocks, futures)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PriorWidth, parameter, factor, change, error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, kind, where, count, time, example, names)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FunctionPoint, inputs, mean, sd, q5, q95)
@@ -319,7 +319,7 @@ namespace {
 
 /// Raised when members keep their names and change their meaning. Other members tell themselves: the bytes are whole and do not
 /// fit.
-constexpr int form = 5;
+constexpr int form = 6;
 
 /// Records of before have the findings below the headline.
 std::string headline_alone(std::string const& stored) { return stored.substr(0, stored.find('\n')); }

@@ -156,7 +156,13 @@ Json criteria(Criteria const& criteria) {
       {"elpd", criteria.waic->sum}, {"error", criteria.waic->error}, {"p", criteria.p_waic}, {"unstable", criteria.unstable_waic}};
   out["loo"] = log_score(*criteria.loo);
   out["loo"]["p"] = criteria.p_loo;
-  out["loo"]["pareto_k"] = {{"largest", criteria.worst_k}, {"to_0.5", k[0]}, {"to_0.7", k[1]}, {"to_1", k[2]}, {"above_1", k[3]}};
+  out["loo"]["pareto_k"] = {{"largest", criteria.worst_k},
+                            {"to_0.5", k[0]},
+                            {"to_0.7", k[1]},
+                            {"to_1", k[2]},
+                            {"above_1", k[3]},
+                            {"limit", largest_k(criteria.draws)},
+                            {"above_limit", criteria.doubtful}};
   if (criteria.block) out["leave_block_out"] = left_out(*criteria.block, criteria.blocks);
   if (!criteria.futures.empty())
     out["leave_future_out"] = criteria.future ? left_out(*criteria.future, criteria.futures) : Json(nullptr);

@@ -86,7 +86,7 @@ ReportTable scores_table(ComparedScores const& scores) {
                           std::isnan(fit.difference) ? "-" : with_error(fit.difference, {}, 1), known(fit.difference_error),
                           fmt::format("{:.3f}", fit.stacking), fmt::format("{:.3f}", fit.pseudo_bma)});
     if (fit.doubtful > 0 && !scores.future)
-      table.caption += fmt::format("{}`{}`: Pareto's k is above 0.7 for {}, so its elpd is too high",
+      table.caption += fmt::format("{}`{}`: Pareto's k is too large for {}, so its elpd is too high",
                                    table.caption.empty() ? "" : "\n", fit.name, counted(fit.doubtful, "sample"));
     if (fit.impossible > 0)
       table.caption += fmt::format("{}{}: the density of {} is zero under all draws, so this fit has no weight",

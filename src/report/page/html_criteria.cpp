@@ -24,13 +24,6 @@ std::vector<std::string> deviance_row(std::string const& name, double value, dou
   return {name, tenth(-value / 2), "", tenth(effective), tenth(value)};
 }
 
-/// Whether blocks were left out that weights do not reach.
-bool all_reached(std::vector<LeftOutBlocks> const& blocks) {
-  return std::ranges::all_of(blocks, [](LeftOutBlocks const& each) {
-    return std::ranges::all_of(each.pareto_k, [](double k) { return k <= largest_k; });
-  });
-}
-
 std::string rows_text(std::vector<LeftOutBlocks> const& blocks) {
   std::string text;
   for (LeftOutBlocks const& each : blocks)
@@ -40,15 +33,18 @@ std::string rows_text(std::vector<LeftOutBlocks> const& blocks) {
   return text;
 }
 
+/// For so many draws: 0.67 of 1000.
+std::string limit_text(Criteria const& criteria) { return significant(largest_k(criteria.draws), 2); }
+
 std::string pareto_words(Criteria const& criteria) {
-  int const doubtful = criteria.pareto_counts[2] + criteria.pareto_counts[3];
+  int const doubtful = criteria.doubtful;
   std::string worst;
   if (doubtful > 0)
     worst = fmt::format(", above 1 for {}", criteria.pareto_counts[3]);
   else if (std::isfinite(criteria.worst_k))
     worst = fmt::format(" (largest {})", significant(criteria.worst_k, 2));
-  std::string words =
-      fmt::format("Leave-one-out: of {} samples, Pareto’s k is above 0.7 for {}{}. ", criteria.loo->samples, doubtful, worst);
+  std::string words = fmt::format("Leave-one-out: of {} samples, Pareto’s k is above {} for {}{}. ", criteria.loo->samples,
+                                  limit_text(criteria), doubtful, worst);
   if (doubtful > 0)
     words += "The posterior without such a sample lies where there are too few draws; its score is usually too high. ";
   if (criteria.unstable_waic > 0)
@@ -91,8 +87,9 @@ std::string time_words(Criteria const& criteria, bool measured_past) {
         "In both, only the parameters are estimated from those rows: each sample is predicted one step ahead, from the measured "
         "samples before it. ";
   words += "The standard errors assume independent samples; if residuals are correlated, they are too small. ";
-  if (!all_reached(criteria.blocks))
-    words += "Leave-block-out: Pareto’s k of a block is above 0.7, and its score is not reliable. ";
+  if (!all_reached(criteria.blocks, criteria.draws))
+    words +=
+        fmt::format("Leave-block-out: Pareto’s k of a block is above {}, and its score is not reliable. ", limit_text(criteria));
   return words + future_words(criteria.futures);
 }
 

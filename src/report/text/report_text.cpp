@@ -19,7 +19,8 @@ constexpr double rough = 0.5;  // nats: below, no comparison turns on it
 // What the checks of Laplace's approximation say, where it is the result.
 std::string doubt_of_laplace(Evidence const& evidence) {
   SampledEvidence const& sampled = evidence.sampled;
-  if (sampled.differs()) return fmt::format(", approximate: weighted draws change it by {:+.2f}", sampled.above);
+  if (sampled.differs())
+    return fmt::format(", approximate: weighted draws change it by {:+.2f} ± {:.2f}", sampled.above, sampled.error);
   std::string const along = std::fabs(evidence.along_axes) < rough
                                 ? ""
                                 : fmt::format("integration along its axes changes it by {:+.1f}", evidence.along_axes);
