@@ -204,12 +204,23 @@ TEST_CASE("missing samples cost windows, missing forces are an error") {
   DiscoveryAnswer const force = run(file(oscillator), replaced(200, 1, "NA"));
   CHECK(force.exit == 65);
   CHECK(contains(force.said, "case.sysid:7:"));
-  // Every second sample: no window is whole.
-  Made sparse(900);
-  std::string csv = "t,u,y\n";
-  for (std::size_t i = 0; i < sparse.t.size(); ++i)
-    csv += fmt::format("{:.12g},{:.12g},{}\n", sparse.t[i], sparse.u[i], i % 2 == 1 ? "NA" : fmt::format("{:.12g}", sparse.y[i]));
-  DiscoveryAnswer const none = run(file(oscillator), csv);
+  Made made(900);
+  auto const of_which = [&](auto const& measured) {
+    std::string csv = "t,u,y\n";
+    for (std::size_t i = 0; i < made.t.size(); ++i)
+      csv += fmt::format("{:.12g},{:.12g},{}\n", made.t[i], made.u[i], measured(i) ? fmt::format("{:.12g}", made.y[i]) : "NA");
+    return csv;
+  };
+  // No window is whole: values between neighbours serve the regression, and simulation decides.
+  Stream stream({2, Purpose::test, 0, 0});
+  for (DiscoveryAnswer const& filled : {run(file(oscillator), of_which([](std::size_t i) { return i % 2 == 0; })),
+                                        run(file(oscillator), of_which([&](std::size_t) { return stream.uniform() > 0.08; }))}) {
+    CHECK(filled.exit == 0);
+    CHECK(filled.kept() == Texts{"y'", "y", "y^3"});
+    CHECK(contains(filled.finding("windows_missing").at("message"), "missing samples of `bench` would leave too few windows"));
+  }
+  // Where none is near, nothing is made up.
+  DiscoveryAnswer const none = run(file(oscillator), of_which([](std::size_t i) { return i % 20 < 8; }));
   CHECK(none.exit == 1);
   CHECK_FALSE(none.finding("too_few_rows").is_null());
   CHECK(contains(none.finding("windows_missing").at("message"), "100 % of the windows contain a missing sample"));

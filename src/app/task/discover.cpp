@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
@@ -61,6 +62,7 @@ class Discover {
     method.interrupted = [this] { return session_.interrupted(); };
     read_records();
     std::deque<Attempt> attempts = attempts_with(method);
+    if (lacks_windows(attempts.front().found) && fill_records()) attempts = attempts_with(method);
     std::vector<FoundStructure> structures = best_structures(attempts.front().found, what_.top);
     std::optional<Validation> validation;
     if (what_.refit && !structures.empty() && !dictionary_.numbers.discrete) {
@@ -169,16 +171,48 @@ class Discover {
   void read_records() {
     records_ = experiments_of(data_);
     if (dictionary_.numbers.discrete) return;
-    std::vector<double> squares(dictionary_.measured.channels.size()), counts(squares.size());
+    std::vector<Experiment> uneven;
     for (Experiment& each : records_) {
       if (unequal_step(each.time) == 0) continue;
       interpolated_.push_back(each.name);
-      for (std::size_t c = 0; c < squares.size(); ++c)
-        if (auto const noise = noise_at_unequal_steps(each.time, each.measured[c])) squares[c] += *noise * *noise, ++counts[c];
+      uneven.push_back(each);
       each = at_equal_steps(each);
     }
+    take_noise_of(uneven);
+  }
+
+  /// Before they are interpolated, which takes some of it away.
+  void take_noise_of(std::vector<Experiment> const& experiments) {
+    std::vector<double> squares(dictionary_.measured.channels.size()), counts(squares.size());
+    for (Experiment const& each : experiments)
+      for (std::size_t c = 0; c < squares.size(); ++c)
+        if (auto const noise = noise_at_unequal_steps(each.time, each.measured[c])) squares[c] += *noise * *noise, ++counts[c];
     for (std::size_t c = 0; c < squares.size(); ++c)
       if (counts[c] > 0) dictionary_.numbers.channels[c].noise_sd = std::sqrt(squares[c] / counts[c]);
+  }
+
+  /// Whether missing samples leave an equation too few windows, or cost most of them.
+  static bool lacks_windows(regression::Discovery const& found) {
+    using Kind = regression::Concern::Kind;
+    return std::ranges::any_of(found.equations, [](regression::FoundEquation const& equation) {
+      bool const too_few = std::ranges::any_of(equation.concerns, [](auto const& each) { return each.kind == Kind::too_few_rows; });
+      return std::ranges::any_of(equation.concerns, [&](regression::Concern const& each) {
+        return each.kind == Kind::missing && (too_few || each.value > 0.5);
+      });
+    });
+  }
+
+  /// Missing samples that have neighbours are interpolated; returns whether there are any. Simulations take what was measured.
+  bool fill_records() {
+    std::vector<Experiment> filled = records_, gappy;
+    for (std::size_t e = 0; e < filled.size(); ++e)
+      if (fill_missing(filled[e])) {
+        filled_.push_back(filled[e].name);
+        if (std::ranges::find(interpolated_, filled[e].name) == interpolated_.end()) gappy.push_back(records_[e]);
+      }
+    take_noise_of(gappy);
+    records_ = std::move(filled);
+    return !filled_.empty();
   }
 
   // With the noise that the task gives.
@@ -218,6 +252,7 @@ class Discover {
     add_regression_findings(dictionary_, found, discovery.equations, validation ? &*validation : nullptr, report.findings);
     bool const simulated = validation && validation->report.structures.front().failure.empty();
     for (Finding& each : interpolation_findings(interpolated_, simulated)) report.findings.push_back(std::move(each));
+    for (Finding& each : filling_findings(filled_)) report.findings.push_back(std::move(each));
     if (dictionary_.numbers.discrete && !structures.empty()) add_forecasts(found, discovery, report.findings);
     if (validation) {
       temper_by_simulation(validation->report, report.findings);
@@ -279,6 +314,7 @@ class Discover {
   DiscoverTask const& what_;
   std::vector<Experiment> records_;        // as the regression reads them
   std::vector<std::string> interpolated_;  // names of those that were
+  std::vector<std::string> filled_;        // of those that had missing samples
   std::vector<double> inner_, inner_sd_;   // values of the parameters inside terms, SI
   CheckedDictionary dictionary_;           // with the values that were found for parameters inside terms
   std::uint64_t seed_;

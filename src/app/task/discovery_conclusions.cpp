@@ -73,6 +73,19 @@ Findings interpolation_findings(std::vector<std::string> const& records, bool si
   return findings;
 }
 
+Findings filling_findings(std::vector<std::string> const& records) {
+  Findings findings;
+  for (std::string const& name : records)
+    findings.push_back({FindingCode::windows_missing,
+                        Severity::note,
+                        {name},
+                        fmt::format("missing samples of `{}` would leave too few windows: the regression uses values that are "
+                                    "interpolated from their neighbours, the simulation only what was measured",
+                                    name),
+                        ""});
+  return findings;
+}
+
 void add_prior_findings(CheckedDictionary const& dictionary, DiscoveryReport const& discovery, Findings& findings) {
   if (!discovery.validation) return;
   for (ValidatedCoefficient const& each : discovery.validation->structures.front().coefficients)

@@ -20,6 +20,9 @@ void add_regression_findings(CheckedDictionary const& dictionary, regression::Di
 /// Records whose steps were unequal, by name.
 Findings interpolation_findings(std::vector<std::string> const& records, bool simulated);
 
+/// Records whose missing samples were filled in, by name.
+Findings filling_findings(std::vector<std::string> const& records);
+
 /// Parameters inside terms that the record puts where their prior is not: the fit is by the likelihood alone.
 void add_prior_findings(CheckedDictionary const& dictionary, DiscoveryReport const& discovery, Findings& findings);
 

@@ -103,6 +103,18 @@ Experiment at_equal_steps(Experiment const& experiment) {
   return out;
 }
 
+bool fill_missing(Experiment& experiment) {
+  bool filled = false;
+  for (std::vector<double>& channel : experiment.measured) {
+    if (channel.empty()) continue;
+    std::vector<double> const curve =
+        interpolated(finite_samples(experiment.time, channel), experiment.time, mean_step(experiment.time));
+    for (std::size_t i = 0; i < channel.size(); ++i)
+      if (std::isnan(channel[i]) && std::isfinite(curve[i])) channel[i] = curve[i], filled = true;
+  }
+  return filled;
+}
+
 std::optional<double> noise_at_unequal_steps(std::span<double const> time, std::span<double const> samples) {
   FiniteSamples const from = finite_samples(time, samples);
   if (from.time.size() < points) return std::nullopt;

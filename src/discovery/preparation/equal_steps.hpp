@@ -1,4 +1,4 @@
-// Records of unequal steps as the regression reads them: interpolated to equal ones.
+// Records of unequal steps, or with missing samples, as the regression reads them: interpolated.
 #pragma once
 #include <optional>
 #include <span>
@@ -12,6 +12,10 @@ namespace sysid {
 /// no sample lies within two mean steps; inputs by their own rule, a held one by its
 /// mean over the step. Samples closer than a thousandth of the mean step are one. Names and the first row stay.
 Experiment at_equal_steps(Experiment const& experiment);
+
+/// Fills in missing samples of channels that have a measured one within two mean steps, by cubic splines through those that were
+/// measured; returns whether there were any.
+bool fill_missing(Experiment& experiment);
 
 /// The noise of samples at any distinct times: the root mean square of sixth divided differences, each divided by what it is if
 /// every sample has an error of sd 1. Nothing where fewer than seven samples are measured.

@@ -26,6 +26,26 @@ std::vector<double> random_times(std::uint64_t seed, int count, double length) {
 
 }  // namespace
 
+TEST_CASE("missing samples near measured ones are filled in, and only these") {
+  constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+  auto const cubic = [](double t) { return 1 - 2 * t + 0.5 * t * t * t; };
+  Experiment experiment;
+  experiment.measured.resize(2);
+  for (int i = 0; i < 40; ++i) {
+    bool const gone = i == 3 || i == 8 || i == 9 || (i >= 20 && i < 30);
+    experiment.time.push_back(0.1 * i);
+    experiment.measured[0].push_back(gone ? missing : cubic(0.1 * i));
+  }
+  CHECK(fill_missing(experiment));
+  for (std::size_t i = 0; i < 40; ++i)
+    if (i < 22 || i >= 28)
+      CHECK(experiment.measured[0][i] == doctest::Approx(cubic(experiment.time[i])).epsilon(1e-12));
+    else
+      CHECK(std::isnan(experiment.measured[0][i]));
+  CHECK(experiment.measured[1].empty());
+  CHECK_FALSE(fill_missing(experiment));
+}
+
 TEST_CASE("cubics and the rule of inputs are kept; where no sample is near, nothing is measured") {
   std::vector<double> const time = {0, 0.4, 1.3, 1.9, 3.1, 3.6, 4.2, 4.9, 40, 41};
   auto const cubic = [](double t) { return 1 - 2 * t + 0.5 * t * t * t; };
