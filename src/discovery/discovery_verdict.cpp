@@ -19,7 +19,7 @@ constexpr double decided_probability = 0.95;
 constexpr double probable = 0.8;  // between one half and this, one structure in five is wrong
 constexpr double majority = 0.5;
 constexpr double as_probable = 0;  // log odds of an equation with terms that the dictionary lacks
-constexpr double as_good = 0;      // its log likelihood, coefficients counted, against that of the dictionary's equation
+constexpr double as_good = -1;     // its log likelihood, coefficients counted, against that of the dictionary's equation
 constexpr double far_more_probable = 10, nearly_as_good = -3;  // of a much simpler one, that the record hardly speaks against
 constexpr double settled_residual = 1.5;                       // of the noise
 constexpr double few_noises = 3;
@@ -60,15 +60,15 @@ std::string likelihood_clause(OutsideEquation const& outside) {
 std::string form_clause(ValidationReport const& validation) {
   double const probability = validation.structures.front().probability;
   if (probability >= probable && validation.outside && is_rival(*validation.outside))
-    return fmt::format("the form is decided among the terms of the dictionary (probability {}), but not against other terms",
-                       probability_text(probability));
+    return fmt::format("the form is {} among the terms of the dictionary (probability {}), but not decided against other terms",
+                       probability >= decided_probability ? "decided" : "the most probable", probability_text(probability));
+  bool const alone = validation.outside && !(validation.outside->log_odds > as_probable);
   return fmt::format("the form is {}{} (probability {})",
                      probability >= decided_probability ? "decided"
                      : probability >= probable          ? "more probable than all others"
                      : probability >= majority          ? "not decided, but more probable than all others"
                                                         : "not decided",
-                     probability >= probable && !validation.outside ? " among the terms of the dictionary" : "",
-                     probability_text(probability));
+                     probability >= probable && !alone ? " among the terms of the dictionary" : "", probability_text(probability));
 }
 
 /// sds in percent of the coefficients: the smallest and the largest.

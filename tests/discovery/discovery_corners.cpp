@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/numeric/random.hpp"
 #include "discovery/discovering.hpp"
 #include "relative.hpp"
 

@@ -12,19 +12,21 @@ namespace sysid {
 namespace {
 
 constexpr double least_relative_noise = 1e-9;  // of the channel's sd
+/// Of the largest sample: starts are moved by a millionth of the size, which rounding must not hide where a motion comes to rest.
+constexpr double least_size = 1e-6;
 
 /// Signals of a channel over all experiments: their sd about the mean.
 double size_of(std::span<Experiment const> experiments, std::size_t channel) {
-  double sum = 0, squares = 0, count = 0;
+  double sum = 0, squares = 0, count = 0, largest = 0;
   auto const each = [&](auto const& add) {
     for (Experiment const& experiment : experiments)
       for (double const y : experiment.measured[channel])
         if (std::isfinite(y)) add(y);
   };
-  each([&](double y) { sum += y, ++count; });
+  each([&](double y) { sum += y, ++count, largest = std::max(largest, std::fabs(y)); });
   if (count == 0) return 1;
   each([&](double y) { squares += (y - sum / count) * (y - sum / count); });
-  return squares > 0 ? std::sqrt(squares / count) : 1;
+  return squares > 0 ? std::max(std::sqrt(squares / count), least_size * largest) : 1;
 }
 
 std::shared_ptr<SimulationProgram const> compile_records_of(CompiledModel const& compiled, CompiledModel::Record::Kind kind) {
