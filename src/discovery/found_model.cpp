@@ -25,7 +25,8 @@ constexpr double least_width = 0.1;
 constexpr double widest_average = 0.1;
 /// Either way from the noise that the regression took; upwards as many times what the equation leaves at least, where that is more.
 constexpr double noise_factor = 10, residual_factor = 3;
-constexpr double exact = 1e-13;  // of the signal: what a difference equation without noise is off by, with all digits
+constexpr double without_noise = 1e-5;  // of the signal
+constexpr double exact = 1e-13;         // of the signal: what a difference equation without noise is off by, with all digits
 
 // "4.979e9".
 std::string plain(std::string text) {
@@ -337,9 +338,12 @@ class ModelText {
       double sd = source_.discovery.noise_sd.size() > c ? source_.discovery.noise_sd[c] : 0;
       if (source_.noise_sd.size() > c && source_.noise_sd[c] > 0) sd = source_.noise_sd[c];
       double const size = motion_of(source_.data, c, 0).size[0];
-      double low = sd / noise_factor, high = sd * std::max(noise_factor, residual_factor * residual_over_noise());
+      // Without noise the regression's is that of the digits and of the derivatives, and may be far too large.
+      double low = sd / (sd < without_noise * size ? 100 * noise_factor : noise_factor),
+             high = sd * std::max(noise_factor, residual_factor * residual_over_noise());
       // Not down to `exact`: steps that follow a motion to its last digit take minutes.
-      if (!(sd > 1e-9 * size)) low = 1e-9 * size, high = size;
+      if (!(sd > 1e-9 * size)) high = size;
+      low = std::max(low, 1e-9 * size);
       std::string const state = primed_name(dictionary().states[s].name, measured.order);
       if (double const growth = source_.growth.empty() ? 0 : source_.growth[c]; growth > 0) {
         double const mean_square = mean_square_of(c) + growth * growth;

@@ -153,7 +153,7 @@ TEST_CASE("other terms are a warning where the record is described as well by th
   Findings const usual = other_terms(validation);
   REQUIRE(usual.size() == 1);
   CHECK(usual.front().severity == Severity::note);
-  CHECK(verdict_clauses(validation).starts_with("the form is decided (probability 0.980)"));
+  CHECK(verdict_clauses(validation).starts_with("the form is decided among the terms of the dictionary (probability 0.980)"));
   validation.outside->coefficients = -1;
   CHECK(other_terms(validation).front().severity == Severity::warning);
   CHECK(other_terms(validation).front().message.find("2.5 lower, with 1 coefficient fewer") != std::string::npos);
