@@ -94,10 +94,12 @@ TEST_CASE("nineteen modes of one height are all found, with equal shares") {
   TestTarget const target({"f"}, {{Prior::uniform, 2.5, 97.5}}, 1, 0, [](std::vector<double> const& x, std::vector<double>& rows) {
     rows[0] = std::sin(std::numbers::pi * x[0] / 5) / 0.1;
   });
-  Bench bench(1);
-  SearchResult const result = search(target, ObjectiveKind::posterior, bench.context);
-  CHECK(result.modes.size() == 19);
-  for (Mode const& each : result.modes) CHECK(each.share == relative(1.0 / 19, 0.05));
+  for (ObjectiveKind const kind : {ObjectiveKind::posterior, ObjectiveKind::likelihood}) {
+    Bench bench(1);
+    SearchResult const result = search(target, kind, bench.context);
+    CHECK(result.modes.size() == 19);
+    for (Mode const& each : result.modes) CHECK(each.share == relative(1.0 / 19, 0.05));
+  }
 }
 
 TEST_CASE("searches that meet go on as one: eight cost little more than one") {
