@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/numeric/hypotenuse.hpp"
 #include "core/numeric/random.hpp"
@@ -147,8 +148,7 @@ bool estimate(Target const& target, EvidenceTask const& task, std::vector<Mode> 
 
 /// Why tempered SMC may have lost a part of the mass on its way; empty: nothing speaks against it. Its own error counts only what
 /// its particles have seen, and they see nothing of a narrow mode that few of them have entered.
-std::string doubt_of_tempering(Evidence const& evidence, bool laplace_passes) {
-  if (std::string large = too_large(*evidence.error); !large.empty()) return large;
+std::string doubt_by_laplace(Evidence const& evidence, bool laplace_passes) {
   double allowed = 2 * *evidence.error + 0.2;
   if (laplace_passes) allowed = std::min(allowed, 0.4);  // its own checks know it better than particles that may have been lost
   if (evidence.laplace && std::fabs(*evidence.laplace - *evidence.log_evidence) > allowed)
@@ -174,9 +174,8 @@ bool temper(Target const& target, EvidenceTask const& task, std::uint64_t most, 
   evidence.error = std::max(0.5 * hypotenuse(first.error, second.error), 0.5 * std::fabs(difference));
   evidence.effective = first.effective + second.effective;
   evidence.reason.clear();
-  bool const laplace_passes = evidence.laplace && evidence.doubt.empty();
   evidence.doubt = first.unmoved || second.unmoved ? "tempered SMC could not move its particles at some powers of the likelihood"
-                                                   : doubt_of_tempering(evidence, laplace_passes);
+                                                   : too_large(*evidence.error);
   return true;
 }
 
@@ -195,17 +194,16 @@ void prefer_weighted(EvidenceMethod method, Evidence& evidence) {
   evidence.doubt = too_large(*evidence.error);
 }
 
-/// Whether the draws of the fit tell another evidence than the populations: Laplace's approximation may be as wrong as these. The
-/// draws are bridged.
-std::string doubt_of_draws(Target const& target, EvidenceTask const& task, Evidence& evidence, Ledger& ledger,
-                           std::function<bool()> const& stop) {
+/// Whether the draws of the fit, bridged, tell another evidence than the populations; nothing where they do not tell.
+std::optional<std::string> doubt_by_draws(Target const& target, EvidenceTask const& task, Evidence& evidence, Ledger& ledger,
+                                          std::function<bool()> const& stop) {
   Evidence bridged;
   std::vector<Mode> const modes = sampled_modes(target, task.objective_kind, task.modes, task.seed, ledger, stop);
   bool const known = estimate(target, task, modes, bridged, ledger, stop);
   evidence.simulations += bridged.simulations;
-  if (!known || !bridged.log_evidence || !bridged.doubt.empty()) return {};
+  if (!known || !bridged.log_evidence || !bridged.doubt.empty()) return std::nullopt;
   double const apart = std::fabs(*bridged.log_evidence - *evidence.log_evidence);
-  if (apart < 3 * hypotenuse(*evidence.error, *bridged.error)) return {};
+  if (apart < 3 * hypotenuse(*evidence.error, *bridged.error)) return "";
   return fmt::format("bridge sampling gives {:.2f} ± {:.2f}", *bridged.log_evidence, *bridged.error);
 }
 
@@ -225,13 +223,17 @@ Evidence estimate_evidence(Target const& target, EvidenceTask const& task, Ledge
   if (task.objective_kind == ObjectiveKind::likelihood || target.dimension() == 0) return evidence;
   evidence.laplace = evidence.log_evidence;
   evidence.without_laplace = evidence.reason;
+  bool const laplace_passes = evidence.laplace && evidence.doubt.empty();
   if (task.method == EvidenceMethod::laplace) return evidence;
   if (task.method == EvidenceMethod::smc) {
     constexpr std::uint64_t most = 1'000'000;
     if (!marginal::temper(target, task, most, evidence, ledger, stop))
       evidence.doubt = fmt::format("tempered SMC did not reach the posterior with {} simulations", evidence.simulations);
-    else if (draws && evidence.doubt.empty())
-      evidence.doubt = marginal::doubt_of_draws(target, task, evidence, ledger, stop);
+    else if (evidence.doubt.empty()) {
+      // Draws know it better than Laplace's approximation, which may be as wrong as the populations.
+      auto const by_draws = draws ? marginal::doubt_by_draws(target, task, evidence, ledger, stop) : std::nullopt;
+      evidence.doubt = by_draws ? *by_draws : marginal::doubt_by_laplace(evidence, laplace_passes);
+    }
     return evidence;
   }
   if (!draws) {
@@ -249,7 +251,9 @@ Evidence estimate_evidence(Target const& target, EvidenceTask const& task, Ledge
   if (task.method == EvidenceMethod::automatic && !believed && known && !target.is_expensive()) {
     Evidence tempered = evidence;
     tempered.simulations = by_draws.simulations;
-    if (marginal::temper(target, task, task.simulations / 2, tempered, ledger, stop) && tempered.doubt.empty()) return tempered;
+    if (marginal::temper(target, task, task.simulations / 2, tempered, ledger, stop) && tempered.doubt.empty() &&
+        marginal::doubt_by_laplace(tempered, laplace_passes).empty())
+      return tempered;
     by_draws.simulations = tempered.simulations;
   }
   if (known && by_draws.log_evidence) return by_draws;
