@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
 #include "core/numeric/elementary.hpp"
+#include "core/numeric/not_finite.hpp"
 #include "core/numeric/random.hpp"
+#include "core/numeric/statistics.hpp"
 #include "discovery/coefficient_names.hpp"
 #include "discovery/forecast_errors.hpp"
 #include "discovery/found_equation.hpp"
@@ -24,7 +27,7 @@
 namespace sysid {
 namespace {
 
-constexpr double near_floor = 3;
+constexpr double near_floor = 3, most_of_motion = 0.01;
 constexpr int draws = 50, draws_one_by_one = 10;
 constexpr int origins = 200, origins_one_by_one = 20;  // of forecasts, in each experiment
 
@@ -242,8 +245,18 @@ class Validator {
       double const plain = regression::estimated_noise(alike);
       if (plain > 0) noise *= regression::estimated_noise(growing) / plain;
     }
-    bool const near = !searched_.noise.floor.empty() && residual < near_floor * searched_.noise.floor[channel];
-    return near ? std::max(noise, searched_.noise.floor[channel]) : noise;
+    if (searched_.noise.floor.empty()) return noise;
+    // In a model that has nothing to do with the motion, the digits of the input may do anything.
+    double const floor = std::min(searched_.noise.floor[channel], most_of_motion * sd_of(channel));
+    return residual < near_floor * floor ? std::max(noise, floor) : noise;
+  }
+
+  /// Of the samples of a channel.
+  double sd_of(std::size_t channel) const {
+    std::vector<double> values;
+    for (Experiment const& each : rows_.records)
+      std::ranges::copy_if(each.measured[channel], std::back_inserter(values), [](double y) { return std::isfinite(y); });
+    return values.size() > 1 ? std::sqrt(population_variance(values)) : infinity;
   }
 
   ValidatedStructure described(std::size_t m) const {
