@@ -63,7 +63,7 @@ void follow_further(Objective& objective, Mode& mode, Ledger& ledger, std::funct
 SampledEvidence by_draws(double laplace, WeightedDraws const& draws) {
   constexpr double precise = 0.25;  // nats
   if (draws.draws == 0) return {};
-  bool const known = draws.confirmed && draws.error < precise;
+  bool const known = draws.tell() && draws.error < precise;
   return {known ? SampledEvidence::State::known : SampledEvidence::State::unknown, known ? draws.log_evidence - laplace : 0,
           known ? draws.error : 0, draws.effective, static_cast<std::uint64_t>(draws.draws)};
 }

@@ -23,6 +23,7 @@ constexpr int most_parameters = 40;
 constexpr int draws_per_round = 300;  // even: pairs
 constexpr int most_rounds = 6;
 constexpr double nearly_normal = 0.8;  // effective draws, over those that they would be if the posterior were normal
+constexpr double of_several = 0.3;     // effective draws over draws: a single component that adapts would not be better
 constexpr int walker_count = 64;
 constexpr double largest_k = 0.7;
 constexpr double another_width = 1.2;  // over the mode's, or under it: not said without walkers
@@ -310,9 +311,10 @@ WeightedDraws weighted_draws(Target const& target, std::vector<Mode> const& mode
     if (!std::isfinite(population.largest)) return {};
     result = summarised(target, modes, population);
     // Of a normal posterior the first round's are enough; what has adapted needs 400 for widths to 4 %.
-    bool const enough = round == 0 ? result.effective > nearly_normal * effective_number(population.normal_weight)
-                                   : result.effective > 4 * pairs / 1.5;
-    if (enough) break;
+    double const needed = round > 0          ? 4 * pairs / 1.5
+                          : modes.size() > 1 ? of_several * result.draws
+                                             : nearly_normal * effective_number(population.normal_weight);
+    if (result.effective > needed) break;
   }
   bool const in_doubt = stated != nullptr && modes.size() == 1 && modes.front().flat.empty() &&
                         !(result.confirmed && as_wide_as(modes.front(), result) && as_wide_as(*stated, result));
