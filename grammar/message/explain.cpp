@@ -45,6 +45,7 @@ class Failure {
   Diagnostic diagnostic() const {
     if (wanted_ == wanted::shallower_nesting) return errors::nesting_too_deep(span(), deepest_nesting);
     if (auto incomplete = unfinished_line()) return *incomplete;
+    if (!at_end_ && found().is("=") && wanted_ == wanted::equals) return one_side();
     auto specific = at_end_ ? at_end() : at_token();
     std::string const help = hint(gap());
     if (specific && !help.empty() && words::contains(general, specific->code)) specific->help = help;
@@ -146,6 +147,16 @@ class Failure {
     return errors::statement_incomplete(*last, *keyword);
   }
 
+  /// `k =`, `= 3`.
+  Diagnostic one_side() const {
+    std::string const help = "an equation has two sides: `left = right`";
+    if (found_ == first_) return errors::expected(span(), wanted::value, found_phrase(), help);
+    Token const* const behind = next();
+    std::uint32_t const end = found().span.end;
+    return behind == nullptr ? errors::expected({end, end}, wanted::value, "the end of the line", help)
+                             : errors::expected(behind->span, wanted::value, fmt::format("`{}`", behind->text), help);
+  }
+
   /// `seed = 1,` and on the next line `forecast = predict ...`.
   std::optional<Diagnostic> comma_before_task() const {
     Token const *verb = previous(), *sign = previous(2), *name = previous(3), *comma = previous(4);
@@ -182,7 +193,9 @@ class Failure {
     if (is_symbol(found(), comparisons)) return at_comparison();
     if (wanted_ == wanted::operator_between && previous() != nullptr) return side_by_side();
     if (found().is("=") && wanted_ == wanted::end_of_statement) return second_equals();
-    if (begins_with("observe") && wanted_ == wanted::tilde) return errors::tilde_missing(span(), "observe", with_tilde());
+    bool const channels = found().is(",") || found().is("and");
+    if (begins_with("observe") && wanted_ == wanted::tilde && !channels)
+      return errors::tilde_missing(span(), "observe", with_tilde());
     bool const prior_missing = begins_with("parameter") && !has("~") && wanted_ == wanted::end_of_statement;
     if (prior_missing && is_word(found()) && value_before && unit_here().empty())
       return errors::tilde_missing(span(), "parameter", with_tilde());
@@ -204,6 +217,8 @@ class Failure {
     Diagnostic diagnostic = errors::unknown_statement(word, "a model", words::model_statements);
     bool const typed = words::translated(words::foreign_model_statements(), word.text) == "let";
     if (words::contains(words::items, word.text)) diagnostic.help = fmt::format("`{}` stands outside of models", word.text);
+    if (word.is("set") && has("="))
+      diagnostic.help = fmt::format("a value is given in the declaration, with its unit: `parameter {0} [kg] = 1`", found().text);
     if (typed && has("~")) diagnostic.help = "did you mean `parameter`?";
     if (typed && !has("~") && !has("=")) diagnostic.help = "did you mean `state`, or `parameter` for a value to be estimated?";
     return diagnostic;

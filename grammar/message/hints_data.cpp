@@ -154,7 +154,10 @@ std::string in_rule(Gap const& gap, std::string_view column) {
 /// `input x = 2*force [N]`, `input x [N] = force`, `measure d = y [mm] sd = 0.1`.
 std::string in_column(Gap const& gap) {
   bool const input = gap.begins_with("input");
-  if (!(input || gap.begins_with("measure")) || gap.found == nullptr || gap.at < 2) return {};
+  if (!(input || gap.begins_with("measure")) || gap.at < 2) return {};
+  if (gap.wanted == wanted::equals && gap.found == nullptr && gap.at == 2)
+    return fmt::format("the column of the file comes after `=`: `{} = COLUMN{}`", gap.text(0, 2), input ? " hold linear" : "");
+  if (gap.found == nullptr) return {};
   if (std::string help = in_error(gap); !help.empty()) return help;
   std::size_t const equals = gap.find("=");
   std::string_view const word = gap.statement[0].text, name = gap.statement[1].text;

@@ -15,15 +15,21 @@ constexpr std::array<std::string_view, 3> lists_of_terms{"target", "terms", "exc
 
 /// `((1, 0), (-1, 1))` of `[1, 0; -1, 1]`; empty where there is one row.
 std::string matrix_by_rows(std::span<Token const> tokens, std::size_t opener, std::size_t close) {
-  std::string rows;
+  std::string rows, column;
   std::size_t first = opener + 1;
   int count = 0;
+  bool single = true;  // numbers below each other
   for (std::size_t i = first; i <= close; ++i) {
+    single = single && !tokens[i].is(",");
     if (!tokens[i].is(";") && i < close) continue;
-    if (i > first) rows += fmt::format("{}({})", ++count > 1 ? ", " : "", written(tokens[first], tokens[i - 1]));
+    if (i > first) {
+      std::string_view const row = written(tokens[first], tokens[i - 1]);
+      rows += fmt::format("{}({})", ++count > 1 ? ", " : "", row);
+      column += fmt::format("{}{}", count > 1 ? ", " : "", row);
+    }
     first = i + 1;
   }
-  return count > 1 ? fmt::format("({})", rows) : std::string();
+  return count > 1 ? fmt::format("({})", single ? column : rows) : std::string();
 }
 
 }  // namespace
@@ -49,14 +55,14 @@ std::string instead_of_list(std::span<Token const> tokens, std::size_t line, std
       prior ? fmt::format("a range of values is written as a prior: {}; a list is written in parentheses: `(1, 2)`",
                           list_as_range(tokens, opener, close))
             : "write it in parentheses: `(1, 2)`";
+  if (tokens[line].is("initial")) return "an initial value names its state: `initial y = 0, y' = 0`";
   if (close == tokens.size() || close == opener + 1) return general;
   if (std::string const rows = matrix_by_rows(tokens, opener, close); !rows.empty())
-    return fmt::format("a matrix is a list of its rows: `{}`", rows);
+    return fmt::format("{}: `{}`", rows.starts_with("((") ? "a matrix is a list of its rows" : "write it in parentheses", rows);
   std::string_view const inside = written(tokens[opener + 1], tokens[close - 1]);
   bool const behind_keyword = opener == line + 1;
   if (behind_keyword && words::contains(lists_of_names, tokens[line].text))
     return fmt::format("write it without brackets: `{} {}`", tokens[line].text, inside);
-  if (behind_keyword && tokens[line].is("initial")) return "an initial value names its state: `initial y = 0, y' = 0`";
   if (opener == line + 2 && words::contains(lists_of_terms, tokens[line].text))
     return fmt::format("write it without brackets: `{} = {}`", tokens[line].text, inside);
   if (words::contains(words::prepositions, tokens[opener - 1].text))

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 
+#include "core/numeric/unit.hpp"
 #include "grammar/message/explain.hpp"
 #include "grammar/message/hints.hpp"
+#include "syntax/foreign_words.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::grammar {
@@ -52,13 +54,12 @@ std::string bracketed_unit(Gap const& gap, std::size_t from, std::size_t end) {
 }
 
 /// The comma behind the first argument of the call that opens there, or what closes it: not one of a call inside.
-std::size_t first_comma(Gap const& gap, std::size_t opener) {
-  std::size_t const close = gap.closing(opener);
-  std::size_t at = opener + 1;
+std::size_t comma_from(Gap const& gap, std::size_t at, std::size_t close) {
   while (at < close && !gap.statement[at].is(","))
     at = (gap.statement[at].is("(") || gap.statement[at].is("[") ? gap.closing(at) : at) + 1;
   return std::min(at, close);
 }
+std::size_t first_comma(Gap const& gap, std::size_t opener) { return comma_from(gap, opener + 1, gap.closing(opener)); }
 
 /// `normal(20, sd = 5)T(0, 100)`: the prior with its bounds inside.
 std::string truncation(Gap const& gap, std::size_t tilde) {
@@ -99,6 +100,11 @@ std::string behind_distribution(Gap const& gap) {
   if (std::string bounds = truncation(gap, tilde); !bounds.empty()) return bounds;
   if (gap.found->is("=")) return fmt::format("a parameter has a prior or a value: remove `{}`", gap.rest());
   if (gap.found->is(",") && gap.next() != nullptr && gap.next()->newline_before) return "remove the comma";
+  bool const another = gap.found->is(",") && gap.next(2) != nullptr && gap.next()->kind == TokenKind::word &&
+                       (gap.next(2)->is("~") || gap.next(2)->is("["));
+  if (another)
+    return fmt::format("declare each parameter in a statement of its own: `parameter {}`",
+                       gap.text(gap.at + 1, gap.statement.size()));
   Token const* const sign = gap.next(2);
   bool const bound = gap.found->is(",") && sign != nullptr && (sign->is("<") || sign->is(">") || sign->is("<=") || sign->is(">="));
   if (bound && gap.next(3) != nullptr)
@@ -119,13 +125,38 @@ std::string power_of_uniform(Gap const& gap) {
   return fmt::format("write `log_uniform({}, {})`", power(opener + 1, comma), power(comma + 1, close));
 }
 
+/// `Normal("k", 0, 1)` of the module of another program, without the name of the quantity; empty where it has no arguments.
+/// opener: its parenthesis, behind its name.
+std::string distribution_of_module(Gap const& gap, std::size_t opener) {
+  std::size_t const close = gap.closing(opener);
+  if (close >= gap.statement.size() || close == opener + 1) return {};
+  std::size_t first = opener + 1;
+  if (gap.statement[first].kind == TokenKind::text && gap.statement[first + 1].is(",")) first += 2;
+  std::string name = in_words(gap.statement[opener - 1].text);
+  if (name == "norm") name = "normal";
+  std::size_t const comma = comma_from(gap, first, close);
+  bool const two = comma < close && comma_from(gap, comma + 1, close) == close && gap.find("=", first) > close;
+  return two && name == "normal" ? fmt::format("{}({}, sd = {})", name, gap.text(first, comma), gap.text(comma + 1, close))
+                                 : fmt::format("{}({})", name, gap.text(first, close));
+}
+
+/// `~ pm.Normal(0, 1)`, at the module.
+std::string of_module(Gap const& gap) {
+  std::string const without = fmt::format("write the distribution without `{}.`", gap.found->text);
+  bool const called = gap.next(3) != nullptr && gap.next(3)->is("(") && gap.next(2)->kind == TokenKind::word;
+  std::string const meant = called ? distribution_of_module(gap, gap.at + 3) : std::string();
+  return meant.empty() ? without : fmt::format("{}: `{}`", without, meant);
+}
+
 /// `~ pm.Normal(0, 1)`, `~ flat`: a distribution with a module before it, or without parentheses.
 std::string at_distribution(Gap const& gap) {
   if (gap.wanted == wanted::tilde && gap.begins_with("observe") && gap.found == nullptr && gap.at >= 2)
     return fmt::format("write the distribution of the data around the model: `{} ~ normal(y, sd = sigma)`", gap.text(0, gap.at));
+  if (gap.wanted == wanted::tilde && gap.begins_with("observe") && gap.at >= 2 && (gap.found_is(",") || gap.found_is("and")))
+    return fmt::format("each channel has an `observe` of its own: `{} ~ normal(y, sd = sigma)`", gap.text(0, gap.at));
   if (std::string whole = power_of_uniform(gap); !whole.empty()) return whole;
   if (!gap.wanted.starts_with("a distribution") || !gap.found_word()) return {};
-  if (gap.next() != nullptr && gap.next()->is(".")) return fmt::format("write the distribution without `{}.`", gap.found->text);
+  if (gap.next() != nullptr && gap.next()->is(".")) return of_module(gap);
   return gap.next() == nullptr && gap.found->is("flat") ? "write `flat()`" : "";
 }
 
@@ -288,6 +319,9 @@ std::string in_initial(Gap const& gap) {
     return fmt::format("a random initial value is written `{} normal(0, sd = 1)`, a known one with `=`", gap.text(0, gap.at));
   if (gap.wanted == wanted::name && gap.found->kind == TokenKind::number)
     return "an initial value names its state: `initial y = 0`";
+  bool const names_first = gap.wanted == wanted::equals && gap.found->is(",");             // `y, y' = 0, 0`
+  bool const values_first = gap.wanted == wanted::end_of_statement && gap.found->is("=");  // `y = y' = 0`
+  if (names_first || values_first) return "each initial value has a state of its own: `initial y = 0, y' = 0`";
   return {};
 }
 
@@ -311,6 +345,48 @@ std::string in_disturbance(Gap const& gap) {
   return {};
 }
 
+/// `d^2y/dt^2`, `d^2(y)/dt^2`, `d/dt y`, at the `y`.
+std::string differential_quotient(Gap const& gap) {
+  Token const *last = gap.before(), *sign = gap.before(2), *letter = gap.before(3);
+  if (letter == nullptr || !letter->is("d") || gap.declares("d")) return {};
+  bool const behind = last->is("dt") && sign->is("/"), above = (last->is("2") || last->is("3")) && sign->is("^");
+  bool const inside = gap.found_is("(") && gap.next() != nullptr;
+  Token const& of = inside ? *gap.next() : *gap.found;
+  std::size_t const end = inside ? gap.closing(gap.at) + 1 : gap.at + 1;
+  bool const over_time = above && end + 1 < gap.statement.size() && gap.statement[end].is("/") && gap.statement[end + 1].is("dt");
+  if (of.kind != TokenKind::word || !(behind || over_time)) return {};
+  return fmt::format("a derivative is written with primes: write `{}{}` in place of the quotient", of.text,
+                     std::string(behind          ? 1
+                                 : last->is("3") ? 3
+                                                 : 2,
+                                 '\''));
+}
+
+/// A text in quotes that describes what stands before it; behind a declared name it may be its unit.
+std::string description(Gap const& gap) {
+  if (gap.found == nullptr || gap.found->kind != TokenKind::text || gap.at < 2 || gap.found->text.size() < 3) return {};
+  std::string_view const quoted = gap.found->text.substr(1, gap.found->text.size() - 2);
+  bool const declaration = words::contains(words::model_statements, gap.statement[0].text);
+  bool const ends = gap.wanted == wanted::operator_between || (gap.wanted == wanted::end_of_statement && declaration);
+  bool const binds = gap.find("=") < gap.at || gap.find("~") < gap.at;
+  bool const unit = !binds && gap.before()->kind == TokenKind::word && unit_atom(quoted.substr(0, quoted.find_first_of(" /*^")));
+  if (!ends || unit || is_task(gap) || gap.before()->text == "\"\"") return {};
+  return fmt::format("a description is a comment, which begins with `#`: `# {}`", quoted);
+}
+
+/// `parameters { ... }` inside a model.
+std::string inner_block(Gap const& gap) {
+  if (!gap.found_is("{") || gap.at != 1 || gap.statement[0].kind != TokenKind::word) return {};
+  std::string_view word = gap.statement[0].text;
+  constexpr std::array<std::string_view, 5> of_equations{"equations", "equation", "dynamics", "ode", "odes"};
+  if (words::contains(of_equations, word)) return "a model has no blocks inside: write the equations without `{` and `}`";
+  std::string_view const ours = words::translated(words::foreign_model_statements(), word);
+  if (!ours.empty()) word = ours;
+  if (word.ends_with('s')) word.remove_suffix(1);
+  if (!words::contains(words::model_statements, word)) return {};
+  return fmt::format("a model has no blocks inside: begin each of these lines with `{}`, and remove `{{` and `}}`", word);
+}
+
 /// `k = pm.Uniform("k", lower=1, upper=10)`, `vector[3] k`, a text in three quotes, `sin^2(y)`.
 std::string of_other_language(Gap const& gap) {
   Token const *left = gap.before(), *right = gap.found;
@@ -319,8 +395,8 @@ std::string of_other_language(Gap const& gap) {
   Token const* const comma = gap.next(2);
   if (module && comma != nullptr && gap.next()->kind == TokenKind::text && comma->is(",") &&
       gap.closing(gap.at) < gap.statement.size())
-    return fmt::format("a parameter has its prior in one statement: `parameter {} ~ {}({})`", gap.statement[0].text,
-                       in_words(left->text), gap.text(gap.at + 3, gap.closing(gap.at)));
+    return fmt::format("a parameter has its prior in one statement: `parameter {} ~ {}`", gap.statement[0].text,
+                       distribution_of_module(gap, gap.at));
   constexpr std::array<std::string_view, 5> vectors{"vector", "array", "real", "row_vector", "int"};
   if (left->is("]") && gap.found_word() && words::contains(vectors, gap.statement[0].text) && gap.at > 3)
     return fmt::format("a vector is declared with its size: `parameter {0}({1}) ~ ...`, `state {0}({1})`", right->text,
@@ -328,6 +404,7 @@ std::string of_other_language(Gap const& gap) {
   if (left->kind == TokenKind::text && left->text == "\"\"" && right->kind == TokenKind::text)
     return "a comment begins with `#` or `//`";
   Token const *power = gap.before(2), *function = gap.before(3);
+  if (std::string quotient = differential_quotient(gap); !quotient.empty()) return quotient;
   bool const raised = right->is("(") && left->kind == TokenKind::number && power != nullptr && power->is("^") &&
                       function != nullptr && function->kind == TokenKind::word && !gap.declares(function->text);
   if (raised && gap.closing(gap.at) < gap.statement.size())
@@ -391,8 +468,8 @@ std::string in_expression(Gap const& gap) {
 
 std::string hint_in_model(Gap const& gap) {
   if (gap.statement.empty()) return {};
-  for (auto const look : {&behind_distribution, &at_distribution, &behind_declared, &in_unit, &at_bracket, &in_definition,
-                          &in_initial, &in_disturbance, &of_other_language, &in_expression})
+  for (auto const look : {&description, &inner_block, &behind_distribution, &at_distribution, &behind_declared, &in_unit,
+                          &at_bracket, &in_definition, &in_initial, &in_disturbance, &of_other_language, &in_expression})
     if (std::string help = look(gap); !help.empty()) return help;
   return {};
 }

@@ -178,7 +178,8 @@ class LayoutPass {
       return fmt::format("a range of values is written as a prior: {}", list_as_range(tokens_, i, close));
     if (declares && !before.is("^")) return fmt::format("a unit is written in brackets: `{} [{}]`", before.text, inside);
     if (first.is("function")) return fmt::format("a function is written with `=`: `= {}`", inside);
-    if (words::contains(words::prepositions, before.text)) return fmt::format("list the data without braces: `{} {}`", before.text, inside);
+    if (words::contains(words::prepositions, before.text))
+      return fmt::format("list the data without braces: `{} {}`", before.text, inside);
     bool const several = inside.find(',') != std::string_view::npos && tokens_[close - 1].kind != TokenKind::symbol;
     if (before.is("=") && several && !open_.empty() && tokens_[open_.back()].is("("))
       return fmt::format("write a list in parentheses: `({})`", inside);
@@ -229,6 +230,10 @@ class LayoutPass {
                       : behind_prior ? errors::bounds_in_brackets(tokens_[opener].span)
                                      : errors::unclosed(tokens_[opener], token.span));
       open_.pop_back();
+      if (list && closed) {  // what follows `;` in it belongs to the same mistake
+        ++inside_[opener + 1];
+        --inside_[closing_on_line(tokens_, opener) + 1];
+      }
     } else if (token.is("{") && stands_inside(i)) {
       mistake(i, errors::no_meaning(token.span, "`{`", instead_of_brace(i)));
       inner_.insert({i, closing_brace(i)});
@@ -271,6 +276,23 @@ class LayoutPass {
   /// `;` where a comma is meant: the statement goes on, so that one message is enough.
   bool ends_within_brackets(std::size_t i) const { return tokens_[i].is(";") && inside_[i] > 0; }
 
+  /// `[0; 0]` is a list of other languages; elsewhere a comma is meant.
+  void refuse_semicolon(std::size_t i) {
+    std::size_t line = i, opener = i;
+    while (line > 0 && !tokens_[line].newline_before) --line;
+    int depth = 0;
+    while (opener > line && !(depth == 0 && is_opener(opener))) {
+      depth += tokens_[opener].is("]") || tokens_[opener].is(")") ? 1 : is_opener(opener) ? -1 : 0;
+      --opener;
+    }
+    bool const list = tokens_[opener].is("[") && opener > line && closing_on_line(tokens_, opener) < tokens_.size() &&
+                      (tokens_[opener - 1].kind == TokenKind::symbol || tokens_[opener - 1].is("initial"));
+    if (list)
+      mistake(opener, errors::list_in_brackets(tokens_[opener].span, instead_of_list(tokens_, line, opener)));
+    else
+      mistake(i, errors::semicolon_in_brackets(tokens_[i].span));
+  }
+
   void decide_newlines() {
     out_.text = std::string(source_.text());
     auto const blank = [&](std::size_t begin, std::size_t end) {
@@ -293,7 +315,7 @@ class LayoutPass {
         if (out_.text[at] != '\n' || joined) out_.text[at] = ' ';
       if (i == tokens_.size()) break;
       Token& token = tokens_[i];
-      if (ends_within_brackets(i)) mistake(i, errors::semicolon_in_brackets(token.span));
+      if (ends_within_brackets(i)) refuse_semicolon(i);
       if (separator || (token.newline_before && !joined) || (token.is("}") && !inner_.contains(i))) ++statement;
       token.statement = statement;
       token.joins_before =

@@ -30,15 +30,22 @@ std::uint32_t behind_statement(Layout const& layout, std::uint32_t where) {
 std::uint32_t behind_item(Layout const& layout, std::uint32_t where, std::string const& wanted) {
   std::size_t const found = layout.token_at(where);
   if (wanted == wanted::opening_brace) {
-    // The body that follows the incomplete head goes with it, unless another block begins first.
+    // The body that follows the incomplete head goes with it, up to another block or the end. One without braces is told by its
+    // first statement.
     int depth = 0;
-    for (std::size_t i = found; i < layout.tokens.size(); ++i) {
+    std::size_t i = found;
+    for (; i < layout.tokens.size(); ++i) {
       Token const& token = layout.tokens[i];
       bool const next_block = depth == 0 && token.newline_before && words::contains(words::blocks, token.text);
       if (next_block) break;
       depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
       if (token.is("}") && depth <= 0) return token.span.end;
     }
+    std::size_t const body = layout.ends_line(where) ? found : found + 1;
+    bool const statements = body < i && layout.tokens[body].newline_before &&
+                            (words::contains(words::model_statements, layout.tokens[body].text) ||
+                             words::contains(words::data_statements, layout.tokens[body].text));
+    if (statements) return end_of(layout, i);
   }
   std::uint32_t const end = behind_statement(layout, where);
   bool const stray_brace = end == where && found < layout.tokens.size() && layout.tokens[found].is("}") && !layout.ends_line(where);

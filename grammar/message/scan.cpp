@@ -79,7 +79,10 @@ class Scanner {
       mistake(errors::no_meaning(*std::exchange(include_, std::nullopt), "`#include`",
                                  "`#` begins a comment: write `use NAME` for a module of the library or of this folder"));
     TokenKind kind = TokenKind::symbol;
-    if (peek() == '"') {
+    if (stands_for_primes()) {
+      ++at_;
+      mistake(errors::no_meaning(from(begin), "the character `\"`", "a second derivative is written with two primes: `y''`"));
+    } else if (peek() == '"') {
       kind = TokenKind::text;
       text_token();
     } else if (words::is_digit(peek())) {
@@ -116,6 +119,18 @@ class Scanner {
         begin > 0 && text_[begin - 1] == 'd' && words::begins_name(peek()) && !out_.tokens.empty() && out_.tokens.back().is("d");
     mistake(errors::look_alike(from(begin), text_.substr(begin, at_ - begin),
                                derivative ? "derivatives with primes, `y''`" : fmt::format("`^{}`", power)));
+  }
+
+  /// `m*y" + k*y`: a quote directly behind a name that no text can follow, with nothing that begins a text behind it.
+  bool stands_for_primes() const {
+    if (peek() != '"' || out_.tokens.empty() || newline_before_ || out_.tokens.back().kind != TokenKind::word) return false;
+    constexpr std::string_view behind = " \t\r\n+-*/^=,;)";
+    bool const ends = at_ + 1 == text_.size() || behind.find(peek(1)) != std::string_view::npos;
+    if (!ends || out_.tokens.back().span.end != at_) return false;
+    std::size_t first = out_.tokens.size() - 1;
+    while (first > 0 && !out_.tokens[first].newline_before) --first;
+    std::string_view const word = out_.tokens[first].text;
+    return !words::contains(words::items, word) && !words::contains(words::data_statements, word);
   }
 
   void text_token() {

@@ -96,11 +96,23 @@ TEST_CASE("one mistake gives one message") {
            "model m {\n  y' = 3 +\n}\nfit m\n",
            "data d {\n  file 'a.csv'\n  time t [s]\n}\n",
            "p = fit m to d with mh(samples = 3\nq = fit m to d\n",
+           "model m {\n  let K = [1, 2; 3, 4]\n  state y\n}\n",
+           "model m {\n  initial = [0; 0]\n  state y\n}\n",
+           "model m \"title\"\n  state y\n  y' = 1\nend m;\ndata d {\n  file \"a.csv\"\n}\n",
        }) {
     CAPTURE(text);
     std::string const shown = messages(text);
     CHECK_MESSAGE(count(shown, "error[") == 1, shown);
   }
+}
+
+TEST_CASE("a quote behind a name stands for two primes only where no text can begin") {
+  CHECK(messages("model m \"title\" {\n  state y\n  y'' = 1\n}\n").empty());
+  CHECK(messages("model m\"title\" {\n  state y\n  y'' = 1\n}\n").empty());
+  CHECK(messages("data d {\n  file\"a.csv\"\n  rate 1 [Hz]\n  measure y = \"a b\"\n}\n").empty());
+  std::string const two = messages("model m {\n  state y\n  m*y\" + k*y\" = 1\n}\n");
+  CHECK(two.find("help: a second derivative is written with two primes: `y''`") != std::string::npos);
+  CHECK(count(two, "error[") == 1);
 }
 
 TEST_CASE("an expression alone reports what follows it") {
