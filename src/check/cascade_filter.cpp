@@ -21,6 +21,9 @@ constexpr std::array<std::string_view, 5> balance{"E3002", "E3003", "E3004", "E3
 /// Something missing of a state, whose name may stand misspelt where it is looked for.
 constexpr std::array<std::string_view, 2> lacks{"E3001", "E3007"};
 
+/// What an input cannot have: an initial value, a second derivative.
+constexpr std::array<std::string_view, 2> of_input{"E3010", "E2008"};
+
 template <class Codes>
 bool is_one_of(Diagnostic const& diagnostic, Codes const& codes) {
   return std::find(codes.begin(), codes.end(), diagnostic.code) != codes.end();
@@ -47,16 +50,26 @@ void remove_cascades(ast::File const& file, Diagnostics& diagnostics) {
     return (a.primary ? a.primary->span.begin : ~0U) < (b.primary ? b.primary->span.begin : ~0U);
   });
   std::map<int, std::set<std::string>> unknown_in;  // by model: the names offered in place of its unknown ones
-  std::vector<Span> unknown_arguments;
+  std::vector<Span> unknown_arguments, moving_priors;
   for (Diagnostic const& each : all) {
     int const model = model_of(file, each);
     if (model >= 0 && is_one_of(each, unknown_names)) unknown_in[model].insert(each.suggested.begin(), each.suggested.end());
     if (each.code == "E2102" && each.primary) unknown_arguments.push_back(each.primary->span);
+    if (each.code == "E2110" && each.primary) moving_priors.push_back(each.primary->span);
+  }
+  // What is declared twice counts as the first; an input that has an initial value is meant as a state.
+  std::set<std::pair<int, std::string>> declared_twice, not_states;
+  for (Diagnostic const& each : all) {
+    if (each.code == "E2002") declared_twice.insert({model_of(file, each), subject(each)});
+    if (each.code == "E3010") not_states.insert({model_of(file, each), subject(each)});
   }
   std::set<std::tuple<int, std::string, std::string, std::string>> said;
   std::set<std::tuple<std::string, std::uint32_t, std::uint32_t, std::uint32_t>> units_said;
   auto const follows = [&](Diagnostic const& each) {
     int const model = model_of(file, each);
+    std::pair<int, std::string> const quantity{model, each.names.empty() ? "" : each.names.back()};
+    if (is_one_of(each, of_input) && declared_twice.contains(quantity)) return true;
+    if (each.code == "E2008" && not_states.contains(quantity)) return true;
     if (is_one_of(each, unknown_names)) {
       // A `y` that is not declared and a `y` that is not a state are one mistake: what counts is the name.
       return !said.insert({model, model >= 0 ? "" : each.code, each.kind, subject(each)}).second;
@@ -66,6 +79,7 @@ void remove_cascades(ast::File const& file, Diagnostics& diagnostics) {
     if (errors::is_unit_conflict(each)) {
       bool const at_call = !each.function.empty() && !each.secondary.empty();
       Span const place = each.primary->span;
+      if (std::any_of(moving_priors.begin(), moving_priors.end(), [&](Span prior) { return within(place, prior); })) return true;
       return !units_said.insert({each.code, place.begin, place.end, at_call ? each.secondary.front().span.begin : 0U}).second;
     }
     if (is_one_of(each, balance)) return unknown_in.contains(model);

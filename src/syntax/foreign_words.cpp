@@ -106,4 +106,24 @@ std::string_view translated(std::span<ForeignWord const> table, std::string_view
   return {};
 }
 
+std::optional<DerivativeWord> as_derivative(std::string_view name, std::span<std::string const> known, bool brief) {
+  struct Pattern {
+    std::string_view before, behind;
+    int primes;
+    bool brief = false;
+  };
+  constexpr Pattern patterns[] = {{"", "dot", 1},     {"", "_dot", 1},     {"d", "", 1},        {"d", "dt", 1},
+                                  {"", "ddot", 2},    {"", "_ddot", 2},    {"d2", "", 2},       {"d2", "dt2", 2},
+                                  {"", "dotdot", 2},  {"", "_dotdot", 2},  {"", "prime", 1},    {"", "_prime", 1},
+                                  {"", "d", 1, true}, {"", "dd", 2, true}, {"", "_d", 1, true}, {"", "_dd", 2, true},
+                                  {"", "p", 1, true}, {"", "pp", 2, true}, {"", "_t", 1, true}, {"", "_tt", 2, true}};
+  for (std::string const& each : known)
+    for (Pattern const& pattern : patterns)
+      if ((brief || !pattern.brief) && !each.empty() &&
+          name.size() == pattern.before.size() + each.size() + pattern.behind.size() && name.starts_with(pattern.before) &&
+          name.ends_with(pattern.behind) && name.substr(pattern.before.size()).starts_with(each))
+        return DerivativeWord{each, pattern.primes};
+  return std::nullopt;
+}
+
 }  // namespace sysid::words

@@ -1,5 +1,5 @@
 // What people write for a unit, and how it is to be written.
-#include "check/message/unit_slips.hpp"
+#include "syntax/unit_slips.hpp"
 
 #include <doctest/doctest.h>
 

@@ -167,6 +167,10 @@ class Flattener {
       std::optional<std::vector<ast::Call>> laws;
       if (initial.value) {
         values = evaluator_.evaluate(*initial.value, frame);
+        if (values && states->shape.rank == 0 && values->items.size() > 1) {
+          diagnostics_.add(errors::list_of_initial(initial.value->span, initial.state, values->shape));
+          continue;
+        }
         if (values)
           values = evaluator_.algebra().fill(std::move(*values), states->shape, true,
                                              errors::named("the initial value of", initial.state.name.text), initial.value->span);

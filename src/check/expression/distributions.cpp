@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/expression/corrected_call.hpp"
 #include "check/expression/doubtful_arguments.hpp"
 #include "check/expression/leaves.hpp"
 #include "check/expression/log_normal.hpp"
@@ -89,6 +90,12 @@ class DistributionChecker {
       bool const bounds = signature_ == std::vector<std::string>{"lower", "upper"};
       return errors::range_in_distribution(call_, range->value, bounds, row_.cumulative != nullptr && !bounds);
     }
+    if (std::string ungrouped = without_grouped_digits(call_, given_.size());
+        !ungrouped.empty() && call_.arguments.size() > given_.size()) {
+      Diagnostic grouped = errors::too_many_arguments(call_, call_.arguments[given_.size()], signature_);
+      grouped.help = std::move(ungrouped);
+      return grouped;
+    }
     if (call_.arguments.size() < 2 || call_.arguments[0].name) return std::nullopt;
     ast::Argument const &first = call_.arguments[0], &second = call_.arguments[1];
     auto const* number = std::get_if<ast::Number>(&first.value.node);
@@ -120,7 +127,10 @@ class DistributionChecker {
   }
 
   void take_positional(ast::Argument const& argument) {
-    if (position_ >= given_.size()) return fail(errors::too_many_arguments(call_, argument, signature_));
+    if (position_ >= given_.size()) {
+      if (position_++ == given_.size()) fail(errors::too_many_arguments(call_, argument, signature_));
+      return;
+    }
     std::size_t const position = position_++;
     std::span<Spelling const> const spellings = row_.arguments[position].spellings;
     bool const in_doubt = std::any_of(spellings.begin(), spellings.end(), [](Spelling const& each) { return each.logarithm; }) &&
@@ -323,6 +333,17 @@ class DistributionChecker {
     return true;
   }
 
+  std::string correction() const {
+    if (is_trial_) return {};
+    return corrected_call(call_, [&](ast::Call const& other) {
+      Diagnostics unsaid;
+      Scope scope = scope_.with(unsaid);
+      DistributionChecker trial(scope, other, variate_, row_);
+      trial.is_trial_ = true;
+      return trial.run().has_value();
+    });
+  }
+
   // Where they are numbers.
   bool arguments_fit() {
     std::vector<double> numbers;
@@ -334,13 +355,17 @@ class DistributionChecker {
     if (numbers.size() != use_.arguments.size() || row_.refuse == nullptr) return true;
     std::string_view const reason = row_.refuse(numbers);
     bool const negative = std::any_of(numbers.begin(), numbers.end(), [](double number) { return number < 0; });
-    return reason.empty() || refused(errors::bad_arguments(call_.span, name_, reason, name_ == "log_uniform" && negative));
+    if (reason.empty()) return true;
+    bool const logarithms = name_ == "log_uniform" && negative;
+    return refused(errors::bad_arguments(
+        call_.span, name_, reason,
+        logarithms ? "its bounds are the positive values themselves, not their logarithms: `log_uniform(1e-3, 1)`" : correction()));
   }
 
   bool bounds_fit() {
     if (use_.lower && use_.upper) {
       auto const a = graph_.constant_value(*use_.lower), b = graph_.constant_value(*use_.upper);
-      if (a && b && !(*a < *b)) return refused(errors::bad_arguments(call_.span, name_, "lower is not below upper"));
+      if (a && b && !(*a < *b)) return refused(errors::bad_arguments(call_.span, name_, "lower is not below upper", correction()));
     }
     if (row_.proper && (use_.lower || use_.upper)) {
       auto const left = graph_.constant_value(mass(graph_, use_));
@@ -361,6 +386,7 @@ class DistributionChecker {
   Given lower_, upper_;
   std::size_t position_ = 0;  // of the next argument without a name
   bool good_ = true;
+  bool is_trial_ = false;  // of a call that may be meant
   Distribution use_;
 };
 
@@ -378,7 +404,9 @@ std::optional<Distribution> check_distribution(Scope& scope, ast::Call const& ca
   if (row == nullptr) {
     std::vector<std::string> known;
     for (DistributionRow const& each : distributions()) known.emplace_back(each.name);
-    scope.diagnostics().add(errors::unknown_distribution(call.function, known, log_normal_of_others(scope, call, variate)));
+    Diagnostic unknown = errors::unknown_distribution(call.function, known, log_normal_of_others(scope, call, variate));
+    if (std::string normal = normal_of_others(call); !normal.empty()) unknown.help = std::move(normal);
+    scope.diagnostics().add(std::move(unknown));
     return std::nullopt;
   }
   return DistributionChecker(scope, call, variate, *row).run();

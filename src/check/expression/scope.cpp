@@ -88,6 +88,13 @@ std::vector<std::string> Scope::names() const {
   return names;
 }
 
+std::vector<std::string> Scope::moving_names() const {
+  std::vector<std::string> names;
+  for (auto const& [name, symbol] : symbols_)
+    if (std::holds_alternative<StateSymbol>(symbol.what) || std::holds_alternative<InputSymbol>(symbol.what)) names.push_back(name);
+  return names;
+}
+
 std::optional<Unit> Scope::unit_of(ast::Definition const& definition) const {
   Symbol const* symbol = find(definition.name.name.text);
   auto const* known = symbol == nullptr ? nullptr : std::get_if<DefinitionSymbol>(&symbol->what);
@@ -148,7 +155,7 @@ std::optional<Typed> Scope::reference(ast::Reference const& reference) {
     }
     diagnostics_.add(samples_.channels.contains(name)
                          ? errors::channel_as_quantity(reference.name, samples_.discrete, fmt::format("lag(measured({}), 1)", name))
-                         : errors::unknown_name(reference.name, names()));
+                         : errors::unknown_name(reference.name, names(), moving_names()));
     return std::nullopt;
   }
   auto const no_primes = [&](std::string const& what) {

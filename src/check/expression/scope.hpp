@@ -106,6 +106,8 @@ class Scope {
   Graph& graph() { return graph_; }
   Diagnostics& diagnostics() { return diagnostics_; }
   std::vector<std::string> names() const;
+  /// Of these the states and inputs.
+  std::vector<std::string> moving_names() const;
 
  private:
   Scope(Scope const& other, Diagnostics& diagnostics)

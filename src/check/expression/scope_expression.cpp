@@ -6,6 +6,7 @@
 #include "check/message/errors.hpp"
 #include "check/message/errors_reuse.hpp"
 #include "function/table.hpp"
+#include "syntax/words.hpp"
 
 namespace sysid {
 
@@ -27,6 +28,14 @@ struct DifferentialQuotient {
   int primes;
 };
 
+/// The name of its square.
+ast::Reference const* squared_name(ast::Expression const& tree) {
+  auto const* power = std::get_if<ast::Box<ast::Binary>>(&tree.node);
+  auto const* exponent = power == nullptr ? nullptr : std::get_if<ast::Number>(&(*power)->right->node);
+  bool const squared = exponent != nullptr && (*power)->symbol == "^" && exponent->value == 2 && !exponent->unit;
+  return squared ? std::get_if<ast::Reference>(&(*power)->left->node) : nullptr;
+}
+
 std::optional<DifferentialQuotient> differential_quotient(ast::Binary const& binary) {
   if (binary.symbol != "/") return std::nullopt;
   ast::Expression const* last = &*binary.left;  // of the factors before it
@@ -37,13 +46,20 @@ std::optional<DifferentialQuotient> differential_quotient(ast::Binary const& bin
   auto const* exponent = power == nullptr ? nullptr : std::get_if<ast::Number>(&(*power)->right->node);
   bool const squared = exponent != nullptr && (*power)->symbol == "^" && exponent->value == 2 && !exponent->unit;
   if (squared) base = &*(*power)->left;
+  ast::Expression const* before = nullptr;  // `d^2` of `m*d^2*y`
+  if (auto const* product = std::get_if<ast::Box<ast::Binary>>(&binary.left->node); product != nullptr && (*product)->symbol == "*")
+    if (auto const* inner = std::get_if<ast::Box<ast::Binary>>(&(*product)->left->node); inner != nullptr)
+      before = (*inner)->symbol == "*" ? &*(*inner)->right : &*(*product)->left;
   auto const *above = std::get_if<ast::Reference>(&last->node), *below = std::get_if<ast::Reference>(&base->node);
   if (above == nullptr || below == nullptr) return std::nullopt;
+  if (ast::Reference const* const letter = squared && before != nullptr ? squared_name(*before) : nullptr;
+      letter != nullptr && letter->name.text == "d" && below->name.text == "dt")
+    return DifferentialQuotient{letter, below, above->name.text, 2};
   std::string const &over = above->name.text, &under = below->name.text;
-  bool const twice = over.starts_with("d2") || over.starts_with("dd");
+  bool const twice = over.size() > 2 && (over.starts_with("d2") || over.starts_with("dd"));
   if (under != "dt" && under != "dt2") return std::nullopt;
   if (twice && (squared || under == "dt2")) return DifferentialQuotient{above, below, over.substr(2), 2};
-  if (!over.starts_with("d") || squared || under != "dt") return std::nullopt;
+  if (!over.starts_with("d") || over.size() == 1 || !words::begins_name(over[1]) || squared || under != "dt") return std::nullopt;
   return DifferentialQuotient{above, below, over.substr(1), 1};
 }
 
@@ -138,9 +154,10 @@ std::optional<Typed> Scope::binary(ast::Binary const& binary) {
   }
   for (ast::Binary const* each : spine)
     if (auto const quotient = differential_quotient(*each); quotient && find(quotient->above->name.text) == nullptr)
-      if (find(quotient->name) != nullptr && find(quotient->below->name.text) == nullptr) {
+      if (find(quotient->below->name.text) == nullptr) {
         Span const span = cover(quotient->above->span, each->right->span);
-        diagnostics_.add(errors::quotient_as_derivative(span, *quotient->above, quotient->name, quotient->primes));
+        diagnostics_.add(errors::quotient_as_derivative(span, *quotient->above, quotient->name, quotient->primes,
+                                                        find(quotient->name) != nullptr));
         return std::nullopt;
       }
   auto value = expression(*spine.back()->left);
@@ -250,7 +267,8 @@ Scope::CallArguments Scope::call_arguments(ast::Call const& call) {
     auto const* range = std::get_if<ast::Box<ast::Binary>>(&argument.value.node);
     result.counted = result.counted && !(range != nullptr && (*range)->symbol == "..");
     ++result.count;
-    if (argument.name) {
+    bool const known = functions_.contains(call.function.text) || find_function(call.function.text) != nullptr;
+    if (argument.name && known) {
       diagnostics_.add(errors::named_argument_of_function(*argument.name, call.function.text));
       result.good = false;
     }

@@ -5,21 +5,23 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "check/message/subject.hpp"
-#include "check/message/unit_slips.hpp"
 #include "core/numeric/unit.hpp"
 #include "core/text/diagnostic.hpp"
 #include "syntax/ast.hpp"
+#include "syntax/unit_slips.hpp"
 #include "syntax/words.hpp"
 
 namespace sysid::errors {
 
 // names, functions, units (E20)
-Diagnostic unknown_name(ast::Name const& name, Names const& known);
+/// moving: the states and inputs among the known.
+Diagnostic unknown_name(ast::Name const& name, Names const& known, Names const& moving = {});
 /// `dy/dt` of a `y` that there is, whose derivative has this many primes.
-Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::string const& name, int primes);
+Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::string const& name, int primes, bool declared);
 Diagnostic duplicate_name(ast::Name const& name, Span first);
 Diagnostic unknown_function(ast::Call const& call, Names const& known, bool is_quantity);
 /// `y(t)`, `y(t - 0.01)` of a quantity in continuous time; nothing for other calls.
@@ -75,7 +77,8 @@ Diagnostic cannot_truncate(Span span, std::string const& distribution);
 Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what);
 Diagnostic prior_cycle(Span span, Names const& loop);
 /// logarithms: bounds of `log_uniform` that are below zero, as exponents are.
-Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason, bool logarithms = false);
+/// help: how the call is written, empty where that is not known.
+Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason, std::string help);
 /// names: of the parameters that the argument reads.
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,
                          std::vector<std::string> const& names);
@@ -109,7 +112,8 @@ Diagnostic start_off_constraint(Span equation, Span initial);
 Diagnostic start_not_used(Span initial, std::string const& unknown);
 Diagnostic estimated_start_of_constraint(Span start, Span equation);
 Diagnostic undetermined(Span declaration, std::string const& unknown);
-Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order);
+/// missing: components without an initial value.
+Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order, Names const& missing = {});
 /// values: of each component, what it may be given.
 /// What stands behind `initial y =`.
 struct StartValue {
@@ -122,7 +126,8 @@ Diagnostic initial_twice(Span second, Span first, std::string const& component);
 Diagnostic initial_moves(Span span);
 /// `initial y = displacement`, a channel.
 Diagnostic initial_from_channel(ast::Name const& channel, ast::Reference const& state, std::optional<Unit> const& unit);
-Diagnostic not_a_state(ast::Name const& name, Names const& states);
+Diagnostic not_a_state(ast::Name const& name, Names const& states, Names const& missing = {});
+Diagnostic initial_of_input(ast::Name const& name);
 Diagnostic channel_twice(ast::Name const& name, Span first);
 Diagnostic nothing_observed(ast::Name const& model);
 Diagnostic duplicate_item(ast::Name const& name, std::string const& kind, Span first);
@@ -178,6 +183,9 @@ Diagnostic input_not_bound(Span span, std::string const& input, Subject const& o
 Diagnostic no_channel_bound(Span span, Subject const& owner, std::string const& data, Names const& channels);
 /// unit: of its column; may be empty.
 Diagnostic unknown_input(Span span, std::string const& input, std::string const& unit, Subject const& owner, Names const& inputs);
+/// The same where the data have one column and the model another channel.
+Diagnostic channel_of_other_name(Span span, std::string const& channel, Subject const& owner, std::string const& own,
+                                 std::pair<std::string, std::string> const& column_and_unit);
 Diagnostic unknown_channel(Span span, std::string const& channel, Subject const& owner, Names const& channels);
 /// rules: those under which the derivative exists.
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules);

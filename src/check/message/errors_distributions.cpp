@@ -201,11 +201,9 @@ Diagnostic prior_cycle(Span span, Names const& loop) {
                "write one of them without the others");
 }
 
-Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason, bool logarithms) {
-  return about({distribution},
-               error("E2112", span, fmt::format("the arguments of `{}` are invalid: {}", distribution, reason),
-                     logarithms ? "its bounds are the positive values themselves, not their logarithms: `log_uniform(1e-3, 1)`"
-                                : "choose arguments that satisfy this condition"));
+Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason, std::string help) {
+  return about({distribution}, error("E2112", span, fmt::format("the arguments of `{}` are invalid: {}", distribution, reason),
+                                     help.empty() ? "choose arguments that satisfy this condition" : std::move(help)));
 }
 
 Diagnostic never_allowed(Span span, std::string const& distribution, std::string const& variate, std::string_view reason,

@@ -163,6 +163,18 @@ std::string of_model(ast::Call const& call, std::string const& name) {
   return {};
 }
 
+/// `Parameter(2.5, min = 0.5, max = 10)` of other programs.
+std::string with_prior(ast::Call const& call) {
+  std::string lower = "0.1", upper = "10";
+  for (ast::Argument const& each : call.arguments) {
+    if (each.name && (each.name->text == "min" || each.name->text == "lower" || each.name->text == "lb"))
+      lower = unparse(each.value);
+    if (each.name && (each.name->text == "max" || each.name->text == "upper" || each.name->text == "ub"))
+      upper = unparse(each.value);
+  }
+  return fmt::format("a parameter is declared with its prior: `parameter NAME ~ uniform({}, {})`", lower, upper);
+}
+
 /// `y(t)`, `y(t - 0.01)`, `y(0)`.
 std::string of_quantity(ast::Call const& call) {
   std::string const& name = call.function.text;
@@ -222,6 +234,7 @@ Diagnostic unknown_function(ast::Call const& call, Names const& known, bool is_q
         message,
         fmt::format("{}{} `{}`", written->why, written->why == with_power ? ":" : "", in_terms_of_arguments(*written, call)),
         "function");
+  if (plain == "parameter" || plain == "param" || plain == "parameters") return refused(message, with_prior(call), "function");
   if (std::string const angle = of_angle(call, plain); !angle.empty()) return refused(message, angle, "function");
   if (std::string const model = of_model(call, plain); !model.empty()) return refused(message, model, "function");
   auto const help = [&](std::string const& list) {

@@ -6,6 +6,7 @@
 
 #include "check/message/error_words.hpp"
 #include "function/table.hpp"
+#include "syntax/foreign_words.hpp"
 
 namespace sysid::errors {
 namespace {
@@ -24,6 +25,7 @@ constexpr Synonym name_synonyms[] = {
     {"π", "write `pi`"},
     {"PI", "write `pi`"},
     {"Pi", "write `pi`"},
+    {"initial", "an initial value names its state: `initial y = 0, y' = 0`"},
     {"e", "the exponential function is written `exp(x)`"},
     {"g", "declare it: `constant g = 9.81 [m/s^2]`"},
     {"unknown", "an unknown parameter has a prior: `parameter NAME ~ log_uniform(0.1, 10)`"},
@@ -89,20 +91,20 @@ Diagnostic name_for_number(ast::Name const& name) {
 
 }  // namespace
 
-Diagnostic unknown_name(ast::Name const& name, Names const& known) {
+Diagnostic unknown_name(ast::Name const& name, Names const& known, Names const& moving) {
   if (known.empty()) return name_for_number(name);
   for (Synonym const& each : name_synonyms)
     if (name.text == each.foreign)
       return about({name.text},
                    error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text), std::string(each.ours)));
-  // ydot, dydt, dy of a y that there is.
-  for (std::string const& each : known) {
-    if (name.text.find(each) == std::string::npos) continue;
-    for (char const* pattern : {"{}dot", "{}_dot", "d{}", "d{}dt", "{}ddot", "{}_ddot", "d2{}", "{}dotdot", "{}_dotdot"})
-      if (name.text == fmt::format(fmt::runtime(pattern), each))
-        return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
-                                        fmt::format("a derivative is written with primes: `{0}'`, `{0}''`", each)));
-  }
+  auto derivative = words::as_derivative(name.text, known, false);
+  bool const sure = derivative.has_value();
+  if (!sure) derivative = words::as_derivative(name.text, moving, true);
+  if (derivative)
+    return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
+                                    sure ? fmt::format("a derivative is written with primes: `{0}'`, `{0}''`", derivative->of)
+                                         : fmt::format("a derivative is written with primes, `{}`; declare any other quantity",
+                                                       primed(derivative->of, derivative->primes))));
   std::string const plain = typed(name.text);
   if (plain != name.text && std::find(known.begin(), known.end(), plain) != known.end())
     return about({name.text}, error("E2001", name.span, fmt::format("`{}` is not declared in this model", name.text),
@@ -118,11 +120,11 @@ Diagnostic unknown_name(ast::Name const& name, Names const& known) {
   return result;
 }
 
-Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::string const& name, int primes) {
+Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::string const& name, int primes, bool declared) {
   std::string const& text = above.name.text;
-  return about(
-      {text}, error("E2001", span, fmt::format("`{}` is not declared in this model", text),
-                    fmt::format("a derivative is written with primes: write `{}` in place of the quotient", primed(name, primes))));
+  return about({text}, error("E2001", span, fmt::format("`{}` is not declared in this model", text),
+                             fmt::format("a derivative is written with primes: write `{}` in place of the quotient{}",
+                                         primed(name, primes), declared ? "" : fmt::format(", and declare `state {}`", name))));
 }
 
 Diagnostic duplicate_name(ast::Name const& name, Span first) {
@@ -161,7 +163,8 @@ Diagnostic second_input_derivative(ast::Reference const& reference) {
   return about(
       {primed(reference), reference.name.text},
       error("E2008", reference.span, fmt::format("`{}`: only the first derivative of an input is defined", primed(reference)),
-            "declare the derivative as a separate input"));
+            fmt::format("declare the derivative as a separate input; if the equations determine `{0}`, declare it as `state {0}`",
+                        reference.name.text)));
 }
 
 Diagnostic not_a_number(Span span, Subject const& what) {

@@ -61,6 +61,11 @@ Diagnostic wrong_shape(Span span, Subject const& what, Shape const& given, Shape
                      wanted.rank == 0 ? "use one element, `q[1]`, or a sum, `sum(q)`; or declare the size after the name: `name(3)`"
                                       : "write a list in parentheses with that many items, or one number for all"));
 }
+Diagnostic list_of_initial(Span span, ast::Reference const& state, Shape const& given) {
+  Diagnostic result = wrong_shape(span, named("the initial value of", primed(state)), given, Shape{});
+  result.help = fmt::format("each initial value has a state of its own: `initial {0} = 0, {0}' = 0`", primed(state));
+  return result;
+}
 Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span other_span) {
   return with(error("E2706", span, "the items of this list have different shapes", "a matrix is a list of rows of equal length",
                     fmt::format("begins with {}", first.text())),

@@ -15,6 +15,8 @@ Diagnostic size_out_of_range(Span span, std::string const& name, long size, long
 Diagnostic too_many_sizes(Span span, std::string const& name);
 Diagnostic shape_conflict(Span span, std::string const& symbol, Shape const& left, Span left_span, Shape const& right,
                           Span right_span);
+/// E2705: `initial y = (0, 0)` of a number.
+Diagnostic list_of_initial(Span span, ast::Reference const& state, Shape const& given);
 Diagnostic wrong_shape(Span span, Subject const& what, Shape const& given, Shape const& wanted);
 Diagnostic uneven_list(Span span, Shape const& first, Shape const& other, Span other_span);
 Diagnostic index_out_of_range(Span span, std::string const& name, Shape const& shape);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "check/message/error_words.hpp"
+#include "syntax/foreign_words.hpp"
 
 namespace sysid::errors {
 
@@ -37,13 +38,15 @@ Diagnostic undetermined(Span declaration, std::string const& unknown) {
                                          "the equations are linearly dependent in the highest derivatives: change one of them"));
 }
 
-Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order) {
+Diagnostic initial_of_highest(ast::Reference const& reference, std::string const& state, int order, Names const& missing) {
   Names components;
   for (int k = 0; k < order; ++k) components.push_back(primed(state, k));
   return about(
       {primed(reference), state},
       error("E3006", reference.span, fmt::format("`{}` follows from the equations and takes no initial value", primed(reference)),
-            fmt::format("`{}` is of order {}: give the initial values of {}", state, order, quoted(components))));
+            missing.size() == 1
+                ? fmt::format("`{}` is of order {}: give the initial value of `{}` in its place", state, order, missing.front())
+                : fmt::format("`{}` is of order {}: give the initial values of {}", state, order, quoted(components))));
 }
 
 Diagnostic initial_missing(Span declaration, Names const& components, std::vector<StartValue> const& values) {
@@ -91,17 +94,28 @@ Diagnostic initial_from_channel(ast::Name const& channel, ast::Reference const& 
                         declared, primed(state), name)));
 }
 
-Diagnostic not_a_state(ast::Name const& name, Names const& states) {
+Diagnostic not_a_state(ast::Name const& name, Names const& states, Names const& missing) {
+  auto const refused = [&](std::string help) {
+    return about({name.text}, error("E3010", name.span, fmt::format("`{}` is not a state", name.text), std::move(help)));
+  };
+  if (auto const derivative = words::as_derivative(name.text, states, true))
+    return refused(fmt::format("a derivative is written with primes: `{}`", primed(derivative->of, derivative->primes)));
   for (std::string const& each : states)
-    for (char const* pattern : {"d{}", "{}dot", "{}_dot", "d{}dt", "v{}", "{}p"})
-      if (name.text == fmt::format(fmt::runtime(pattern), each))
-        return about({name.text}, error("E3010", name.span, fmt::format("`{}` is not a state", name.text),
-                                        fmt::format("a derivative is written with primes: `{}'`", each)));
-  Diagnostic result = about({name.text}, error("E3010", name.span, fmt::format("`{}` is not a state", name.text),
-                                               guess_or(name.text, states, choose(states, "state"))));
+    if (name.text == "v" + each) return refused(fmt::format("a derivative is written with primes: `{}'`", each));
+  Diagnostic result =
+      refused(guess_or(name.text, states,
+                       missing.size() == 1 ? fmt::format("did you mean `{}`, which has no initial value yet?", missing[0])
+                                           : choose(states, "state")));
   result.suggested = nearest(name.text, states);
   if (result.suggested.empty()) result.suggested = states;
   return result;
+}
+
+Diagnostic initial_of_input(ast::Name const& name) {
+  return about(
+      {name.text},
+      error("E3010", name.span, fmt::format("`{}` is not a state but an input", name.text),
+            fmt::format("declare it as `state {0}` if the equations determine it; an input has no initial value", name.text)));
 }
 
 Diagnostic channel_twice(ast::Name const& name, Span first) {

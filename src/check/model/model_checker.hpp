@@ -62,6 +62,8 @@ class ModelChecker {
   StateInfo* find_state(std::string const& name);
   std::size_t index_of(StateInfo const& info) const;
   std::vector<std::string> state_names() const;
+  /// Components of states that no declaration gives an initial value.
+  std::vector<std::string> without_initial() const;
   // The order of a state is the most primes it carries in an equation or in what an equation uses.
   void find_orders();
   void lay_out_states();

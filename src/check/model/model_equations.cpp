@@ -14,12 +14,31 @@
 
 namespace sysid {
 
+namespace {
+
+/// `real<lower=0> m` of other languages, which reads like an equation of comparisons.
+ast::Name const* type_of_declaration(ast::Equation const& equation) {
+  auto const* left = std::get_if<ast::Box<ast::Binary>>(&equation.left.node);
+  auto const* right = std::get_if<ast::Box<ast::Binary>>(&equation.right.node);
+  if (left == nullptr || right == nullptr || (*left)->symbol != "<" || (*right)->symbol != ">") return nullptr;
+  auto const* type = std::get_if<ast::Reference>(&(*left)->left->node);
+  return type != nullptr && (type->name.text == "real" || type->name.text == "int") ? &type->name : nullptr;
+}
+
+}  // namespace
+
 void ModelChecker::equations() {
   std::vector<ast::Equation const*> trees;
   std::vector<NodeId> residuals, right;
   bool good = true;
   Graph& graph = model_.graph;
   each<ast::Equation>([&](ast::Equation const& equation) {
+    ast::Name const* const type = type_of_declaration(equation);
+    if (type != nullptr && scope_.find(type->text) == nullptr) {
+      diagnostics_.add(errors::unknown_name(*type, scope_.names()));
+      good = false;
+      return;
+    }
     auto const sides = scope_.equation(equation);
     if (!sides) {
       good = false;

@@ -121,6 +121,18 @@ std::vector<errors::StartValue> ModelChecker::values_to_give(std::vector<std::si
   return values;
 }
 
+std::vector<std::string> ModelChecker::without_initial() const {
+  std::set<std::string> given;
+  for (ast::ModelStatement const& statement : tree_.statements)
+    if (auto const* declaration = std::get_if<ast::InitialDeclaration>(&statement))
+      for (ast::InitialValue const& initial : declaration->values)
+        given.insert(primed_name(initial.state.name.text, initial.state.primes));
+  std::vector<std::string> missing;
+  for (State const& state : model_.states)
+    if (!given.contains(state.name)) missing.push_back(state.name);
+  return missing;
+}
+
 void ModelChecker::initial_values() {
   if (scope_.samples().discrete) {
     initial_lags();
@@ -133,7 +145,10 @@ void ModelChecker::initial_values() {
       StateInfo const* info = find_state(initial.state.name.text);
       if (info == nullptr) {
         misnamed = true;
-        diagnostics_.add(errors::not_a_state(initial.state.name, state_names()));
+        Symbol const* const symbol = scope_.find(initial.state.name.text);
+        bool const input = symbol != nullptr && std::holds_alternative<InputSymbol>(symbol->what);
+        diagnostics_.add(input ? errors::initial_of_input(initial.state.name)
+                               : errors::not_a_state(initial.state.name, state_names(), without_initial()));
         continue;
       }
       if (info->order == 0 && model_.unknowns.empty()) continue;  // reported with the equations
@@ -142,7 +157,11 @@ void ModelChecker::initial_values() {
         continue;
       }
       if (initial.state.primes >= info->order) {
-        if (!orders_doubtful_) diagnostics_.add(errors::initial_of_highest(initial.state, initial.state.name.text, info->order));
+        if (orders_doubtful_) continue;
+        // One too high and one missing are one mistake.
+        std::vector<std::string> const lacking = without_initial();
+        misnamed = misnamed || lacking.size() == 1;
+        diagnostics_.add(errors::initial_of_highest(initial.state, initial.state.name.text, info->order, lacking));
         continue;
       }
       int const component = info->first + initial.state.primes;

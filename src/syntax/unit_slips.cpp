@@ -1,5 +1,5 @@
 // A table of habits, then rules in the order of what is likeliest: a power without its sign, capitals, a product without its blank.
-#include "check/message/unit_slips.hpp"
+#include "syntax/unit_slips.hpp"
 
 #include <algorithm>
 #include <utility>
