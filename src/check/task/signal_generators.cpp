@@ -1,6 +1,8 @@
 // One row for each signal: its arguments with their units, how it runs between samples.
 #include "check/task/signal_generators.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +12,8 @@
 #include "check/checked/harmonics.hpp"
 #include "check/message/errors.hpp"
 #include "core/setting/table.hpp"
+#include "syntax/unparse.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
@@ -49,6 +53,46 @@ std::vector<std::string> arguments_of(SignalRow const& row) {
   return names;
 }
 
+constexpr std::string_view example_sine = "write `sine(amplitude = 1, frequency = 1 [Hz])`",
+                           example_cosine = "write `sine(amplitude = 1, frequency = 1 [Hz], phase = 90 [deg])`";
+
+/// The signal that `sin(2*pi*t)`, `2*cos(w*t)` stand for; empty where neither occurs.
+std::string_view instead_of_sine(ast::Expression const& value) {
+  std::string_view meant;
+  each_expression(value, [&](ast::Expression const& each) {
+    auto const* call = std::get_if<ast::Box<ast::Call>>(&each.node);
+    if (call == nullptr || !meant.empty()) return;
+    if ((*call)->function.text == "sin") meant = example_sine;
+    if ((*call)->function.text == "cos") meant = example_cosine;
+  });
+  return meant;
+}
+
+/// Its arguments, first those that it needs and that are not given.
+std::vector<std::string> arguments_to_name(SignalRow const& row, ast::Call const& call) {
+  std::vector<std::string> needed, others;
+  for (SignalArgument const& argument : row.arguments) {
+    bool const given = std::any_of(call.arguments.begin(), call.arguments.end(),
+                                   [&](ast::Argument const& each) { return each.name && each.name->text == argument.name; });
+    (std::isnan(argument.fallback) && !given ? needed : others).emplace_back(argument.name);
+  }
+  needed.insert(needed.end(), others.begin(), others.end());
+  needed.emplace_back("hold");
+  return needed;
+}
+
+/// `gaussian(0, 10)` with the names of its arguments; empty for a single one, and where some have names.
+std::string in_order(SignalRow const& row, ast::Call const& call) {
+  std::size_t const count = call.arguments.size();
+  if (count < 2 || count > row.arguments.size()) return {};
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (call.arguments[i].name) return {};
+    text += fmt::format("{}{} = {}", i == 0 ? "" : ", ", row.arguments[i].name, unparse(call.arguments[i].value));
+  }
+  return fmt::format("write `{}({})`", row.name, text);
+}
+
 // `90` where an angle is wanted. What has a unit, or is computed from pi, is meant as it is written.
 bool is_bare_angle_beyond_turn(ast::Expression const& tree) {
   if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return is_bare_angle_beyond_turn(*(*unary)->operand);
@@ -74,25 +118,34 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
                                               Diagnostics& diagnostics) {
   ast::Call const* call = as_call(option.value);
   std::vector<std::string> const names = signal_names();
-  if (call == nullptr) {
-    diagnostics.add(errors::option_kind(option.value.span, "input " + input.name, {"a generated signal"}, "gaussian(sd = 10)"));
+  std::string_view const sine = instead_of_sine(option.value);
+  auto const refuse = [&](Diagnostic refused) {
+    if (!sine.empty()) refused.help = sine;
+    diagnostics.add(std::move(refused));
     return std::nullopt;
-  }
+  };
+  if (call == nullptr)
+    return refuse(errors::option_kind(option.value.span, "input " + input.name, {"a generated signal"}, "gaussian(sd = 10)"));
   auto const row =
       std::find_if(signals().begin(), signals().end(), [&](auto const& each) { return each.name == call->function.text; });
-  if (row == signals().end()) {
-    diagnostics.add(errors::option_choice(call->function.span, "input " + input.name, call->function.text, names));
-    return std::nullopt;
-  }
+  if (row == signals().end())
+    return refuse(errors::option_choice(call->function.span, "input " + input.name, call->function.text, names));
   InputGenerator result{row->kind, {}, row->rule};
   std::map<std::string, Span> given;  // rightly or not
+  bool unnamed = false;               // what is missing may be meant by it
   std::vector<std::string> const known = arguments_of(*row);
   for (ast::Argument const& argument : call->arguments) {
     std::string const name = argument.name ? argument.name->text : "";
     auto const place =
         std::find_if(row->arguments.begin(), row->arguments.end(), [&](auto const& each) { return each.name == name; });
     if (!argument.name) {
-      diagnostics.add(errors::must_be_named(*call, argument, known));
+      if (unnamed) continue;
+      unnamed = true;
+      bool const of_time = row->kind == InputGenerator::Kind::sine && std::get_if<ast::Number>(&argument.value.node) == nullptr;
+      Diagnostic refused = errors::must_be_named(*call, argument, arguments_to_name(*row, *call));
+      if (std::string whole = in_order(*row, *call); !whole.empty()) refused.help = std::move(whole);
+      if (of_time) refused.help = example_sine;
+      diagnostics.add(std::move(refused));
     } else if (place == row->arguments.end() && name != "hold") {
       diagnostics.add(errors::unknown_argument(*argument.name, call->function.text, known));
     } else if (auto const [first, is_fresh] = given.emplace(name, argument.span); !is_fresh) {
@@ -117,6 +170,7 @@ std::optional<InputGenerator> check_generator(ast::Option const& option, Quantit
   }
   for (SignalArgument const& argument : row->arguments) {
     if (given.contains(std::string(argument.name))) continue;
+    if (std::isnan(argument.fallback) && unnamed) continue;
     if (std::isnan(argument.fallback))
       diagnostics.add(errors::argument_missing(*call, {std::string(argument.name)}));
     else
