@@ -121,6 +121,12 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
   }
   std::vector<std::string> channels;
   for (Channel const& channel : model.channels) channels.push_back(channel.name);
+  auto const unknown = [&](DataMeasureUse const& measured) {
+    return block.measured.size() == 1 && channels.size() == 1
+               ? errors::channel_of_other_name(measured.channel_span, measured.channel, owner, channels.front(),
+                                               {measured.column, measured.unit ? measured.unit->text : ""})
+               : errors::unknown_channel(measured.channel_span, measured.channel, owner, channels);
+  };
   bool any = false;
   for (DataMeasureUse const& measured : block.measured) {
     auto const channel =
@@ -131,14 +137,13 @@ void check_binding(DataBlock const& block, Model const& model, std::string const
     if (channel != model.channels.end())
       compare_units(measured, *channel, errors::named("column", measured.column));
     else
-      diagnostics.add_once(errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
+      diagnostics.add_once(unknown(measured));
   }
   if (any) return;
   if (block.measured.empty()) {
     diagnostics.add(errors::no_channel_bound(use, owner, block.name, channels));
   } else {
-    for (DataMeasureUse const& measured : block.measured)
-      diagnostics.add(errors::unknown_channel(measured.channel_span, measured.channel, owner, channels));
+    for (DataMeasureUse const& measured : block.measured) diagnostics.add(unknown(measured));
   }
 }
 

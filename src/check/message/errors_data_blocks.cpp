@@ -143,6 +143,18 @@ Diagnostic unknown_channel(Span span, std::string const& channel, Subject const&
                                                                              channel, choose(channels, "channel"))))));
 }
 
+Diagnostic channel_of_other_name(Span span, std::string const& channel, Subject const& owner, std::string const& own,
+                                 std::pair<std::string, std::string> const& column_and_unit) {
+  Diagnostic result = unknown_channel(span, channel, owner, {own});
+  if (!did_you_mean(channel, Names{own}).empty()) return result;
+  auto const& [column, unit] = column_and_unit;
+  bool const word = words::begins_name(column[0]) && std::all_of(column.begin(), column.end(), words::continues_name);
+  result.help =
+      fmt::format("{0} observes `{1}`: write `measure {1} = {2}{3}`, or rename the channel in the model, `observe {4} ~ ...`",
+                  owner.words, own, word ? column : "\"" + column + "\"", unit.empty() ? "" : " [" + unit + "]", channel);
+  return result;
+}
+
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules) {
   return about({input, primed(input, 1)},
                conflict("E4112", rule, "held between samples", use, "its derivative is used here",
