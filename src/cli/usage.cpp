@@ -76,6 +76,9 @@ constexpr std::pair<std::string_view, std::string_view> other_options[] = {
     {"--set", of_values},
     {"--param", of_values},
     {"--parameter", of_values},
+    {"--params", of_values},
+    {"--values", of_values},
+    {"--fix", of_values},
 };
 
 /// Whether the command runs the tasks of a file.
@@ -164,17 +167,15 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
     return ExitCode::usage;
   }
   std::string const word = unread.front().substr(0, unread.front().find('='));
-  if (auto const before = app.remaining(false); !before.empty() && before.front() == unread.front()) {
-    std::vector<std::string> const known = option_names(verb);
-    if (std::find(known.begin(), known.end(), word) != known.end()) {
-      messages.complain(fmt::format("`{}` stands before the command", word),
-                        fmt::format("options follow the command: `sysid {} FILE {}`", verb.get_name(), word));
-      return ExitCode::usage;
-    }
-  }
   if (!word.starts_with('-')) {
     messages.complain(fmt::format("`sysid {}` takes no argument `{}`", verb.get_name(), unread.front()),
                       instead_of_argument(verb, unread, see));
+    return ExitCode::usage;
+  }
+  std::vector<std::string> const own = option_names(verb);
+  if (std::find(own.begin(), own.end(), word) != own.end()) {
+    messages.complain(fmt::format("`{}` stands before the command", word),
+                      fmt::format("options follow the command: `sysid {} FILE {}`", verb.get_name(), word));
     return ExitCode::usage;
   }
   for (auto const& [option, instead] : other_options)
@@ -194,7 +195,7 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
                       "what a task does is written in its file: `fit MODEL to DATA with mh(samples = 1000)`");
     return ExitCode::usage;
   }
-  std::string const guess = did_you_mean(word, option_names(verb));
+  std::string const guess = did_you_mean(word, own);
   messages.complain(fmt::format("`sysid {}` has no option `{}`", verb.get_name(), word), guess.empty() ? see : guess);
   return ExitCode::usage;
 }
