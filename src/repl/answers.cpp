@@ -157,6 +157,31 @@ bool has_quantity(TaskResults const& results, std::string const& name) {
   });
 }
 
+/// What is meant by the call whose argument is no result, but a model, a data block or a channel of one.
+std::optional<Diagnostic> instead_of_result(Context const& context, ast::Call const& call) {
+  auto const* name = call.arguments.size() == 1 ? std::get_if<ast::Reference>(&call.arguments[0].value.node) : nullptr;
+  if (name == nullptr || !context.work.checked || has_quantity(context.results, name->name.text)) return std::nullopt;
+  std::string const& text = name->name.text;
+  auto const refused = [&](std::string message, std::string help) {
+    return Diagnostic{Severity::error, "", std::move(message), Label{name->name.span, {}}, {}, std::move(help)};
+  };
+  auto const& file = context.work.checked->file;
+  for (DataBlock const& block : file.data) {
+    if (block.name == text)
+      return refused(fmt::format("`{}` is a data block, not a result", text),
+                     fmt::format("`plot({0})` draws its channels; `show {0}` lists them", text));
+    bool const measured =
+        std::any_of(block.measured.begin(), block.measured.end(), [&](DataMeasureUse const& each) { return each.channel == text; });
+    if (measured && call.function.text == "plot")
+      return refused(fmt::format("no result has a `{}`", text), fmt::format("its samples: `plot({}.{})`", block.name, text));
+  }
+  for (Model const& model : file.models)
+    if (model.name == text)
+      return refused(fmt::format("`{}` is a model, not a result", text),
+                     fmt::format("`show {}` shows it; fit it to data first", text));
+  return std::nullopt;
+}
+
 /// False where the call names no data block, or a result or a quantity of one is called so.
 bool plot_raw(Context const& context, ast::Call const& call, Evaluator const& evaluator, Diagnostics& diagnostics,
               std::optional<std::string>& said) {
@@ -209,6 +234,8 @@ bool answer(Context& context, ast::Expression const& tree, std::string const& te
   } else if (auto const quantity = evaluator.value(tree)) {
     said = described(*quantity) + "\n";
   }
+  if (!said && call != nullptr && !diagnostics.all().empty())
+    if (auto other = instead_of_result(context, **call)) diagnostics.replace({*std::move(other)});
   context.output.show(diagnostics, text);
   if (said) context.output.answer(*said);
   return said.has_value();

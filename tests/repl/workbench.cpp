@@ -343,12 +343,29 @@ TEST_CASE("the columns of a data block are drawn against time before any fit, in
   CHECK_FALSE(d.enter("plot(bench.lat)"));
   CHECK(has(d.messages(), "data `bench` has no channel, input or range `lat`"));
   CHECK(has(d.messages(), "did you mean `late`?"));
+  CHECK_FALSE(d.enter("plot(displacement)"));
+  CHECK(has(d.messages(), "`plot(bench.displacement)`"));
+  CHECK_FALSE(d.enter("mean(bench)"));
+  CHECK(has(d.messages(), "`bench` is a data block, not a result"));
+  CHECK(has(d.messages(), "`plot(bench)` draws its channels"));
   CHECK_FALSE(d.enter("plot(bensh)"));
   CHECK_FALSE(has(d.messages(), "channel, input or range"));
   // A column that is not there is named as elsewhere, and a file that is not there ends nothing.
   REQUIRE(d.enter("data away { file \"nowhere.csv\"; rate 10 [Hz]; measure y = y [m] }"));
   CHECK_FALSE(d.enter("plot(away)"));
   CHECK(has(d.messages(), "nowhere.csv"));
+}
+
+TEST_CASE("half an equation, and a parameter that is set, are answered with what is written here") {
+  Dialogue d;
+  REQUIRE(d.enter(oscillator));
+  CHECK_FALSE(d.enter("= 3"));
+  CHECK(has(d.messages(), "but found `=`"));
+  CHECK(has(d.messages(), "an equation has two sides: `left = right`"));
+  CHECK_FALSE(d.enter("k ="));
+  CHECK(has(d.messages(), "expected a value but found the end of the line"));
+  CHECK_FALSE(d.enter("set c = 3"));
+  CHECK(has(d.messages(), "`parameter c [kg] = 1`"));
 }
 
 TEST_CASE("a fit that is stopped keeps its draws, and goes on to the bytes of an unbroken one") {

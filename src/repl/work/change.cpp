@@ -244,18 +244,31 @@ void put(Editor& editor, std::string const& entry, Span at, Statement const& typ
   }
 }
 
-/// The units that the parameters of a model are declared in, and those of definitions by a number; empty for none.
+/// The units that the parameters of a model are declared in; empty for none.
 std::map<std::string, std::string> parameter_units(WorkItem const& model) {
   std::map<std::string, std::string> units;
   ast::Item const item = item_of(model.text);
-  auto const add = [&](ast::Declared const& name) { units[name.name.text] = name.unit ? unparse(*name.unit) : ""; };
-  for (ast::ModelStatement const& statement : std::get<ast::Model>(item).statements) {
-    if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement)) add(parameter->name);
-    auto const* definition = std::get_if<ast::Definition>(&statement);
-    auto const* number = definition ? std::get_if<ast::Number>(&definition->value.node) : nullptr;
-    if (number != nullptr && !number->unit) add(definition->name);
-  }
+  for (ast::ModelStatement const& statement : std::get<ast::Model>(item).statements)
+    if (auto const* parameter = std::get_if<ast::ParameterDeclaration>(&statement))
+      units[parameter->name.name.text] = parameter->name.unit ? unparse(*parameter->name.unit) : "";
   return units;
+}
+
+/// Of constants and definitions those that are numbers without a unit, which may replace a parameter.
+std::set<std::string> bare_numbers(WorkItem const& model) {
+  std::set<std::string> names;
+  ast::Item const item = item_of(model.text);
+  for (ast::ModelStatement const& statement : std::get<ast::Model>(item).statements) {
+    auto const* definition = std::get_if<ast::Definition>(&statement);
+    if (definition == nullptr || definition->name.unit) continue;
+    bool bare = true;
+    each_expression(definition->value, [&](ast::Expression const& each) {
+      auto const* number = std::get_if<ast::Number>(&each.node);
+      bare = bare && !std::holds_alternative<ast::Reference>(each.node) && (number == nullptr || !number->unit);
+    });
+    if (bare) names.insert(definition->name.name.text);
+  }
+  return names;
 }
 
 /// Blanks tell no two equations of a model apart.
@@ -281,9 +294,13 @@ WorkItem with_statement(WorkItem block, std::string const& entry, Span span) {
 std::vector<LostUnit> lost_units(WorkItem const& before, WorkItem const& after) {
   if (before.kind != ItemKind::model) return {};
   std::map<std::string, std::string> const had = parameter_units(before), has = parameter_units(after);
+  std::set<std::string> const numbers = bare_numbers(after);
   std::vector<LostUnit> lost;
-  for (auto const& [name, unit] : had)
-    if (auto const now = has.find(name); !unit.empty() && now != has.end() && now->second.empty()) lost.push_back({name, unit});
+  for (auto const& [name, unit] : had) {
+    auto const now = has.find(name);
+    bool const without = now != has.end() ? now->second.empty() : numbers.contains(name);
+    if (!unit.empty() && without) lost.push_back({name, unit});
+  }
   return lost;
 }
 
