@@ -270,9 +270,8 @@ std::string further_state(Model const& model, std::size_t index) {
   return index >= memories && index - memories < model.unknowns.size() ? model.unknowns[index - memories].name : "the value before";
 }
 
-}  // namespace
-
-std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source) {
+/// As the user wrote it, and where.
+std::string describe_place(Model const& model, Graph const& graph, NodeId node, Source const& source) {
   if (auto const span = graph.span(node)) return placed(*span, source);
   std::string text = graph.format(node, [&](NodeId leaf) -> std::string {
     Node what = graph[leaf];
@@ -305,6 +304,14 @@ std::string describe(Model const& model, Graph const& graph, NodeId node, Source
   if (text.size() > 80) text = text.substr(0, 77) + "...";
   std::string const enclosing = enclosing_place(graph, node, source);
   return enclosing.empty() ? fmt::format("`{}`", text) : fmt::format("`{}` in {}", text, enclosing);
+}
+
+}  // namespace
+
+std::string describe(Model const& model, Graph const& graph, NodeId node, Source const& source) {
+  bool const divides = graph[node].operation == Operation::divide;
+  bool const by_zero = divides && graph.constant_value(graph[node].b) == 0.0;
+  return describe_place(model, graph, node, source) + (by_zero ? " (its divisor is the constant 0)" : "");
 }
 
 }  // namespace sysid

@@ -67,8 +67,8 @@ SearchResult conclude(Target const& target, ObjectiveKind objective_kind, std::v
     result.failure->message = fmt::format("all local searches from prior draws end where the model cannot be simulated{}{}",
                                           places.empty() ? "" : ": ", places);
     result.failure->help =
-        "check the units of the data and the priors: the data move the parameters out of the range in which the model has a "
-        "solution";
+        "check the units of the data, and the priors: where one is narrow and the data contradict it, the others are moved out of "
+        "the range in which the model has a solution";
   }
   return result;
 }
@@ -163,7 +163,8 @@ Finding no_finite_start(Ledger const& ledger, std::uint64_t draws) {
       Severity::error,
       {},
       fmt::format("the likelihood is not finite at any of {} draws from the prior{}{}", draws, places.empty() ? "" : ": ", places),
-      "check this part of the equations, or narrow the priors towards values for which the model can be solved"};
+      "check this part of the equations (for example for a noise sd of 0), or narrow the priors towards values for which the model "
+      "can be solved"};
 }
 
 }  // namespace sysid
