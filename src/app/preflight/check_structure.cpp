@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/preflight/check_file.hpp"
+#include "app/session/derived_draws.hpp"
 #include "core/text/without_index.hpp"
 #include "core/text/words.hpp"
 #include "syntax/find_model.hpp"
@@ -127,7 +128,7 @@ ModelPage describe_structure(ast::File const& written, ast::File const& flat, Mo
                        [&](LaggedQuantity const& lagged) { return lagged.name == derived.name; });
   };
   for (Derived const& derived : model.derived)
-    if (!is_state(derived)) page.derived.push_back({derived.name, derived.unit_text(), text_of(texts.derived, derived.name)});
+    if (!is_state(derived)) page.derived.push_back({derived.name, unit_of_derived(derived), text_of(texts.derived, derived.name)});
   return page;
 }
 

@@ -18,6 +18,10 @@ LaneArray declared_of(Chain const& chain, int parameters) {
 
 }  // namespace
 
+std::string unit_of_derived(Derived const& quantity) {
+  return quantity.unit && quantity.unit->dimensionless() ? quantity.unit_text() : quantity.unit_of_numbers();
+}
+
 void add_derived(CompiledModel const& compiled, ParameterSpace const& space, Draws& draws) {
   Model const& model = compiled.model;
   std::vector<DerivedColumn> columns;
@@ -27,7 +31,7 @@ void add_derived(CompiledModel const& compiled, ParameterSpace const& space, Dra
     for (std::size_t e = 0; e < (own ? space.experiments().size() : 1); ++e) {
       columns.push_back({d, static_cast<int>(e)});
       draws.names.push_back(own ? member_name(quantity.name, space.experiments()[e].name) : quantity.name);
-      draws.units.push_back(quantity.unit_text());
+      draws.units.push_back(unit_of_derived(quantity));
     }
   }
   if (columns.empty()) return;

@@ -71,6 +71,16 @@ TEST_CASE("derived quantities of an optimum have the sds of the delta method") {
   CHECK_FALSE(found.at("ratio").contains("without_sd"));
 }
 
+TEST_CASE("a derived quantity without a declared unit is shown in the unit that its formula has") {
+  json const found =
+      fitted(line_text("  parameter k [N/m] ~ normal(1, sd = 0.1)\n  derive square = k^2\n  derive share = k/(k + k)\n"
+                       "  derive ratio = a/b\n"),
+             Line());
+  CHECK(found.at("square").at("unit") == "kg^2/s^4");
+  CHECK(found.at("share").at("unit") == "");
+  CHECK(found.at("ratio").at("unit") == "");
+}
+
 TEST_CASE("a derived quantity without a derivative at the optimum, or far from a line there, has no sd and says why") {
   Line const line;
   json const first = fitted(line_text(""), line);
