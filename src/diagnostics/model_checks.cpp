@@ -2,9 +2,11 @@
 #include "diagnostics/model_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
 #include "data/start_rule.hpp"
 #include "likelihood/output.hpp"
@@ -60,8 +62,11 @@ Findings check_populations(Model const& model) {
            "sample it with mh to estimate the population; the other parameters are not affected"}};
 }
 
-Findings check_use(Model const& model, StartRule const& start, std::function<bool(std::string const& name)> const& switched_off) {
+Findings check_use(Model const& model, StartRule const& start, std::function<bool(std::string const& name)> const& switched_off,
+                   bool optimum) {
   Findings findings;
+  char const* const so =
+      optimum ? "the data do not determine it, and its value and sd in this result mean nothing" : "its posterior equals its prior";
   bool const own_start = start.kind == StartRule::Kind::record;
   Model read = model;  // as this fit reads it
   if (!own_start)
@@ -77,24 +82,41 @@ Findings check_use(Model const& model, StartRule const& start, std::function<boo
           {FindingCode::unused_parameter,
            Severity::warning,
            {name},
-           fmt::format("{} is used only in initial values, which `start = {}` replaces: its posterior equals its prior", name,
-                       start_text(start)),
+           fmt::format("{} is used only in initial values, which `start = {}` replaces: {}", name, start_text(start), so),
            "use `start = record`, which starts from the initial values, or remove the parameter"});
     else if (switched_off && switched_off(name))  // `osc(cubic = 0)`, on purpose
-      findings.push_back(
-          {FindingCode::unused_parameter,
-           Severity::note,
-           {name},
-           fmt::format("{} appears in no term of `{}` with these arguments: its posterior equals its prior", name, model.name),
-           ""});
+      findings.push_back({FindingCode::unused_parameter,
+                          Severity::note,
+                          {name},
+                          fmt::format("{} appears in no term of `{}` with these arguments: {}", name, model.name, so),
+                          ""});
     else
       findings.push_back({FindingCode::unused_parameter,
                           Severity::warning,
                           {name},
-                          fmt::format("{} is used in no equation, no channel and no prior: its posterior equals its prior", name),
+                          fmt::format("{} is used in no equation, no channel and no prior: {}", name, so),
                           "remove it, or use it in an equation"});
   }
   return findings;
+}
+
+void name_negative_values(Model const& model, Findings& findings) {
+  std::vector<std::string> negative;
+  std::vector<ParameterRole> const roles = parameter_roles(model);
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    Parameter const& each = model.parameters[p];
+    auto const node = each.value_of_all();
+    bool const from_zero = !each.unit || each.unit->offset == 0;
+    if (roles[p] != ParameterRole::response || !node || !from_zero) continue;
+    double const value = model.graph.constant_value(*node).value_or(0);
+    if (value < 0)
+      negative.push_back(fmt::format("{} = {}{}", each.name, shortest(each.from_si(value)), unit_after_number(each.unit_text())));
+  }
+  constexpr std::size_t most_named = 3;
+  if (negative.empty() || negative.size() > most_named) return;
+  for (Finding& each : findings)
+    if (each.code == FindingCode::explains_little || each.code == FindingCode::worse_than_the_mean)
+      each.help += fmt::format("; check the sign of what the model fixes at a negative value: {}", fmt::join(negative, ", "));
 }
 
 }  // namespace sysid

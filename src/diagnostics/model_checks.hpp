@@ -20,8 +20,14 @@ Findings check_hierarchy(Model const& model, Draws const& draws, Findings const&
 /// Of an optimum of the likelihood, which does not contain them: parameters that only priors of others read.
 Findings check_populations(Model const& model);
 
-/// Parameters with a prior that nothing in the model uses: their posterior is their prior. switched_off: whether the text of the
-/// model reads a parameter where arguments of the model may have taken the term out; null: the model has no arguments.
-Findings check_use(Model const& model, StartRule const& start, std::function<bool(std::string const& name)> const& switched_off);
+/// Parameters with a prior that nothing in the model uses: their posterior is their prior. optimum: what is shown of them is where
+/// the search left them. switched_off: whether the text of the model reads a parameter where arguments of the model may have taken
+/// the term out; null: the model has no arguments.
+Findings check_use(Model const& model, StartRule const& start, std::function<bool(std::string const& name)> const& switched_off,
+                   bool optimum = false);
+
+/// Where a fit explains little: adds to the help which parameters the model fixes at a negative value, as a damping with the wrong
+/// sign.
+void name_negative_values(Model const& model, Findings& findings);
 
 }  // namespace sysid

@@ -113,12 +113,34 @@ Finding prior_far_from_data(std::vector<std::string> names, std::string message)
           "check the units of the data columns, and priors that are wide or misplaced"};
 }
 
+namespace {
+
+/// A prior that hardly lets its parameter move, as `precision` in the place of `sd` makes it.
+bool fixes(PriorInfo const& prior) {
+  constexpr double next_to_nothing = 1e-3;
+  return *prior.q95 - *prior.q5 < next_to_nothing * std::max(std::fabs(*prior.q5), std::fabs(*prior.q95));
+}
+
+/// The misfit that is left may be that of a parameter which its prior has fixed elsewhere.
+void name_fixed(std::string const& name, PriorInfo const& prior, Findings& findings) {
+  for (Finding& each : findings)
+    if (each.code == FindingCode::residuals_not_white)
+      each.help += fmt::format("; or check the prior of {}, which is so narrow ({} to {}{}) that the data cannot change it", name,
+                               significant(*prior.q5, 7), significant(*prior.q95, 7), unit_after_number(prior.unit));
+}
+
+}  // namespace
+
 void name_held(Report const& report, Findings& findings) {
   std::vector<std::string> held;
   for (PriorInfo const& prior : report.priors)
-    for (Summary const& summary : report.summary)
-      if (summary.name == prior.name && !summary.coefficient)
-        if (auto const ratio = contraction(prior, summary); ratio && *ratio < hardly_narrower) held.push_back(summary.name);
+    for (Summary const& summary : report.summary) {
+      if (summary.name != prior.name || summary.coefficient) continue;
+      auto const ratio = contraction(prior, summary);
+      if (!ratio || !(*ratio < hardly_narrower)) continue;
+      held.push_back(summary.name);
+      if (fixes(prior)) name_fixed(summary.name, prior, findings);
+    }
   constexpr std::size_t most_named = 6;
   if (held.empty() || held.size() > most_named) return;
   for (Finding& each : findings)

@@ -46,7 +46,7 @@ std::string times_apart(double ratio);
 Finding prior_far_from_data(std::vector<std::string> names, std::string message);
 
 /// Where a fit explains little: adds to the help which parameters have kept the width of their prior, which may hold others where
-/// they cannot fit.
+/// they cannot fit; and where residuals are correlated in time, those whose prior hardly lets them move.
 void name_held(Report const& report, Findings& findings);
 
 }  // namespace sysid

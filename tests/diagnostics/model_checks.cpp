@@ -122,6 +122,8 @@ TEST_CASE("an idle parameter is warned of, unless arguments of the model may hav
     return idle[0].severity;
   };
   CHECK(severity(nullptr) == Severity::warning);
+  CHECK(check_use(model, {}, nullptr).front().message.ends_with("its posterior equals its prior"));
+  CHECK(check_use(model, {}, nullptr, true).front().message.ends_with("its value and sd in this result mean nothing"));
   CHECK(severity([](std::string const& name) { return name == "k3"; }) == Severity::note);
   CHECK(severity([](std::string const& name) { return name == "k"; }) == Severity::warning);
 }
@@ -145,4 +147,15 @@ TEST_CASE("of a model with arguments a parameter that no term of its text reads 
   for (json const& each : summary.at("findings"))
     if (each.at("code") == "unused_parameter") severities[each.at("message").get<std::string>().substr(0, 2)] = each.at("severity");
   CHECK(severities == std::map<std::string, std::string>{{"b ", "note"}, {"sp", "warning"}});
+}
+
+TEST_CASE("where a fit explains little, a negative value that the model fixes is named") {
+  Model const model = test::model_of(
+      "state y [m]\ninitial y = 1\nparameter k [1/s] ~ normal(1, sd = 1)\nparameter c [1/s] = -20\nparameter d [1/s] = 2\n"
+      "parameter unread [kg] = -1\ny' = -k*y - c*y - d*y\nobserve z ~ normal(y, sd = 1)");
+  Findings findings = {{FindingCode::explains_little, Severity::warning, {}, "", "look"},
+                       {FindingCode::residuals_not_white, Severity::warning, {}, "", "look"}};
+  name_negative_values(model, findings);
+  CHECK(findings[0].help == "look; check the sign of what the model fixes at a negative value: c = -20 1/s");
+  CHECK(findings[1].help == "look");
 }

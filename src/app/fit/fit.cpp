@@ -22,6 +22,7 @@
 #include "app/session/task_checkpoint.hpp"
 #include "core/system/interrupt.hpp"
 #include "data/start_rule.hpp"
+#include "diagnostics/model_checks.hpp"
 #include "diagnostics/prior_checks.hpp"
 #include "diagnostics/tolerance/tolerance.hpp"
 #include "diagnostics/verdict.hpp"
@@ -77,6 +78,7 @@ class Fit {
     FinishedFit finished = finished_fit(*result, target, fit.report);
     run_fit_checks(finished);
     name_held(fit.report, fit.report.findings);
+    name_negative_values(likelihood_.model(), fit.report.findings);
     add_settings(result->settings, fit.report);
     fit.report.ledger = sampling_.whole_ledger();
     if (!at.empty()) fit.log_likelihood = log_likelihood(target, at);
@@ -99,6 +101,7 @@ class Fit {
     FinishedFit finished = finished_fit(result, target, report);
     run_fit_checks(finished);
     name_held(report, report.findings);
+    name_negative_values(likelihood_.model(), report.findings);
     if (!interrupted) {
       report.functions = likelihood_.functions(result, report.draws);
       report.evidence = evidence_of(result, target, finished.extra);

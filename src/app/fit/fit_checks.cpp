@@ -40,8 +40,8 @@ std::string without_proper_prior(FinishedFit const& fit) {
 
 // --- the model and the record
 Findings parameter_use(FinishedFit& fit) {
-  Findings findings =
-      check_use(fit.likelihood.model(), fit.what.start, switched_off_by_arguments(fit.session, fit.likelihood.model().name));
+  Findings findings = check_use(fit.likelihood.model(), fit.what.start,
+                                switched_off_by_arguments(fit.session, fit.likelihood.model().name), fit.result.draws.is_optimum());
   if (fit.result.interrupted) return findings;
   auto const names = [](Findings const& of, FindingCode code, std::string const& parameter) {
     return std::ranges::any_of(

@@ -22,6 +22,7 @@ struct ChannelResiduals {
   std::vector<double> observed, predicted;  // where scored, declared unit
   std::vector<std::size_t> places;          // of these along the experiment
   SizedResiduals sized;
+  std::vector<std::string> widths_at_end = {};  // parameters of its noise that lie at the lower end of their prior
 
   Model const& model() const { return of_model; }
   Channel const& described() const { return model().channels[static_cast<std::size_t>(channel)]; }

@@ -101,11 +101,19 @@ void check_line(ChannelResiduals const& of, ChannelTests const& tested, UserText
     findings.push_back(residual_trend(of.model(), of.described(), of.data().name, several, tested.trend, tested.line, text));
 }
 
+constexpr double exact = 1e-8;  // nmse [%] that no sensor reaches
+
 std::string size_help(ChannelResiduals const& of, ChannelTests const& tested, bool larger, bool coloured, UserText const& text) {
   // An offset or an outlier makes residuals larger: it does not explain that they are small.
   if (larger && tested.start) return "the first samples make the noise appear larger: give the initial values a distribution first";
   if (larger && !tested.far.empty()) return "a few outlying samples make the noise appear larger: check these first";
   if (char const* const first = tested.first_cure(); larger && first != nullptr) return first;
+  if (!larger && !of.widths_at_end.empty()) {
+    bool const one = of.widths_at_end.size() == 1;
+    return fmt::format("the residuals are smaller than the lower {} of {} {}: lower {}{}", one ? "bound" : "bounds",
+                       quoted(of.widths_at_end), one ? "allows" : "allow", one ? "it" : "them",
+                       tested.unexplained < exact ? "; the record seems to have no noise at all, as a simulated one" : "");
+  }
   if (of.noise_is_estimated())
     return "the model is incomplete, a prior excludes the values that fit, or other channels share this noise: check the residuals";
   Channel const& channel = of.described();
@@ -257,6 +265,27 @@ FitLine check_channel(ChannelResiduals const& of, ChannelTests const& tested, Li
   return line;
 }
 
+// Of estimated noise: parameters that are as small as their prior allows, where that is not 0.
+std::vector<std::string> widths_at_end(ModelTarget const& target, int e, Channel const& channel, ConstLanes values) {
+  ParameterSpace const& space = *target.space();
+  Graph const& graph = target.compiled()->model.graph;
+  std::vector<std::string> names;
+  for (int d = 0; d < space.dimension(); ++d) {
+    FittedParameter const& fitted = space.rows()[static_cast<std::size_t>(space.sampled()[static_cast<std::size_t>(d)])];
+    ParameterInfo const& info = space.infos()[static_cast<std::size_t>(d)];
+    constexpr double nearly = 1e-3;
+    if ((fitted.experiment >= 0 && fitted.experiment != e) || !(info.lower > 0) || values(d, 0) > info.lower * (1 + nearly))
+      continue;
+    bool const read = std::any_of(channel.noise.arguments.begin() + 1, channel.noise.arguments.end(), [&](NodeId argument) {
+      return graph.depends(argument, [&](Node const& node) {
+        return node.operation == Operation::leaf && node.leaf_kind == LeafKind::parameter && node.index == fitted.parameter;
+      });
+    });
+    if (read) names.push_back(info.name);
+  }
+  return names;
+}
+
 // values: [D x 1] declared; residuals: all rows of the target.
 void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneArray const& residuals,
                       std::vector<ChannelResiduals>& scored) {
@@ -286,6 +315,7 @@ void score_experiment(ModelTarget const& target, int e, ConstLanes values, LaneA
     std::vector<std::vector<double>> const arguments = trajectory.noise_arguments(parameters, c);
     of.sized = noise.discrete ? pearson_residuals(noise, experiment.measured[channel], arguments, of.residuals)
                               : scaled_residuals(noise, arguments, of.residuals);
+    of.widths_at_end = widths_at_end(target, e, model.channels[channel], values);
     scored.push_back(std::move(of));
   }
 }

@@ -216,6 +216,35 @@ TEST_CASE("an estimated noise that does not reach the residuals is not advised t
             .starts_with("the model is incomplete, a prior excludes the values that fit"));
 }
 
+TEST_CASE("an estimated noise whose lower bound is above the residuals is named") {
+  std::string wide = decay;
+  wide.replace(wide.find("log_uniform(0.001, 10)"), 22, "log_uniform(0.1, 10)");
+  auto const help_of = [](double noise, std::string const& text) {
+    json const findings = findings_of_late_rows(
+        text, [&](int row, Stream& stream) { return 2 * std::exp(-0.005 * (row - 101)) + noise * stream.normal(); });
+    json const* const size = find(findings, "noise_size");
+    return size == nullptr ? std::string() : size->at("help").get<std::string>();
+  };
+  CHECK(help_of(0.01, wide) == "the residuals are smaller than the lower bound of `s` allows: lower it");
+  CHECK(help_of(0, decay) ==
+        "the residuals are smaller than the lower bound of `s` allows: lower it; the record seems to have no noise at all, as a "
+        "simulated one");
+  CHECK(help_of(0.3, wide).empty());
+}
+
+TEST_CASE("a prior too narrow for the data to change its parameter is named where residuals are correlated") {
+  auto const help_of = [&](std::string const& sd) {
+    std::string fixed = decay;
+    fixed.replace(fixed.find("log_uniform(0.01, 10)"), 21, "normal(0.06, sd = " + sd + ")");
+    json const findings = findings_of_late_rows(
+        fixed, [](int row, Stream& stream) { return 2 * std::exp(-0.005 * (row - 101)) + 0.01 * stream.normal(); });
+    json const* const memory = find(findings, "residuals_not_white");
+    return memory == nullptr ? std::string() : memory->at("help").get<std::string>();
+  };
+  CHECK(help_of("1e-6").find("; or check the prior of k, which is so narrow (0.05999836 to 0.06000164 1/s)") != std::string::npos);
+  CHECK(help_of("0.01").find("check the prior") == std::string::npos);
+}
+
 TEST_CASE("a fit says when its prior predicts another size than was measured") {
   // Millimetres in a column that is declared in metres.
   std::string near = decay;
