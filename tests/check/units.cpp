@@ -175,25 +175,24 @@ TEST_CASE("what agrees passes: numbers adapt, prefixes and pure numbers do not m
 TEST_CASE("the help names what is missing") {
   CHECK(with_equation("m*y'' + c*y' + k + k3*y^3 = x").help == "multiply this by a length, such as `y`");
   // One power of what moves too many or too few: the unit of the coefficient may be the mistake.
-  CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^4 = x").help ==
-        "declare `k3` in [N/m^4], or divide this term by a length, such as `y`");
+  CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^4 = x").help == "declare `k3` in [N/m^4], or divide this term by a length");
   CHECK(with_equation("m*y'' + c*y' + k*y + k3*y^2 = x").help ==
         "declare `k3` in [N/m^2], or multiply this term by a length, such as `y`");
   CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter k3 [N/m^2] = 1\nparameter sigma [m] = 1\ninput x [N]\n"
                 "initial y = 0\n1 [N s/m]*y' + k*y + k3*y^3 = x\nobserve d ~ normal(y, sd = sigma)\n}\n")
-            .help == "declare `k3` in [N/m^3], or divide this term by a length, such as `y` or `sigma`");
+            .help == "declare `k3` in [N/m^3], or divide this term by a length");
   // In the names that the declaration is written with.
   CHECK(said_of("model a {\nstate y [mm]\nparameter k [N/mm] = 1\nparameter k3 [N/mm^2] = 1\ninput x [N]\n"
                 "initial y = 0\n1 [N s/m]*y' + k*y + k3*y^3 = x\nobserve d ~ normal(y, sd = 1)\n}\n")
-            .help == "declare `k3` in [N/mm^3], or divide this term by a length, such as `y`");
+            .help == "declare `k3` in [N/mm^3], or divide this term by a length");
   // A measured number beside a coefficient is a quantity, 1/2 is none.
   CHECK(with_equation("m*y'' + c*y' + k*y = x + 9.81*m").help == "a number as a factor has no unit: write `9.81 [m/s^2]`");
   CHECK(with_equation("m*y'' + c*y' + k*y = x + 0.5*m").help == "make this a quantity in [N]");
   // A reciprocal coefficient takes the inverse factor; one inside a function or a sum is not a factor of the term.
   CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter h [m/N] = 1\ninput x [N]\n"
                 "initial y = 0\n1 [N s/m]*y' + k*y + y^2/h = x\nobserve d ~ normal(y, sd = 1)\n}\n")
-            .help == "declare `h` in [m^2/N], or divide this term by a length, such as `y`");
-  CHECK(with_equation("m*y'' + c*y' + k*y + (k3 + 1)*y^4 = x").help == "divide this by a length, such as `y`");
+            .help == "declare `h` in [m^2/N], or divide this term by a length");
+  CHECK(with_equation("m*y'' + c*y' + k*y + (k3 + 1)*y^4 = x").help == "divide this by a length");
   // Not a power of what moves: another name is missing.
   CHECK(said_of("model a {\nstate y [m]\nparameter k [N/m] = 1\nparameter m [kg] = 1\ninitial y = 0, y' = 0\ny'' + k*y = 0\n"
                 "observe d ~ normal(y, sd = 1)\n}\n")
@@ -378,11 +377,13 @@ TEST_CASE("a unit changes in the names that it is written with") {
     for (Rational& each : dimension) each.numerator = -each.numerator;
     return dimension;
   };
+  auto const velocity_inverse = divide(*unit_atom("s"), *unit_atom("m")).dimension;
   CHECK(with_changed_power("N/mm^2", per(length)) == "N/mm^3");
   CHECK(with_changed_power("N/mm", length) == "N");
   CHECK(with_changed_power("mm", per(length)).empty());  // a pure number
   CHECK(with_changed_power("1/mm", per(length)) == "1/mm^2");
   CHECK(with_changed_power("N ms/mm", time) == "N ms^2/mm");
+  CHECK(with_changed_power("N s/m", velocity_inverse) == "N s^2/m^2");
   CHECK(with_changed_power("N/(mm ms)", per(time)) == "N/(mm ms^2)");
   // No name for it, or two.
   CHECK(with_changed_power("N", length).empty());

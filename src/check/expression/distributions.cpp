@@ -172,7 +172,8 @@ class DistributionChecker {
                                 bool is_width = false, std::vector<std::pair<Dimension, std::string>> cures = {}) {
     std::string const declared = variate_.unit ? "[" + unit_words(*variate_.unit, {}) + "]" : "";
     return scope_.expression_in(wanted, variate_.span, tree,
-                                {Occasion::Kind::distribution, spelt, variate_.name, declared, is_width, std::move(cures)});
+                                {Occasion::Kind::distribution, spelt, variate_.name, declared, is_width, std::move(cures),
+                                 is_width ? location_argument(call_) : nullptr});
   }
 
   void evaluate_arguments() {

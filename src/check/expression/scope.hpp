@@ -59,6 +59,7 @@ class Scope {
   Scope with(Diagnostics& diagnostics) const { return Scope(*this, diagnostics); }
 
   UnitCheck const& units() const { return units_; }
+  UnitCheck& units() { return units_; }
 
   /// False, with a diagnostic, when the name is taken.
   bool declare(ast::Name const& name, Symbol symbol);

@@ -46,6 +46,8 @@ class ModelChecker {
 
   // --- model_declarations.cpp
   void declare();
+  // How many statements read each name, and whether it is of noise alone: help on units offers names by it.
+  void note_places();
   void declare_in(ast::TimeDeclaration const& time);
   void declare_in(ast::DiscreteTimeDeclaration const& discrete);
   void declare_in(ast::InputDeclaration const& inputs);

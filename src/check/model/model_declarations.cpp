@@ -6,10 +6,12 @@
 #include <algorithm>
 
 #include "check/expression/discrete_step.hpp"
+#include "check/expression/distributions.hpp"
 #include "check/expression/names_used.hpp"
 #include "check/message/errors.hpp"
 #include "check/process/process_expansion.hpp"
 #include "check/units/units.hpp"
+#include "syntax/walk.hpp"
 
 namespace sysid {
 
@@ -17,6 +19,30 @@ void ModelChecker::declare() {
   for (ast::ModelStatement const& statement : tree_.statements) std::visit([&](auto const& one) { declare_in(one); }, statement);
   for (Scope::ProcessName& process : scope_.processes())
     if (is_expanded(*process.definition)) declare_coefficients(process);
+  note_places();
+}
+
+void ModelChecker::note_places() {
+  struct Places {
+    int all = 0, widths = 0;
+  };
+  std::map<std::string, Places> places;
+  for (ast::ModelStatement const& statement : tree_.statements) {
+    std::set<std::string> read, elsewhere;
+    auto const* observation = std::get_if<ast::Observation>(&statement);
+    ast::Expression const* const location = observation == nullptr ? nullptr : location_argument(observation->noise);
+    each_top_expression(statement, [&](ast::Expression const& top) {
+      each_reference(top, [&](ast::Reference const& reference) {
+        read.insert(reference.name.text);
+        if (observation == nullptr || location == nullptr || &top == location) elsewhere.insert(reference.name.text);
+      });
+    });
+    for (std::string const& name : read) {
+      ++places[name].all;
+      if (!elsewhere.contains(name)) ++places[name].widths;
+    }
+  }
+  for (auto const& [name, count] : places) scope_.units().note_places(name, count.all, count.widths == count.all);
 }
 
 void ModelChecker::declare_in(ast::TimeDeclaration const& time) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace sysid {
@@ -68,14 +69,37 @@ std::string written_again(std::vector<PoweredName> const& names) {
   return (above.empty() ? "1" : above) + "/" + (count > 1 ? "(" + below + ")" : below);
 }
 
+Dimension to_power(Dimension dimension, int k) {
+  for (Rational& each : dimension) each = each * Rational{k, 1};
+  return dimension;
+}
+
 /// k where factor = dimension^k; 0: there is none.
 int whole_power(Dimension const& factor, Dimension const& dimension) {
-  for (int k : {1, -1, 2, -2, 3, -3, 4, -4}) {
-    bool same = true;
-    for (std::size_t i = 0; i < factor.size() && same; ++i) same = factor[i] == dimension[i] * Rational{k, 1};
-    if (same) return k;
-  }
+  for (int k : {1, -1, 2, -2, 3, -3, 4, -4})
+    if (factor == to_power(dimension, k)) return k;
   return 0;
+}
+
+/// Changes the powers of two names, where one pair of them makes the factor: N s^2/m^2 of N s/m and s/m.
+bool change_two(std::vector<PoweredName>& names, std::vector<Dimension> const& dimensions, Dimension const& factor) {
+  int fitting = 0;
+  std::vector<PoweredName> changed;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = i + 1; j < names.size(); ++j)
+      for (int const k : {1, -1, 2, -2}) {
+        if (dimensions[i] == Dimension{} || dimensions[j] == Dimension{}) continue;
+        Dimension rest = to_power(dimensions[i], -k);
+        for (std::size_t d = 0; d < rest.size(); ++d) rest[d] = rest[d] + factor[d];
+        int const other = whole_power(rest, dimensions[j]);
+        if (other == 0) continue;
+        changed = names;
+        changed[i].power += k;
+        changed[j].power += other;
+        ++fitting;
+      }
+  if (fitting == 1) names = std::move(changed);
+  return fitting == 1;
 }
 
 }  // namespace
@@ -84,14 +108,17 @@ std::string with_changed_power(std::string_view text, Dimension const& factor) {
   auto names = powers_in(text);
   if (!names) return {};
   int fitting = 0;
+  std::vector<Dimension> dimensions;
   for (PoweredName& each : *names) {
     auto const unit = unit_atom(each.name);
     if (!unit || unit->offset != 0 || unit->hertz.numerator != 0 || unit->radian.numerator != 0) return {};
+    dimensions.push_back(unit->dimension);
     if (int const power = unit->dimensionless() ? 0 : whole_power(factor, unit->dimension)) {
       each.power += power;
       ++fitting;
     }
   }
+  if (fitting == 0 && change_two(*names, dimensions, factor)) fitting = 1;
   return fitting == 1 ? written_again(*names) : std::string();
 }
 

@@ -111,6 +111,7 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
   if (groups.size() < 2) {
     hint_bare_numbers(operands);
     hint_constants(operands);
+    hint_degrees_given(occasion, operands);
     if (!hint_converted_twice(operands)) hint_cycles(operands);
     return true;
   }
@@ -163,13 +164,16 @@ bool UnitCheck::agree(Occasion const& occasion, std::span<UnitOperand const> ope
     if (operands[i].tree != nullptr && i != shown) agreeing_trees.push_back(operands[i].tree);
   bool const of_a_number = dimension_of(operands[shown]) == Dimension{} && wanted.offset == 0;
   bool const is_term = occasion.kind == Occasion::Kind::terms;
+  bool const whole = operands.size() == 2 && operands[shown].tree != nullptr && operands[1 - shown].tree == nullptr;
+  bool const is_reciprocal =
+      occasion.kind == Occasion::Kind::declared && whole && dimension_of(operands[shown]) == inverse(wanted.dimension);
+  bool const is_width = occasion.kind == Occasion::Kind::distribution && occasion.is_width && whole;
+  double const scale = !calls_.empty() ? 0 : wanted.text.empty() ? 1 : wanted.scale;
   conflict.help = cure != occasion.cures.end()
                       ? cure->second
                       : declared_.cure(operands[shown].tree,
                                        {conflict.wanted, missing_.back(), false, of_a_number, is_term, std::move(agreeing_trees),
-                                        !calls_.empty()       ? 0
-                                        : wanted.text.empty() ? 1
-                                                              : wanted.scale});
+                                        scale, is_reciprocal, is_width, occasion.of, occasion.location});
   // [g] is the gram.
   static Dimension const acceleration = unit_atom("g_n").value().dimension;
   bool const gram = conflict.wanted == "g" && dimension_of(operands[shown]) == acceleration;

@@ -30,6 +30,7 @@ struct Occasion {
   std::string note = {};  // stands under the declaration in place of its unit
   bool is_width = false;  // what is declared as a temperature stands for a difference of two
   std::vector<std::pair<Dimension, std::string>> cures = {};  // of what has another dimension: what it is likelier to be
+  ast::Expression const* location = nullptr;                  // distribution: the one that a width belongs to
 };
 
 /// Compares units where they must agree, adds a diagnostic where they do not, and remembers what could not be compared. Nothing is
@@ -43,6 +44,10 @@ class UnitCheck {
   /// Known to the help lines ("multiply it by a length, such as `y`").
   void declare(DeclaredUnit declared) { declared_.declare(std::move(declared)); }
   void declare(std::string const& name, DeclaredRole role) { declared_.declare(name, std::move(role)); }
+
+  void note_places(std::string const& name, int places, bool in_widths_alone) {
+    declared_.note_places(name, places, in_widths_alone);
+  }
 
   /// Whose expression is checked from now on; see DeclaredUnits::enter.
   std::string enter(std::string place) { return declared_.enter(std::move(place)); }
@@ -91,6 +96,8 @@ class UnitCheck {
   bool converted_factor(UnitOperand const& operand, std::span<UnitOperand const> operands);
   void hint_constants(std::span<UnitOperand const> operands);
   void hint_degrees(std::string const& function, UnitOperand const& argument);
+  // `initial th = 30` of th in [rad].
+  void hint_degrees_given(Occasion const& occasion, std::span<UnitOperand const> operands);
   void hint_bare_numbers(std::span<UnitOperand const> operands);
   Label unit_label(UnitOperand const& operand) const;
   void remember(UnitOperand const& operand, std::string why = {});

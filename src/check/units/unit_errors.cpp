@@ -165,6 +165,11 @@ Diagnostic degrees_as_radians(Span number, std::string const& function, std::str
                                       fmt::format("`{}` has no unit: in `{}` it counts radians", text, function),
                                       fmt::format("write `{0} [deg]` or `{0} [rad]`", text)));
 }
+Diagnostic degrees_given_to(Span number, Label declared, std::string const& name, std::string const& text) {
+  return errors::about(with_bare(name), at(Severity::warning, "E2213", {number, "in radians"}, {std::move(declared)},
+                                           fmt::format("`{}` has no unit: `{}` is in radians", text, name),
+                                           fmt::format("write `{0} [deg]` or `{0} [rad]`", text)));
+}
 Diagnostic converted_twice(Label shown, Label declared, std::string const& factor, std::string const& unit,
                            std::string const& written) {
   return at(Severity::warning, "E2214", std::move(shown), {std::move(declared)},
@@ -238,6 +243,22 @@ std::string gram_for_gravity(std::string const& unit) {
 }
 std::string should_be_in(std::string_view what, std::string const& unit) {
   return unit == "-" ? fmt::format("make {} a pure number", what) : fmt::format("make {} a quantity in [{}]", what, unit);
+}
+std::string zero_in(std::string const& unit) {
+  return unit == "-" ? "write `0`: this is a pure number" : fmt::format("write `0 [{}]`", unit);
+}
+std::string own_width(std::string const& channel, std::string const& unit) {
+  return fmt::format("give `{}` a noise parameter of its own in [{}]", channel, unit);
+}
+std::string declared_in_grams(std::string const& name) {
+  return fmt::format("`[g]` is the gram: declare `{}` in [m/s^2], or in [g_n] as a multiple of gravity", name);
+}
+std::string parentheses_lost(std::string const& written) {
+  return fmt::format("what follows a divisor multiplies: did you mean `{}`?", written);
+}
+std::string reciprocal_meant(std::optional<std::pair<std::string, std::string>> const& quotient, std::string const& unit) {
+  if (!quotient) return fmt::format("the reciprocal of this is in [{}]: is a fraction upside down?", unit);
+  return fmt::format("did you mean `{}` instead of `{}`?", quotient->second, quotient->first);
 }
 std::string tag_the_number(std::string const& number, std::string const& unit) {
   return fmt::format("a number as a factor has no unit: write `{} [{}]`", number, unit);

@@ -1,6 +1,8 @@
 // The wording of mistakes in units (E2103, E22): named constructors, called by unit_check.cpp alone.
 #pragma once
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "check/units/unit_check.hpp"
@@ -47,6 +49,8 @@ Diagnostic number_beside(Span number, Label other, bool angle, std::string const
 Diagnostic constant_beside(Span constant, Label other, std::string const& name, std::string const& unit, std::string const& base);
 /// Of a number in an angle: 45 in `sin(45)`.
 Diagnostic degrees_as_radians(Span number, std::string const& function, std::string const& text);
+/// The same as the value of what is declared in [rad].
+Diagnostic degrees_given_to(Span number, Label declared, std::string const& name, std::string const& text);
 /// factor: what the declared unit does already; written: the product without it.
 Diagnostic converted_twice(Label shown, Label declared, std::string const& factor, std::string const& unit,
                            std::string const& written);
@@ -85,6 +89,15 @@ std::string number_by_quotient(std::string const& written, double number, std::s
 /// unit: "g" or "mg", where an acceleration is meant.
 std::string gram_for_gravity(std::string const& unit);
 std::string should_be_in(std::string_view what, std::string const& unit);
+/// Of a 0 in another unit.
+std::string zero_in(std::string const& unit);
+/// Of a noise parameter that something else reads in its unit.
+std::string own_width(std::string const& channel, std::string const& unit);
+/// name: of what is declared in [g] and taken for an acceleration.
+std::string declared_in_grams(std::string const& name);
+std::string parentheses_lost(std::string const& written);
+/// quotient: as it is written, and turned over; without one the reciprocal alone is named.
+std::string reciprocal_meant(std::optional<std::pair<std::string, std::string>> const& quotient, std::string const& unit);
 std::string tag_the_number(std::string const& number, std::string const& unit);
 /// multiplies: as the text has it; unit: the one that it should have been declared in otherwise.
 std::string inverse_meant(std::string const& name, bool multiplies, std::string const& unit);

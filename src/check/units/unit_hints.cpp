@@ -193,4 +193,15 @@ void UnitCheck::hint_degrees(std::string const& function, UnitOperand const& arg
   if (!reported) report(errors::degrees_as_radians(number->span, function, shortest(number->value)));
 }
 
+void UnitCheck::hint_degrees_given(Occasion const& occasion, std::span<UnitOperand const> operands) {
+  if (occasion.kind != Occasion::Kind::declared || operands.size() != 2) return;
+  UnitOperand const &value = operands[0], &declared = operands[1];
+  if (value.tree == nullptr || declared.tree != nullptr || !is_known(declared)) return;
+  Unit const& unit = declared.value.unit;
+  if (!unit.dimensionless() || unit.radian != Rational{1, 1} || unit.scale != 1) return;
+  ast::Number const* const number = number_of_degrees(*value.tree, true);
+  if (number == nullptr || !is_bare(*value.tree)) return;
+  report(errors::degrees_given_to(value.value.span, unit_label(declared), occasion.what, unparse(*value.tree)));
+}
+
 }  // namespace sysid
