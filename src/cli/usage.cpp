@@ -174,8 +174,12 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
   }
   std::vector<std::string> const own = option_names(verb);
   if (std::find(own.begin(), own.end(), word) != own.end()) {
-    messages.complain(fmt::format("`{}` stands before the command", word),
-                      fmt::format("options follow the command: `sysid {} FILE {}`", verb.get_name(), word));
+    CLI::Option const* option = verb.get_option_no_throw(word);
+    if (option == nullptr) option = app.get_option_no_throw(word);
+    bool const has_value = option != nullptr && option->get_type_size() > 0;
+    messages.complain(
+        fmt::format("`{}` stands before the command", word),
+        fmt::format("options follow the command: `sysid {} FILE {}{}`", verb.get_name(), word, has_value ? " VALUE" : ""));
     return ExitCode::usage;
   }
   for (auto const& [option, instead] : other_options)

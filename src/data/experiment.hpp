@@ -67,6 +67,8 @@ class InputSignal {
   /// between neighbours: half a sample gives the mean of two.
   /// Beyond its ends the record holds its end samples.
   InputSignal shifted(double samples) const;
+  /// The same with the other sign.
+  InputSignal reversed() const;
 
  private:
   struct Record {

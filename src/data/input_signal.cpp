@@ -86,6 +86,15 @@ InputSignal InputSignal::view(int first, int count) const {
   return result;
 }
 
+InputSignal InputSignal::reversed() const {
+  auto record = std::make_shared<Record>(*record_);
+  for (double& each : record->samples) each = -each;
+  for (double& each : record->coefficients) each = -each;
+  InputSignal result = *this;
+  result.record_ = std::move(record);
+  return result;
+}
+
 std::optional<InputSignal> InputSignal::under(InputRule rule) const {
   if (row_of(rule).equal_steps && unequal_step(record_->time) > 0) return std::nullopt;
   return InputSignal(rule, record_->time, record_->samples).view(first_, rows_);

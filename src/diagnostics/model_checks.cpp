@@ -65,8 +65,8 @@ Findings check_populations(Model const& model) {
 Findings check_use(Model const& model, StartRule const& start, std::function<bool(std::string const& name)> const& switched_off,
                    bool optimum) {
   Findings findings;
-  char const* const so =
-      optimum ? "the data do not determine it, and its value and sd in this result mean nothing" : "its posterior equals its prior";
+  char const* const so = optimum ? "the data do not determine it: its value and sd in this result say nothing about it"
+                                 : "its posterior equals its prior";
   bool const own_start = start.kind == StartRule::Kind::record;
   Model read = model;  // as this fit reads it
   if (!own_start)

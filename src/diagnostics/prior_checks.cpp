@@ -133,14 +133,19 @@ void name_fixed(std::string const& name, PriorInfo const& prior, Findings& findi
 
 void name_held(Report const& report, Findings& findings) {
   std::vector<std::string> held;
+  std::vector<PriorInfo const*> fixed;
   for (PriorInfo const& prior : report.priors)
     for (Summary const& summary : report.summary) {
       if (summary.name != prior.name || summary.coefficient) continue;
       auto const ratio = contraction(prior, summary);
       if (!ratio || !(*ratio < hardly_narrower)) continue;
       held.push_back(summary.name);
-      if (fixes(prior)) name_fixed(summary.name, prior, findings);
+      if (fixes(prior)) fixed.push_back(&prior);
     }
+  // Of many such priors most are meant so.
+  constexpr std::size_t most_fixed = 2;
+  for (PriorInfo const* prior : fixed)
+    if (fixed.size() <= most_fixed) name_fixed(prior->name, *prior, findings);
   constexpr std::size_t most_named = 6;
   if (held.empty() || held.size() > most_named) return;
   for (Finding& each : findings)

@@ -60,15 +60,17 @@ std::string likelihood_clause(OutsideEquation const& outside) {
 std::string form_clause(ValidationReport const& validation) {
   double const probability = validation.structures.front().probability;
   if (probability >= probable && validation.outside && is_rival(*validation.outside))
-    return fmt::format("the form is {} among the terms of the dictionary (probability {}), but not decided against other terms",
-                       probability >= decided_probability ? "decided" : "the most probable", probability_text(probability));
-  bool const alone = validation.outside && !(validation.outside->log_odds > as_probable);
+    return fmt::format(
+        "the form is {} among the terms of the dictionary (probability {}), but the record does not exclude other terms",
+        probability >= decided_probability ? "decided" : "the most probable", probability_text(probability));
+  bool const without_rival = validation.outside && !(validation.outside->log_odds > as_probable);
   return fmt::format("the form is {}{} (probability {})",
                      probability >= decided_probability ? "decided"
                      : probability >= probable          ? "more probable than all others"
                      : probability >= majority          ? "not decided, but more probable than all others"
                                                         : "not decided",
-                     probability >= probable && !alone ? " among the terms of the dictionary" : "", probability_text(probability));
+                     probability >= probable && !without_rival ? " among the terms of the dictionary" : "",
+                     probability_text(probability));
 }
 
 /// sds in percent of the coefficients: the smallest and the largest.

@@ -45,7 +45,7 @@ bool is_mark_of(std::vector<double> const& values, double number) {
     if (has_number({each.value}, number)) return true;
   for (ClippedSamples const& each : clipped_samples(values))
     if (has_number({each.value}, number)) return true;
-  return false;
+  return number == 0 && !dropped_samples(values).empty();
 }
 
 /// Another column of the record that has one of these numbers, as the time, an input, or a sample that is none of the marks.
@@ -119,7 +119,8 @@ Findings find_placeholders(CheckedFile const& file, ExperimentData const& data, 
                   input ? "an input needs a value in every row: interpolate the missing samples in the file, or use only later "
                           "rows, with a range in `split`; if the recorder was saturated, the true values are larger"
                         : to_be_missing(block, data, model, column.column, {suspect.value}) +
-                              ": the row is then not scored; if it is a sample, add `none` to the list"));
+                              ": the row is then not scored; if it is a sample, " +
+                              (block.rules.asked_for_missing ? "add `none` to the list" : "write `read missing = none`")));
     };
     for (DoubtfulNumber const& suspect : doubtful_numbers(values)) find(suspect, "all its other numbers");
     // An input may rest at zero between blows.

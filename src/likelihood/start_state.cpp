@@ -15,9 +15,10 @@ namespace sysid {
 namespace {
 
 // A perturbation should move the outputs by this fraction of their size: small against curvature, large against rounding. To begin
-// with, one serves that moves them by at most 100 times as much, and at least 1/10,000, far above rounding in steps of equal length.
+// with, one serves that moves them by at most 100 times as much, and at least 1/10,000 with steps of equal length, whose outputs
+// are smooth to rounding, or 1/100 with others.
 constexpr double relative_effect = 1e-4;
-constexpr double least_first_effect = 1e-4, most_first_effect = 100;
+constexpr double least_first_effect = 1e-4, least_of_rough = 1e-2, most_first_effect = 100;
 constexpr int most_start_probes = 12;
 constexpr int least_moves = 2, most_rounds = 40;
 
@@ -68,6 +69,7 @@ StartState::StartState(std::shared_ptr<CompiledModel const> compiled, Experiment
                        SolverSettings const& solver, ExecutionOptions options, std::shared_ptr<ThreadPool> pool)
     : compiled_(std::move(compiled)),
       rows_(clamp_rows(experiment, rows)),
+      least_effect_(solver.fixed_step() ? least_first_effect : least_of_rough),
       simulator_(compiled_->trajectory,
                  Schedule(*compiled_->trajectory, window_of(experiment, clamp_rows(experiment, rows)), solver), options,
                  std::move(pool)) {
@@ -154,7 +156,7 @@ void StartState::find_steps(ConstLanes parameters, std::span<Search> searches) c
       search.done = !slopes[k].residual.allFinite();  // it fails in the simulation that follows, and is counted there
       for (int s = 0; s < states; ++s) {
         double const effect = slopes[k].change.col(s).norm() / (relative_effect * data_norm_);
-        known(s) = known(s) || (effect >= least_first_effect && effect <= most_first_effect);
+        known(s) = known(s) || (effect >= least_effect_ && effect <= most_first_effect);
         if (known(s)) continue;
         search.step(s) *= !std::isfinite(effect) ? 1e-4 : std::clamp(effect > 0 ? 1 / effect : 1e6, 1e-6, 1e6);
       }

@@ -12,11 +12,11 @@
 namespace sysid {
 
 /// Least squares by Gauss-Newton on the measured channels of the window, each in units of its sd there, or along the whole record
-/// where it does not move in the window, from the model's initial values; slopes by finite differences, each perturbation as large
-/// as moves the outputs by 1e-4 of their size, whatever the unit of the state. A move that makes the fit worse is halved. Moves
-/// are made until one, not among the first two, changes the outputs by no more than 1e-6 of the misfit: a smooth function of the
-/// parameters to that precision, the same for any lane. States the window does not determine stay where they are (a ridge of 1e-10 relative). Where no such move
-/// is found the state is NaN, so that the simulation from it fails and is counted.
+/// where it does not move in the window, from the model's initial values; slopes by finite differences, each perturbation as
+/// large as moves the outputs by 1e-4 of their size, whatever the unit of the state. A move that makes the fit worse is halved.
+/// Moves are made until one, not among the first two, changes the outputs by no more than 1e-6 of the misfit: a smooth function
+/// of the parameters to that precision, the same for any lane. States the window does not determine stay where they are (a ridge
+/// of 1e-10 relative). Where no such move is found the state is NaN, so that the simulation from it fails and is counted.
 class StartState {
  public:
   /// compiled: with a free start. experiment: begins at the row whose state is wanted; its first `rows` rows are the window.
@@ -46,7 +46,8 @@ class StartState {
   std::vector<std::vector<double>> samples_;
   std::vector<double> weights_;
   int rows_ = 0;
-  int count_ = 0;  // residuals
+  double least_effect_ = 0;  // of the first perturbations
+  int count_ = 0;            // residuals
   double data_norm_ = 0;
   Simulator simulator_;
 };

@@ -123,8 +123,8 @@ bool draft(Context& context, EntryPart const& part, std::string const& entry, Wo
   }
   WorkItem changed = with_statement(work.items[place], entry, part.span);
   for (auto const& [parameter, unit] : lost_units(work.items[place], changed))
-    notices.push_back(fmt::format("`{0}` was declared in [{1}] and has no unit now: to keep it, write `parameter {0} [{1}] ...`",
-                                  parameter, unit));
+    notices.push_back(fmt::format("`{0}` was declared in [{1}] and has no unit now: to keep it, write `{2} {0} [{1}] ...`",
+                                  parameter, unit, text.substr(0, text.find_first_of(" \t\n"))));
   put(std::move(changed));
   return true;
 }

@@ -13,7 +13,7 @@ struct LogScore {
   double sum = 0;
   double error = 0;  // one standard error, by the spread of samples as if independent; NaN for one sample
   int samples = 0;
-  double monte_carlo_error = 0;  // by the number of draws; not a number where weights are not to be trusted
+  double monte_carlo_error = 0;  // by the number of draws; NaN where weights are not to be trusted
 };
 
 /// What the parameters of highest density, or likelihood, have explained.

@@ -24,6 +24,9 @@ TEST_CASE("a command line that cannot be understood says what was meant") {
   refused("--force fit x.sysid",
           "sysid: error: `--force` stands before the command\n"
           "help: options follow the command: `sysid fit FILE --force`\n");
+  refused("--seed 3 fit x.sysid",
+          "sysid: error: `--seed` stands before the command\n"
+          "help: options follow the command: `sysid fit FILE --seed VALUE`\n");
   refused("-v",
           "sysid: error: `-v` stands before a command, and is no option of `sysid`\n"
           "help: the command comes first, then its file and its options: `sysid run FILE`\n");

@@ -123,7 +123,7 @@ TEST_CASE("an idle parameter is warned of, unless arguments of the model may hav
   };
   CHECK(severity(nullptr) == Severity::warning);
   CHECK(check_use(model, {}, nullptr).front().message.ends_with("its posterior equals its prior"));
-  CHECK(check_use(model, {}, nullptr, true).front().message.ends_with("its value and sd in this result mean nothing"));
+  CHECK(check_use(model, {}, nullptr, true).front().message.ends_with("its value and sd in this result say nothing about it"));
   CHECK(severity([](std::string const& name) { return name == "k3"; }) == Severity::note);
   CHECK(severity([](std::string const& name) { return name == "k"; }) == Severity::warning);
 }

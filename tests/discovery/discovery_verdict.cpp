@@ -148,7 +148,7 @@ TEST_CASE("other terms are a warning where the record is described as well by th
   CHECK(rival.front().severity == Severity::warning);
   CHECK(rival.front().names == std::vector<std::string>{"x': x, exp(-x)"});
   CHECK(rival.front().message.find("(its log likelihood is 0.70 higher, with as many coefficients)") != std::string::npos);
-  CHECK(verdict_clauses(validation).find("but not decided against other terms") != std::string::npos);
+  CHECK(verdict_clauses(validation).find("but the record does not exclude other terms") != std::string::npos);
   validation.outside->log_likelihood = -2.5;  // the prior favours it, the record does not
   Findings const usual = other_terms(validation);
   REQUIRE(usual.size() == 1);

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/fit/exchanged_columns.hpp"
 #include "app/fit/experiment_checks.hpp"
 #include "app/fit/hierarchies.hpp"
+#include "app/fit/other_readings.hpp"
 #include "app/fit/particle_comparison.hpp"
 #include "app/session/fit_end.hpp"
 #include "app/session/written_model.hpp"
@@ -66,8 +66,8 @@ Findings residuals(FinishedFit& fit) {
   FitCheck check = fit.likelihood.check_residuals(fit.result, fit.report.draws);
   fit.report.fit = std::move(check.lines);
   if (std::ranges::any_of(check.findings, &doubts_columns)) {
-    Findings const exchanged = check_exchanged_columns(fit);
-    check.findings.insert(check.findings.begin(), exchanged.begin(), exchanged.end());
+    Findings const otherwise = check_other_readings(fit);
+    check.findings.insert(check.findings.begin(), otherwise.begin(), otherwise.end());
   }
   return std::move(check.findings);
 }

@@ -122,7 +122,7 @@ int number_of_draws(FinishedFit const& fit) {
                          std::max(usual_draws, cheap_draws));
   auto const cost = [&] { return draws * (std::ceil(draws * channels * spans.record / most_densities) + 1) / 2; };
   while (draws > std::max(fewest_draws, cheap_draws) && cost() > share_of_fit * simulations(fit))
-    draws = std::max(fewest_draws, draws * 19 / 20);
+    draws = std::max({fewest_draws, cheap_draws, draws * 19 / 20});
   return draws;
 }
 

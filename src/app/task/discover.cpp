@@ -208,9 +208,10 @@ class Discover {
     for (std::size_t e = 0; e < filled.size(); ++e)
       if (fill_missing(filled[e])) {
         filled_.push_back(filled[e].name);
-        if (std::ranges::find(interpolated_, filled[e].name) == interpolated_.end()) gappy.push_back(records_[e]);
+        gappy.push_back(records_[e]);
       }
-    take_noise_of(gappy);
+    // That of records of unequal steps is known.
+    if (interpolated_.empty()) take_noise_of(gappy);
     records_ = std::move(filled);
     return !filled_.empty();
   }

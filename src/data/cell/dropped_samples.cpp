@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/numeric/not_finite.hpp"
 #include "core/numeric/statistics.hpp"
 
 namespace sysid {
@@ -24,11 +25,18 @@ bool has_levels(std::vector<double> const& values) {
 struct Distances {
   std::vector<double> of_others;
   struct Run {
-    double distance = 0;  // of the zero in it that is farthest
+    double distance = 0;       // of the zero in it that is farthest
+    double from_one_side = 0;  // of the first from the line through the two samples before it, or of the last from that behind it
     std::size_t zeros = 0;
   };
   std::vector<Run> of_zeros;  // of runs that are short
 };
+
+/// Of a zero from the line through two samples, the nearer one first; where one is missing it is far.
+double extrapolated(double near, double next) {
+  double const distance = std::fabs(2 * near - next);
+  return std::isnan(distance) ? infinity : distance;
+}
 
 Distances distances_in(std::vector<double> const& values) {
   Distances all;
@@ -42,7 +50,9 @@ Distances distances_in(std::vector<double> const& values) {
     std::size_t end = i;
     while (end < values.size() && values[end] == 0) ++end;
     if (end == i || end - i > longest_run || !counts(end)) continue;
-    Distances::Run run{0, end - i};
+    double const before = i > 1 ? extrapolated(values[i - 1], values[i - 2]) : infinity,
+                 behind = end + 1 < values.size() ? extrapolated(values[end], values[end + 1]) : infinity;
+    Distances::Run run{0, std::min(before, behind), end - i};
     for (std::size_t k = i; k < end; ++k) {
       double const share = static_cast<double>(k - i + 1) / static_cast<double>(run.zeros + 1);
       run.distance = std::max(run.distance, std::fabs(values[i - 1] + share * (values[end] - values[i - 1])));
@@ -63,7 +73,7 @@ std::vector<std::size_t> dropped_samples(std::vector<double> const& values) {
   double const far = times_farther * quantile(std::move(all.of_others), most_of_others);
   std::size_t dropped = 0;
   for (Distances::Run const& run : all.of_zeros)
-    if (run.distance > far) dropped += run.zeros;
+    if (run.distance > far && run.from_one_side > far) dropped += run.zeros;
   if (dropped < least_dropped || 2 * dropped < zeros) return {};
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < values.size(); ++i)

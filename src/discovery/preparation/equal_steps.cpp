@@ -104,13 +104,21 @@ Experiment at_equal_steps(Experiment const& experiment) {
 }
 
 bool fill_missing(Experiment& experiment) {
+  constexpr double widest = 4.5;  // mean steps from one measured sample to the next, over which a spline is to be believed
+  double const step = mean_step(experiment.time);
   bool filled = false;
   for (std::vector<double>& channel : experiment.measured) {
-    if (channel.empty()) continue;
-    std::vector<double> const curve =
-        interpolated(finite_samples(experiment.time, channel), experiment.time, mean_step(experiment.time));
-    for (std::size_t i = 0; i < channel.size(); ++i)
-      if (std::isnan(channel[i]) && std::isfinite(curve[i])) channel[i] = curve[i], filled = true;
+    FiniteSamples const from = finite_samples(experiment.time, channel);
+    if (from.time.size() < 2) continue;
+    InputSignal const curve(InputRule::cubic, from.time, from.value);
+    for (std::size_t i = 0; i < channel.size(); ++i) {
+      double const t = experiment.time[i];
+      if (!std::isnan(channel[i]) || t < from.time.front() || t > from.time.back()) continue;
+      auto const before = static_cast<std::size_t>(interval_of(from.time, t));
+      if (from.time[before + 1] - from.time[before] > widest * step) continue;
+      channel[i] = read(curve, from.time, t);
+      filled = true;
+    }
   }
   return filled;
 }

@@ -13,8 +13,8 @@ namespace sysid {
 /// mean over the step. Samples closer than a thousandth of the mean step are one. Names and the first row stay.
 Experiment at_equal_steps(Experiment const& experiment);
 
-/// Fills in missing samples of channels that have a measured one within two mean steps, by cubic splines through those that were
-/// measured; returns whether there were any.
+/// Fills in up to three missing samples in a row of a channel, by cubic splines through those that were measured; returns whether
+/// there were any.
 bool fill_missing(Experiment& experiment);
 
 /// The noise of samples at any distinct times: the root mean square of sixth divided differences, each divided by what it is if

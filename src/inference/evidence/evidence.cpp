@@ -194,7 +194,7 @@ void prefer_weighted(EvidenceMethod method, Evidence& evidence) {
   evidence.doubt = too_large(*evidence.error);
 }
 
-/// Whether the draws of the fit, bridged, tell another evidence than the populations; nothing where they do not tell.
+/// How bridge sampling of the draws of the fit contradicts the populations; empty if it does not, nothing where it gives no number.
 std::optional<std::string> doubt_by_draws(Target const& target, EvidenceTask const& task, Evidence& evidence, Ledger& ledger,
                                           std::function<bool()> const& stop) {
   Evidence bridged;
@@ -230,7 +230,7 @@ Evidence estimate_evidence(Target const& target, EvidenceTask const& task, Ledge
     if (!marginal::temper(target, task, most, evidence, ledger, stop))
       evidence.doubt = fmt::format("tempered SMC did not reach the posterior with {} simulations", evidence.simulations);
     else if (evidence.doubt.empty()) {
-      // Draws know it better than Laplace's approximation, which may be as wrong as the populations.
+      // Laplace's approximation may be as wrong as the populations: it is asked where there are no good draws.
       auto const by_draws = draws ? marginal::doubt_by_draws(target, task, evidence, ledger, stop) : std::nullopt;
       evidence.doubt = by_draws ? *by_draws : marginal::doubt_by_laplace(evidence, laplace_passes);
     }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/random.hpp"
@@ -51,6 +52,13 @@ TEST_CASE("zeros of the signal are none: near others, rare, many, in long runs, 
   std::vector<double> halves = sine(0.1, 0);  // a rectifier
   for (double& value : halves) value = std::fmax(value, 0);
   CHECK(dropped_samples(halves).empty());
+  std::vector<double> corners, angle;
+  for (int i = 0; i < 400; ++i) {
+    corners.push_back(i % 40 == 0 ? 0 : std::fabs(elementary::sin(std::numbers::pi * i / 40)));
+    angle.push_back(5.0 * i - 360 * std::floor(5.0 * i / 360));
+  }
+  CHECK(dropped_samples(corners).empty());
+  CHECK(dropped_samples(angle).empty());
   std::vector<double> gaps = sine(0.1, 0, 5);
   for (std::size_t i = 0; i < gaps.size(); ++i)
     if (i % 100 < 10) gaps[i] = 0;

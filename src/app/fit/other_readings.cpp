@@ -1,20 +1,21 @@
 // Columns are tried the other way round, and with the other sign; likelihoods of different records are compared by what each
 // explains of its own.
-#include "app/fit/exchanged_columns.hpp"
+#include "app/fit/other_readings.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "core/numeric/elementary.hpp"
 #include "core/numeric/periodogram.hpp"
 #include "core/numeric/statistics.hpp"
 #include "core/text/number.hpp"
+#include "core/text/words.hpp"
 #include "experiment/crossed_columns.hpp"
 #include "model/lags.hpp"
 #include "search/descent.hpp"
@@ -117,41 +118,17 @@ bool has_one_tone(FinishedFit const& fit, std::vector<Experiment> const& experim
   return false;
 }
 
-/// A data block as it might be instead.
-struct OtherReading {
-  DataBlock block;
-  int input = -1, channel = -1;  // whose numbers have the other sign
-  bool one_tone_explains = false;
-  std::function<Finding(std::string const& left, std::string const& stated)> finding;  // shares of the variance, in per cent
-};
-
-void reverse(std::vector<double>& values) {
-  for (double& each : values) each = -each;
-}
-
-Record with_reversed_signs(Record record, OtherReading const& reading) {
-  if (reading.input >= 0) {
-    InputSignal& input = record.inputs[static_cast<std::size_t>(reading.input)];
-    std::vector<double> values;
-    for (int row = 0; row < input.rows(); ++row) values.push_back(input.sample(row));
-    reverse(values);
-    input = InputSignal(input.rule(), record.time, std::move(values));
-  }
-  if (reading.channel >= 0) reverse(record.measured[static_cast<std::size_t>(reading.channel)]);
-  return record;
-}
-
 /// The experiments of a fit with a data block as it might be instead; nothing where that cannot be read so.
-std::vector<Experiment> read_otherwise(FinishedFit const& fit, int data, OtherReading const& reading) {
+std::vector<Experiment> read_otherwise(FinishedFit const& fit, int data, DataBlock const& block) {
   Model const& model = fit.session.file.models[static_cast<std::size_t>(fit.what.model)];
   Model const as_predicted = with_prediction(model, fit.what.prediction).value_or(model);
   std::vector<Experiment> experiments = experiments_of(fit.data);
   try {
-    Record const record = with_reversed_signs(load_record(reading.block, model, fit.session.folder()), reading);
+    Record const record = load_record(block, model, fit.session.folder());
     for (std::size_t e = 0; e < fit.data.size(); ++e) {
       if (fit.data[e].use.data != data) continue;
       std::string name = experiments[e].name;
-      experiments[e] = cut(record, reading.block, as_predicted, fit.data[e].use.part, fit.what.start);
+      experiments[e] = cut(record, block, as_predicted, fit.data[e].use.part, fit.what.start);
       experiments[e].name = std::move(name);
     }
   } catch (UserError const&) {  // an input with gaps, a unit that the file states
@@ -162,57 +139,124 @@ std::vector<Experiment> read_otherwise(FinishedFit const& fit, int data, OtherRe
   return experiments;
 }
 
-void add_exchanged(DataBlock const& block, Model const& model, std::vector<OtherReading>& readings) {
-  std::vector<ExchangedColumns> exchanges = exchanged_columns(block, model);
-  if (exchanges.size() > most_pairs) return;
-  for (ExchangedColumns& each : exchanges) {
-    DataBlock exchanged = std::move(each.block);
-    readings.push_back({std::move(exchanged), -1, -1, each.of_channel, [each, &block](auto const& left, auto const& stated) {
-                          return Finding{
-                              FindingCode::column_used_twice,
-                              Severity::warning,
-                              {each.one, each.other, block.name},
-                              fmt::format("with the columns `{}` and `{}` of {} exchanged, the model leaves {} % of the variance "
-                                          "unexplained, instead of {} %: the columns may be exchanged",
-                                          each.one, each.other, block.name, left, stated),
-                              fmt::format("if they are exchanged, write {}", each.lines)};
-                        }});
+/// Tries readings of the records of a fit, one after the other, and keeps the one that leaves least unexplained.
+class OtherReadings {
+ public:
+  explicit OtherReadings(FinishedFit& fit) : fit_(fit), model_(fit.likelihood.model()) {
+    stated_ = unexplained(log_likelihood_at(fit.target, theta_of(fit.preparation.modes.front()), ledger_),
+                          baseline(model_, experiments_of(fit.data)));
+    least_ = std::min(share_explained_otherwise, stated_ / better_by);
   }
-}
 
-Finding reversed(std::string const& column, std::string const& block, std::string const& left, std::string const& stated,
-                 std::string const& cure) {
-  return {FindingCode::sign_reversed,
-          Severity::warning,
-          {column, block},
-          fmt::format("with the sign of column `{}` of {} reversed, the model leaves {} % of the variance unexplained, instead of "
-                      "{} %: the sign may be wrong in the file or in the equations",
-                      column, block, left, stated),
-          cure};
-}
+  bool explained() const { return stated_ < worth_a_search; }
 
-/// Inputs; and channels beside others, since the sign of the only one is that of all inputs.
-void add_reversed(DataBlock const& block, Model const& model, std::vector<OtherReading>& readings) {
-  if (block.inputs.size() + block.measured.size() > most_pairs) return;
-  auto const index_of = [](auto const& all, std::string const& name) {
-    return static_cast<int>(std::ranges::find(all, name, [](auto const& each) { return each.name; }) - all.begin());
+  void exchange_columns() {
+    for (int const data : data_blocks()) {
+      DataBlock const& block = this->block(data);
+      std::vector<ExchangedColumns> const exchanges = exchanged_columns(block, model_);
+      if (exchanges.size() > most_pairs) continue;
+      for (ExchangedColumns const& each : exchanges) {
+        std::vector<Experiment> experiments = read_otherwise(fit_, data, each.block);
+        if (experiments.empty() || (each.of_channel && has_one_tone(fit_, experiments, data))) continue;
+        consider(std::move(experiments),
+                 {FindingCode::column_used_twice,
+                  {each.one, each.other, block.name},
+                  fmt::format("the columns `{}` and `{}` of {} exchanged", each.one, each.other, block.name),
+                  "the columns may be exchanged",
+                  fmt::format("if they are exchanged, write {}", each.lines)});
+      }
+    }
+  }
+
+  /// Of each input; and of each channel beside others, since the sign of the only one is that of all inputs. In every block that
+  /// has it: these are of one sensor, or of one term.
+  void reverse_signs() {
+    if (model_.inputs.size() + model_.channels.size() > most_pairs) return;
+    for (std::size_t i = 0; i < model_.inputs.size(); ++i)
+      reverse(
+          &DataBlock::inputs, &DataInputUse::input, model_.inputs[i].name,
+          [i](Experiment& each) { each.inputs[i] = each.inputs[i].reversed(); },
+          fmt::format("check the direction of the sensor and the sign of `{0}` in the equations; if the file is right, write "
+                      "`-{0}` in place of `{0}`",
+                      model_.inputs[i].name));
+    for (std::size_t c = 0; c < model_.channels.size() && model_.channels.size() > 1; ++c)
+      reverse(
+          &DataBlock::measured, &DataMeasureUse::channel, model_.channels[c].name,
+          [c](Experiment& each) {
+            for (double& sample : each.measured[c]) sample = -sample;
+          },
+          fmt::format("check the direction of the sensor; if the file is right, reverse the sign of what `observe {}` expects",
+                      model_.channels[c].name));
+  }
+
+  Findings findings() {
+    if (!best_) return {};
+    // A fit that stopped at a poor optimum is bettered by any other search, whatever the columns are.
+    double const again = left_by(experiments_of(fit_.data));
+    if (least_ >= again / better_by) return {};
+    return {{best_->code, Severity::warning, best_->names,
+             fmt::format("with {}, the model leaves {} % of the variance unexplained, instead of {} %: {}", best_->what,
+                         significant(100 * least_, 2), significant(100 * std::min(1.0, stated_), 2), best_->conclusion),
+             best_->cure}};
+  }
+
+  std::uint64_t solves() const { return ledger_.solves(); }
+
+ private:
+  struct Words {
+    FindingCode code;
+    std::vector<std::string> names;
+    std::string what, conclusion, cure;
   };
-  for (DataInputUse const& each : block.inputs)
-    readings.push_back({block, index_of(model.inputs, each.input), -1, false, [&](auto const& left, auto const& stated) {
-                          return reversed(each.column, block.name, left, stated,
-                                          fmt::format("check the direction of the sensor and the sign of `{0}` in the "
-                                                      "equations; if the file is right, write `-{0}` in place of `{0}`",
-                                                      each.input));
-                        }});
-  for (DataMeasureUse const& each : block.measured)
-    if (block.measured.size() > 1)
-      readings.push_back({block, -1, index_of(model.channels, each.channel), false, [&](auto const& left, auto const& stated) {
-                            return reversed(each.column, block.name, left, stated,
-                                            fmt::format("check the direction of the sensor; if the file is right, reverse the "
-                                                        "sign of what `observe {}` expects",
-                                                        each.channel));
-                          }});
-}
+
+  DataBlock const& block(int data) const { return fit_.session.file.data[static_cast<std::size_t>(data)]; }
+
+  std::vector<int> data_blocks() const {
+    std::vector<int> all;
+    for (ExperimentData const& each : fit_.data)
+      if (std::ranges::find(all, each.use.data) == all.end()) all.push_back(each.use.data);
+    return all;
+  }
+
+  template <class Use>
+  void reverse(std::vector<Use> DataBlock::*uses, std::string Use::*quantity, std::string const& name, auto const& change,
+               std::string cure) {
+    std::vector<std::string> columns, blocks;
+    std::vector<Experiment> experiments = experiments_of(fit_.data);
+    for (int const data : data_blocks())
+      for (Use const& each : block(data).*uses) {
+        if (each.*quantity != name) continue;
+        if (std::ranges::find(columns, each.column) == columns.end()) columns.push_back(each.column);
+        blocks.push_back(block(data).name);
+        for (std::size_t e = 0; e < experiments.size(); ++e)
+          if (fit_.data[e].use.data == data) change(experiments[e]);
+      }
+    if (columns.empty()) return;
+    std::vector<std::string> names = columns;
+    names.insert(names.end(), blocks.begin(), blocks.end());
+    consider(std::move(experiments), {FindingCode::sign_reversed, std::move(names),
+                                      fmt::format("the sign of column {} of {} reversed", quoted(columns), listed(blocks)),
+                                      "the sign may be wrong in the file or in the equations", std::move(cure)});
+  }
+
+  /// The share of the variance that a short search leaves.
+  double left_by(std::vector<Experiment> experiments) {
+    Baseline const of = baseline(model_, experiments);
+    auto const target = fit_.likelihood.make_target(std::move(experiments), fit_.preparation.solver, fit_.session.interruptible());
+    return unexplained(search_otherwise(fit_, *target, ledger_), of);
+  }
+
+  void consider(std::vector<Experiment> experiments, Words words) {
+    double const left = left_by(std::move(experiments));
+    if (left < least_) least_ = left, best_ = std::move(words);
+  }
+
+  FinishedFit& fit_;
+  Model const& model_;
+  Ledger ledger_;  // failures with other columns say nothing of the fit
+  double stated_ = 0, least_ = 0;
+  std::optional<Words> best_;
+};
 
 }  // namespace
 
@@ -222,39 +266,18 @@ bool doubts_columns(Finding const& finding) {
          finding.code == FindingCode::input_in_residuals;
 }
 
-Findings check_exchanged_columns(FinishedFit& fit) {
+Findings check_other_readings(FinishedFit& fit) {
   Model const& model = fit.likelihood.model();
   bool const normal = std::ranges::all_of(model.channels, [](Channel const& each) { return each.noise.row->gaussian; });
   if (model.dynamics == Dynamics::none || model.filtered() || !model.processes.empty() || !normal || fit.target.is_expensive() ||
       fit.target.is_estimated() || model.improper() != nullptr || fit.preparation.modes.empty() || reads_measured(model))
     return {};
-  Ledger ledger;  // failures with exchanged columns say nothing of the fit
-  double const stated = unexplained(log_likelihood_at(fit.target, theta_of(fit.preparation.modes.front()), ledger),
-                                    baseline(model, experiments_of(fit.data)));
-  if (stated < worth_a_search) return {};
-  Findings findings;
-  std::vector<int> seen;
-  for (ExperimentData const& each : fit.data) {
-    if (std::ranges::find(seen, each.use.data) != seen.end()) continue;
-    seen.push_back(each.use.data);
-    DataBlock const& block = fit.session.file.data[static_cast<std::size_t>(each.use.data)];
-    std::vector<OtherReading> readings;
-    add_exchanged(block, model, readings);
-    add_reversed(block, model, readings);
-    OtherReading const* best = nullptr;
-    double least = std::min(share_explained_otherwise, stated / better_by);
-    for (OtherReading const& reading : readings) {
-      std::vector<Experiment> experiments = read_otherwise(fit, each.use.data, reading);
-      if (experiments.empty() || (reading.one_tone_explains && has_one_tone(fit, experiments, each.use.data))) continue;
-      Baseline const of = baseline(model, experiments);
-      auto const target = fit.likelihood.make_target(std::move(experiments), fit.preparation.solver, fit.session.interruptible());
-      double const left = unexplained(search_otherwise(fit, *target, ledger), of);
-      if (left < least) least = left, best = &reading;
-    }
-    if (best != nullptr)
-      findings.push_back(best->finding(significant(100 * least, 2), significant(100 * std::min(1.0, stated), 2)));
-  }
-  fit.extra.add_solves(ledger.solves());
+  OtherReadings readings(fit);
+  if (readings.explained()) return {};
+  readings.exchange_columns();
+  readings.reverse_signs();
+  Findings findings = readings.findings();
+  fit.extra.add_solves(readings.solves());
   return findings;
 }
 
