@@ -148,6 +148,17 @@ post = fit rig to rec with map, seed = 1
   CHECK(velocity.found("post", "sign_reversed"));
   CHECK(velocity.out.find("with the sign of column `v` of rec reversed") != std::string::npos);
   CHECK_FALSE(run_file(both, {}, {{"rec.csv", disturbed}}).found("post", "sign_reversed"));
+  // In both blocks of a fit; and the second channel of a block is of another model.
+  std::string const two =
+      with(with(with(both, "= f\n", "= -f\n"), "post = fit rig to rec", "post = fit rig to rec, again"), "data rec {",
+           "data again { file \"again.csv\"; time t [s]; input f = f [N] hold cubic; "
+           "measure position = y [m]; measure velocity = v [m/s] }\ndata rec {");
+  Fitted const twice = run_file(two, {}, {{"rec.csv", table}, {"again.csv", table}});
+  CHECK(twice.out.find("with the sign of column `f` of rec and again reversed") != std::string::npos);
+  std::string const other = with(with(both, "= f\n", "= -f\n"), "  observe velocity ~ normal(y', sd = 0.05 [m/s])\n", "") +
+                            "model second { input f [N]; state z [m]; initial z = 0; parameter r [1/s] ~ log_uniform(0.1, 10)\n"
+                            " z' = -r*z; observe velocity ~ normal(z', sd = 1) }\n";
+  CHECK(run_file(other, {}, {{"rec.csv", table}}).found("post", "sign_reversed"));
 }
 
 TEST_CASE("two inputs that have changed places are named, and none of a record whose motion the model lacks in part") {
