@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/number.hpp"
 #include "core/text/words.hpp"
+#include "syntax/grouped_digits.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid {
@@ -37,17 +39,20 @@ bool is_zero(ast::Expression const& tree) {
   return number != nullptr && number->value == 0;
 }
 
-/// The digits of a whole number without a sign or a unit, zeros in front kept; empty for all else.
-std::string digits_in(ast::Argument const& argument) {
-  auto const* number = std::get_if<ast::Number>(&argument.value.node);
-  if (argument.name || number == nullptr || number->unit) return {};
-  std::string const text = fmt::format("{:0{}.0f}", number->value, number->span.end - number->span.begin);
-  return text.size() == number->span.end - number->span.begin ? text : std::string();
+/// Two signs in a row cancel.
+void cancel_signs(ast::Expression& tree) {
+  auto const* outer = std::get_if<ast::Box<ast::Unary>>(&tree.node);
+  auto const* inner = outer == nullptr ? nullptr : std::get_if<ast::Box<ast::Unary>>(&(*outer)->operand->node);
+  if (inner == nullptr || (*outer)->symbol != "-" || (*inner)->symbol != "-") return;
+  ast::Expression operand = *(*inner)->operand;
+  tree = std::move(operand);
 }
 
 }  // namespace
 
-std::string corrected_call(ast::Call const& call, std::function<bool(ast::Call const&)> const& valid) {
+std::string corrected_call(ast::Call const& given, Valid const& valid) {
+  ast::Call call = given;
+  for (ast::Argument& each : call.arguments) cancel_signs(each.value);
   auto const bounds = bounds_of(call);
   if (bounds) {
     ast::Call exchanged = call;
@@ -68,7 +73,7 @@ std::string corrected_call(ast::Call const& call, std::function<bool(ast::Call c
     ast::Call above_zero = call, uniform = call;
     if (upper == nullptr) return {};
     ast::Number small = *upper;
-    small.value = upper->value / 1000;
+    small.value = leading_number(fmt::format("{:.3g}", upper->value / 1000));
     above_zero.arguments[bounds->first].value.node = std::move(small);
     uniform.function.text = "uniform";
     if (valid(above_zero))
@@ -85,23 +90,30 @@ std::string corrected_call(ast::Call const& call, std::function<bool(ast::Call c
   return {};
 }
 
-std::string without_grouped_digits(ast::Call const& call, std::size_t arguments) {
-  std::vector<std::string> joined;
-  bool grouped = false;
+std::string without_grouped_digits(ast::Call const& call, std::size_t arguments, Valid const& valid) {
+  ast::Call joined = call;
+  joined.arguments.clear();
+  std::string text, before;  // of the argument before
+  bool before_is_group = false, grouped = false;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     ast::Argument const& each = call.arguments[i];
-    std::string const digits = digits_in(each);
-    bool const group = i > 0 && digits.size() == 3 && call.arguments[i - 1].span.end + 1 == each.span.begin &&
-                       !digits_in(call.arguments[i - 1]).empty() && !joined.back().starts_with('0');
-    if (group)
-      joined.back() += digits;
-    else
-      joined.push_back((each.name ? each.name->text + " = " : "") + (digits.empty() ? unparse(each.value) : digits));
+    std::string const digits = whole_digits(each);
+    bool const adjoins = i > 0 && call.arguments[i - 1].span.end + 1 == each.span.begin;
+    bool const group = adjoins && continues_group(before, before_is_group, digits);
+    if (group) {
+      auto& number = std::get<ast::Number>(joined.arguments.back().value.node);
+      number.value = 1000 * number.value + std::get<ast::Number>(each.value.node).value;
+      text += digits;
+    } else {
+      joined.arguments.push_back(each);
+      text += fmt::format("{}{}{}", i == 0 ? "" : ", ", each.name ? each.name->text + " = " : "",
+                          digits.empty() ? unparse(each.value) : digits);
+    }
+    before = digits;
+    before_is_group = group;
     grouped = grouped || group;
   }
-  if (!grouped || joined.size() != arguments) return {};
-  std::string text;
-  for (std::string const& each : joined) text += (text.empty() ? "" : ", ") + each;
+  if (!grouped || joined.arguments.size() != arguments || !valid(joined)) return {};
   return fmt::format("digits are not grouped: write `{}({})`", call.function.text, text);
 }
 

@@ -90,8 +90,9 @@ class DistributionChecker {
       bool const bounds = signature_ == std::vector<std::string>{"lower", "upper"};
       return errors::range_in_distribution(call_, range->value, bounds, row_.cumulative != nullptr && !bounds);
     }
-    if (std::string ungrouped = without_grouped_digits(call_, given_.size());
-        !ungrouped.empty() && call_.arguments.size() > given_.size()) {
+    bool const too_many = !is_trial_ && call_.arguments.size() > given_.size();
+    if (std::string ungrouped = too_many ? without_grouped_digits(call_, given_.size(), works()) : std::string();
+        !ungrouped.empty()) {
       Diagnostic grouped = errors::too_many_arguments(call_, call_.arguments[given_.size()], signature_);
       grouped.help = std::move(ungrouped);
       return grouped;
@@ -334,16 +335,17 @@ class DistributionChecker {
     return true;
   }
 
-  std::string correction() const {
-    if (is_trial_) return {};
-    return corrected_call(call_, [&](ast::Call const& other) {
+  /// Whether another call would be accepted in this place.
+  Valid works() const {
+    return [this](ast::Call const& other) {
       Diagnostics unsaid;
       Scope scope = scope_.with(unsaid);
       DistributionChecker trial(scope, other, variate_, row_);
       trial.is_trial_ = true;
       return trial.run().has_value();
-    });
+    };
   }
+  std::string correction() const { return is_trial_ ? std::string() : corrected_call(call_, works()); }
 
   // Where they are numbers.
   bool arguments_fit() {

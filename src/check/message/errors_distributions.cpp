@@ -5,28 +5,22 @@
 
 #include "check/message/error_words.hpp"
 #include "core/text/words.hpp"
+#include "syntax/grouped_digits.hpp"
 #include "syntax/unparse.hpp"
 
 namespace sysid::errors {
 namespace {
 
-/// The digits of a whole number without a sign or a unit, zeros in front kept; empty for all else.
-std::string digits_of(ast::Argument const& argument) {
-  auto const* number = std::get_if<ast::Number>(&argument.value.node);
-  if (number == nullptr || number->unit) return {};
-  std::string const text = fmt::format("{:0{}.0f}", number->value, number->span.end - number->span.begin);
-  return text.size() == number->span.end - number->span.begin ? text : std::string();
-}
-
 /// `0,5` up to `last`, two arguments for what may be one number: how it is written with a point, or empty.
 std::string decimal_comma(ast::Call const& call, ast::Argument const& last) {
   for (std::size_t i = 1; i < call.arguments.size() && &call.arguments[i - 1] != &last; ++i) {
     ast::Argument const &left = call.arguments[i - 1], &right = call.arguments[i];
-    std::string const whole = digits_of(left), fraction = right.name ? std::string() : digits_of(right);
+    std::string const whole = whole_digits(left), fraction = whole_digits(right);
     if (whole.empty() || fraction.empty() || left.span.end + 1 != right.span.begin) continue;
     std::string const decimal = fmt::format("write the number with a decimal point: `{}.{}`", whole, fraction);
-    return fraction.size() == 3 && whole != "0" ? fmt::format("digits are not grouped: write `{}{}`; {}", whole, fraction, decimal)
-                                                : decimal;
+    return continues_group(whole, false, fraction)
+               ? fmt::format("digits are not grouped: write `{}{}`; {}", whole, fraction, decimal)
+               : decimal;
   }
   return {};
 }
