@@ -1,5 +1,7 @@
 // Expressions to nodes: operators, calls and choices, each with the units that it requires.
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "check/expression/scope.hpp"
@@ -28,12 +30,12 @@ struct DifferentialQuotient {
   int primes;
 };
 
-/// The name of its square.
-ast::Reference const* squared_name(ast::Expression const& tree) {
+/// What is squared in it, if anything.
+ast::Expression const* base_of_square(ast::Expression const& tree) {
   auto const* power = std::get_if<ast::Box<ast::Binary>>(&tree.node);
   auto const* exponent = power == nullptr ? nullptr : std::get_if<ast::Number>(&(*power)->right->node);
   bool const squared = exponent != nullptr && (*power)->symbol == "^" && exponent->value == 2 && !exponent->unit;
-  return squared ? std::get_if<ast::Reference>(&(*power)->left->node) : nullptr;
+  return squared ? &*(*power)->left : nullptr;
 }
 
 std::optional<DifferentialQuotient> differential_quotient(ast::Binary const& binary) {
@@ -41,18 +43,17 @@ std::optional<DifferentialQuotient> differential_quotient(ast::Binary const& bin
   ast::Expression const* last = &*binary.left;  // of the factors before it
   if (auto const* product = std::get_if<ast::Box<ast::Binary>>(&last->node); product != nullptr && (*product)->symbol == "*")
     last = &*(*product)->right;
-  ast::Expression const* base = &*binary.right;
-  auto const* power = std::get_if<ast::Box<ast::Binary>>(&base->node);
-  auto const* exponent = power == nullptr ? nullptr : std::get_if<ast::Number>(&(*power)->right->node);
-  bool const squared = exponent != nullptr && (*power)->symbol == "^" && exponent->value == 2 && !exponent->unit;
-  if (squared) base = &*(*power)->left;
+  ast::Expression const* base = base_of_square(*binary.right);
+  bool const squared = base != nullptr;
+  if (!squared) base = &*binary.right;
   ast::Expression const* before = nullptr;  // `d^2` of `m*d^2*y`
   if (auto const* product = std::get_if<ast::Box<ast::Binary>>(&binary.left->node); product != nullptr && (*product)->symbol == "*")
     if (auto const* inner = std::get_if<ast::Box<ast::Binary>>(&(*product)->left->node); inner != nullptr)
       before = (*inner)->symbol == "*" ? &*(*inner)->right : &*(*product)->left;
   auto const *above = std::get_if<ast::Reference>(&last->node), *below = std::get_if<ast::Reference>(&base->node);
   if (above == nullptr || below == nullptr) return std::nullopt;
-  if (ast::Reference const* const letter = squared && before != nullptr ? squared_name(*before) : nullptr;
+  ast::Expression const* const operand = squared && before != nullptr ? base_of_square(*before) : nullptr;
+  if (auto const* letter = operand == nullptr ? nullptr : std::get_if<ast::Reference>(&operand->node);
       letter != nullptr && letter->name.text == "d" && below->name.text == "dt")
     return DifferentialQuotient{letter, below, above->name.text, 2};
   std::string const &over = above->name.text, &under = below->name.text;
@@ -61,6 +62,13 @@ std::optional<DifferentialQuotient> differential_quotient(ast::Binary const& bin
   if (twice && (squared || under == "dt2")) return DifferentialQuotient{above, below, over.substr(2), 2};
   if (!over.starts_with("d") || over.size() == 1 || !words::begins_name(over[1]) || squared || under != "dt") return std::nullopt;
   return DifferentialQuotient{above, below, over.substr(1), 1};
+}
+
+/// A symbol of formulas: one letter or the word for a Greek one, perhaps with an index. The rest of `drag`, `dist` is none.
+bool is_symbol(std::string_view name) {
+  constexpr std::array<std::string_view, 8> greek{"alpha", "beta", "gamma", "theta", "phi", "psi", "omega", "rho"};
+  std::string_view const letters = name.substr(0, name.find_first_of("_0123456789"));
+  return letters.size() == 1 || std::find(greek.begin(), greek.end(), letters) != greek.end();
 }
 
 }  // namespace
@@ -154,10 +162,10 @@ std::optional<Typed> Scope::binary(ast::Binary const& binary) {
   }
   for (ast::Binary const* each : spine)
     if (auto const quotient = differential_quotient(*each); quotient && find(quotient->above->name.text) == nullptr)
-      if (find(quotient->below->name.text) == nullptr) {
+      if (bool const declared = find(quotient->name) != nullptr;
+          find(quotient->below->name.text) == nullptr && (declared || quotient->primes > 1 || is_symbol(quotient->name))) {
         Span const span = cover(quotient->above->span, each->right->span);
-        diagnostics_.add(errors::quotient_as_derivative(span, *quotient->above, quotient->name, quotient->primes,
-                                                        find(quotient->name) != nullptr));
+        diagnostics_.add(errors::quotient_as_derivative(span, *quotient->above, quotient->name, quotient->primes, declared));
         return std::nullopt;
       }
   auto value = expression(*spine.back()->left);
