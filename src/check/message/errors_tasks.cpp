@@ -215,7 +215,7 @@ Diagnostic unknown_member(ast::Name const& name, Subject const& owner, std::stri
 
 Diagnostic unknown_option(Span span, std::string const& option, OptionOwner const& owner, Names const& known) {
   constexpr std::string_view starts[] = {"starts", "n_starts", "nstarts", "restarts", "n_restarts", "multistart"};
-  if (among(starts, option))
+  if (among(starts, option) && words::task_kind(owner.verb) == TaskKind::fit)
     return about({owner.name, option}, error("E6002", span, fmt::format("`{}` has no option `{}`", owner.name, option),
                                              "remove it: the search begins at many draws of the prior"));
   std::string help = guess_or(option_synonyms, option, known, place_of_option(option, owner, known));

@@ -53,8 +53,8 @@ std::vector<std::string> arguments_of(SignalRow const& row) {
   return names;
 }
 
-constexpr std::string_view example_sine = "write `sine(amplitude = 1, frequency = 1 [Hz])`",
-                           example_cosine = "write `sine(amplitude = 1, frequency = 1 [Hz], phase = 90 [deg])`";
+constexpr std::string_view example_sine = "write for example `sine(amplitude = 1, frequency = 1 [Hz])`",
+                           example_cosine = "write for example `sine(amplitude = 1, frequency = 1 [Hz], phase = 90 [deg])`";
 
 /// The signal that `sin(2*pi*t)`, `2*cos(w*t)` stand for; empty where neither occurs.
 std::string_view instead_of_sine(ast::Expression const& value) {
@@ -81,6 +81,14 @@ std::vector<std::string> arguments_to_name(SignalRow const& row, ast::Call const
   return needed;
 }
 
+// `90` where an angle is wanted. What has a unit, or is computed from pi, is meant as it is written.
+bool is_bare_angle_beyond_turn(ast::Expression const& tree) {
+  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return is_bare_angle_beyond_turn(*(*unary)->operand);
+  constexpr double turn = 6.3;
+  auto const* number = std::get_if<ast::Number>(&tree.node);
+  return number != nullptr && !number->unit && std::abs(number->value) > turn;
+}
+
 /// `gaussian(0, 10)` with the names of its arguments; empty for a single one, and where some have names.
 std::string in_order(SignalRow const& row, ast::Call const& call) {
   std::size_t const count = call.arguments.size();
@@ -88,17 +96,11 @@ std::string in_order(SignalRow const& row, ast::Call const& call) {
   std::string text;
   for (std::size_t i = 0; i < count; ++i) {
     if (call.arguments[i].name) return {};
-    text += fmt::format("{}{} = {}", i == 0 ? "" : ", ", row.arguments[i].name, unparse(call.arguments[i].value));
+    ast::Expression const& value = call.arguments[i].value;
+    bool const degrees = row.arguments[i].unit == "rad" && is_bare_angle_beyond_turn(value);
+    text += fmt::format("{}{} = {}{}", i == 0 ? "" : ", ", row.arguments[i].name, unparse(value), degrees ? " [deg]" : "");
   }
   return fmt::format("write `{}({})`", row.name, text);
-}
-
-// `90` where an angle is wanted. What has a unit, or is computed from pi, is meant as it is written.
-bool is_bare_angle_beyond_turn(ast::Expression const& tree) {
-  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return is_bare_angle_beyond_turn(*(*unary)->operand);
-  constexpr double turn = 6.3;
-  auto const* number = std::get_if<ast::Number>(&tree.node);
-  return number != nullptr && !number->unit && std::abs(number->value) > turn;
 }
 
 }  // namespace
