@@ -213,12 +213,23 @@ class Failure {
     return std::nullopt;
   }
 
+  /// `set k = 3 [N/m]`.
+  std::string value_in_declaration() const {
+    Gap const here = gap();
+    std::size_t const equals = here.find("="), unit = here.find("[", equals);
+    std::string const number(here.text(equals + 1, unit));
+    if (number.empty() || unit + 1 < here.statement.size())
+      return fmt::format("a value is given in the declaration: `parameter {} {} = {}`", here.statement[1].text,
+                         here.text(unit, here.statement.size()), number.empty() ? "1" : number);
+    return fmt::format("a value is given in the declaration, with the unit behind the name: `parameter {} = {}`",
+                       here.statement[1].text, number);
+  }
+
   Diagnostic unknown_model_statement(Token const& word) const {
     Diagnostic diagnostic = errors::unknown_statement(word, "a model", words::model_statements);
     bool const typed = words::translated(words::foreign_model_statements(), word.text) == "let";
     if (words::contains(words::items, word.text)) diagnostic.help = fmt::format("`{}` stands outside of models", word.text);
-    if (word.is("set") && has("="))
-      diagnostic.help = fmt::format("a value is given in the declaration, with its unit: `parameter {0} [kg] = 1`", found().text);
+    if (word.is("set") && has("=")) diagnostic.help = value_in_declaration();
     if (typed && has("~")) diagnostic.help = "did you mean `parameter`?";
     if (typed && !has("~") && !has("=")) diagnostic.help = "did you mean `state`, or `parameter` for a value to be estimated?";
     return diagnostic;

@@ -65,6 +65,17 @@ std::string list_as_range(std::span<Token const> tokens, std::size_t opener, std
 /// What is written in place of the list in brackets at `opener`; `line`: the first token of its line.
 std::string instead_of_list(std::span<Token const> tokens, std::size_t line, std::size_t opener);
 
+/// The comma of a call from one token on, or what closes the call: not one of a call inside.
+std::size_t comma_from(Gap const& gap, std::size_t at, std::size_t close);
+
+/// How `~ pm.Normal(0, 1)` is written, at the module. Of `Normal("k", 0, 1)` at its parenthesis the call alone: without arguments
+/// where a valid call is not known, "..." where the distribution is not.
+std::string distribution_of_module(Gap const& gap);
+std::string call_of_module(Gap const& gap, std::size_t opener);
+
+/// What is written in place of `parameters { ... }` inside a model, of its word; empty for words that begin no block elsewhere.
+std::string instead_of_inner_block(std::string_view word);
+
 /// Help for the user, or empty.
 std::string hint(Gap const& gap);
 

@@ -32,17 +32,6 @@ bool is_task(Gap const& gap) {
          (gap.statement.size() > 2 && gap.statement[1].is("=") && words::contains(words::verbs, gap.statement[2].text));
 }
 
-/// `HalfNormal` as `half_normal`.
-std::string in_words(std::string_view name) {
-  std::string out;
-  for (char const c : name) {
-    bool const capital = c >= 'A' && c <= 'Z';
-    if (capital && !out.empty() && out.back() != '_') out += '_';
-    out += capital ? static_cast<char>(c - 'A' + 'a') : c;
-  }
-  return out;
-}
-
 /// The words of a unit, with or without quotes around them, as it is written; empty where they are none.
 std::string bracketed_unit(Gap const& gap, std::size_t from, std::size_t end) {
   if (from >= end) return {};
@@ -53,12 +42,6 @@ std::string bracketed_unit(Gap const& gap, std::size_t from, std::size_t end) {
   return end_of_unit(gap.statement, from) == end ? fmt::format("[{}]", gap.text(from, end)) : std::string();
 }
 
-/// The comma behind the first argument of the call that opens there, or what closes it: not one of a call inside.
-std::size_t comma_from(Gap const& gap, std::size_t at, std::size_t close) {
-  while (at < close && !gap.statement[at].is(","))
-    at = (gap.statement[at].is("(") || gap.statement[at].is("[") ? gap.closing(at) : at) + 1;
-  return std::min(at, close);
-}
 std::size_t first_comma(Gap const& gap, std::size_t opener) { return comma_from(gap, opener + 1, gap.closing(opener)); }
 
 /// `normal(20, sd = 5)T(0, 100)`: the prior with its bounds inside.
@@ -125,29 +108,6 @@ std::string power_of_uniform(Gap const& gap) {
   return fmt::format("write `log_uniform({}, {})`", power(opener + 1, comma), power(comma + 1, close));
 }
 
-/// `Normal("k", 0, 1)` of the module of another program, without the name of the quantity; empty where it has no arguments.
-/// opener: its parenthesis, behind its name.
-std::string distribution_of_module(Gap const& gap, std::size_t opener) {
-  std::size_t const close = gap.closing(opener);
-  if (close >= gap.statement.size() || close == opener + 1) return {};
-  std::size_t first = opener + 1;
-  if (gap.statement[first].kind == TokenKind::text && gap.statement[first + 1].is(",")) first += 2;
-  std::string name = in_words(gap.statement[opener - 1].text);
-  if (name == "norm") name = "normal";
-  std::size_t const comma = comma_from(gap, first, close);
-  bool const two = comma < close && comma_from(gap, comma + 1, close) == close && gap.find("=", first) > close;
-  return two && name == "normal" ? fmt::format("{}({}, sd = {})", name, gap.text(first, comma), gap.text(comma + 1, close))
-                                 : fmt::format("{}({})", name, gap.text(first, close));
-}
-
-/// `~ pm.Normal(0, 1)`, at the module.
-std::string of_module(Gap const& gap) {
-  std::string const without = fmt::format("write the distribution without `{}.`", gap.found->text);
-  bool const called = gap.next(3) != nullptr && gap.next(3)->is("(") && gap.next(2)->kind == TokenKind::word;
-  std::string const meant = called ? distribution_of_module(gap, gap.at + 3) : std::string();
-  return meant.empty() ? without : fmt::format("{}: `{}`", without, meant);
-}
-
 /// `~ pm.Normal(0, 1)`, `~ flat`: a distribution with a module before it, or without parentheses.
 std::string at_distribution(Gap const& gap) {
   if (gap.wanted == wanted::tilde && gap.begins_with("observe") && gap.found == nullptr && gap.at >= 2)
@@ -156,7 +116,7 @@ std::string at_distribution(Gap const& gap) {
     return fmt::format("each channel has an `observe` of its own: `{} ~ normal(y, sd = sigma)`", gap.text(0, gap.at));
   if (std::string whole = power_of_uniform(gap); !whole.empty()) return whole;
   if (!gap.wanted.starts_with("a distribution") || !gap.found_word()) return {};
-  if (gap.next() != nullptr && gap.next()->is(".")) return of_module(gap);
+  if (gap.next() != nullptr && gap.next()->is(".")) return distribution_of_module(gap);
   return gap.next() == nullptr && gap.found->is("flat") ? "write `flat()`" : "";
 }
 
@@ -354,7 +314,11 @@ std::string differential_quotient(Gap const& gap) {
   Token const& of = inside ? *gap.next() : *gap.found;
   std::size_t const end = inside ? gap.closing(gap.at) + 1 : gap.at + 1;
   bool const over_time = above && end + 1 < gap.statement.size() && gap.statement[end].is("/") && gap.statement[end + 1].is("dt");
-  if (of.kind != TokenKind::word || !(behind || over_time)) return {};
+  if (!(behind || over_time)) return {};
+  if (inside && end != gap.at + 3)
+    return "primes stand behind one name: write out the derivative of what is in the parentheses, with `y'` or `y''` for that of "
+           "`y`";
+  if (of.kind != TokenKind::word) return {};
   return fmt::format("a derivative is written with primes: write `{}{}` in place of the quotient", of.text,
                      std::string(behind          ? 1
                                  : last->is("3") ? 3
@@ -376,15 +340,8 @@ std::string description(Gap const& gap) {
 
 /// `parameters { ... }` inside a model.
 std::string inner_block(Gap const& gap) {
-  if (!gap.found_is("{") || gap.at != 1 || gap.statement[0].kind != TokenKind::word) return {};
-  std::string_view word = gap.statement[0].text;
-  constexpr std::array<std::string_view, 5> of_equations{"equations", "equation", "dynamics", "ode", "odes"};
-  if (words::contains(of_equations, word)) return "a model has no blocks inside: write the equations without `{` and `}`";
-  std::string_view const ours = words::translated(words::foreign_model_statements(), word);
-  if (!ours.empty()) word = ours;
-  if (word.ends_with('s')) word.remove_suffix(1);
-  if (!words::contains(words::model_statements, word)) return {};
-  return fmt::format("a model has no blocks inside: begin each of these lines with `{}`, and remove `{{` and `}}`", word);
+  bool const block = gap.found_is("{") && gap.at == 1 && gap.statement[0].kind == TokenKind::word;
+  return block ? instead_of_inner_block(gap.statement[0].text) : std::string();
 }
 
 /// `k = pm.Uniform("k", lower=1, upper=10)`, `vector[3] k`, a text in three quotes, `sin^2(y)`.
@@ -396,7 +353,7 @@ std::string of_other_language(Gap const& gap) {
   if (module && comma != nullptr && gap.next()->kind == TokenKind::text && comma->is(",") &&
       gap.closing(gap.at) < gap.statement.size())
     return fmt::format("a parameter has its prior in one statement: `parameter {} ~ {}`", gap.statement[0].text,
-                       distribution_of_module(gap, gap.at));
+                       call_of_module(gap, gap.at));
   constexpr std::array<std::string_view, 5> vectors{"vector", "array", "real", "row_vector", "int"};
   if (left->is("]") && gap.found_word() && words::contains(vectors, gap.statement[0].text) && gap.at > 3)
     return fmt::format("a vector is declared with its size: `parameter {0}({1}) ~ ...`, `state {0}({1})`", right->text,
@@ -465,6 +422,16 @@ std::string in_expression(Gap const& gap) {
 }
 
 }  // namespace
+
+std::string instead_of_inner_block(std::string_view word) {
+  constexpr std::array<std::string_view, 5> of_equations{"equations", "equation", "dynamics", "ode", "odes"};
+  if (words::contains(of_equations, word)) return "a model has no blocks inside: write the equations without `{` and `}`";
+  std::string_view const ours = words::translated(words::foreign_model_statements(), word);
+  if (!ours.empty()) word = ours;
+  if (word.ends_with('s')) word.remove_suffix(1);
+  if (!words::contains(words::model_statements, word)) return {};
+  return fmt::format("a model has no blocks inside: begin each of these lines with `{}`, and remove `{{` and `}}`", word);
+}
 
 std::string hint_in_model(Gap const& gap) {
   if (gap.statement.empty()) return {};

@@ -172,6 +172,8 @@ class LayoutPass {
             ? std::string_view(tokens_[i + 1].text.data(), tokens_[close - 1].text.data() + tokens_[close - 1].text.size())
             : std::string_view();
     Token const &before = tokens_[i - 1], &first = tokens_[line_];
+    if (i == line_ + 1 && !first.is("initial"))
+      if (std::string block = instead_of_inner_block(first.text); !block.empty()) return block;
     bool const declares =
         first.is("parameter") || first.is("state") || first.is("input") || first.is("measure") || first.is("time");
     if (declares && before.is("="))

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <optional>
@@ -130,6 +131,10 @@ class Scanner {
     std::size_t first = out_.tokens.size() - 1;
     while (first > 0 && !out_.tokens[first].newline_before) --first;
     std::string_view const word = out_.tokens[first].text;
+    constexpr std::array<std::string_view, 4> declarations{"parameter", "state", "input", "constant"};
+    bool const binds = std::any_of(out_.tokens.begin() + static_cast<std::ptrdiff_t>(first), out_.tokens.end(),
+                                   [](Token const& each) { return each.is("=") || each.is("~"); });
+    if (words::contains(declarations, word) && !binds) return false;  // `parameter m" mass"`
     return !words::contains(words::items, word) && !words::contains(words::data_statements, word);
   }
 
