@@ -20,7 +20,7 @@ namespace sysid::errors {
 // names, functions, units (E20)
 /// moving: the states and inputs among the known.
 Diagnostic unknown_name(ast::Name const& name, Names const& known, Names const& moving = {});
-/// `dy/dt` of a `y` that there is, whose derivative has this many primes.
+/// `dy/dt`, whose derivative has this many primes. name: `y`; declared: it is in this model.
 Diagnostic quotient_as_derivative(Span span, ast::Reference const& above, std::string const& name, int primes, bool declared);
 Diagnostic duplicate_name(ast::Name const& name, Span first);
 Diagnostic unknown_function(ast::Call const& call, Names const& known, bool is_quantity);
@@ -76,7 +76,6 @@ Diagnostic truncated_noise(ast::Call const& call);
 Diagnostic cannot_truncate(Span span, std::string const& distribution);
 Diagnostic prior_reads(Span span, std::string const& parameter, std::string const& what);
 Diagnostic prior_cycle(Span span, Names const& loop);
-/// logarithms: bounds of `log_uniform` that are below zero, as exponents are.
 /// help: how the call is written, empty where that is not known.
 Diagnostic bad_arguments(Span span, std::string const& distribution, std::string_view reason, std::string help);
 /// names: of the parameters that the argument reads.
@@ -183,10 +182,10 @@ Diagnostic input_not_bound(Span span, std::string const& input, Subject const& o
 Diagnostic no_channel_bound(Span span, Subject const& owner, std::string const& data, Names const& channels);
 /// unit: of its column; may be empty.
 Diagnostic unknown_input(Span span, std::string const& input, std::string const& unit, Subject const& owner, Names const& inputs);
+Diagnostic unknown_channel(Span span, std::string const& channel, Subject const& owner, Names const& channels);
 /// The same where the data have one column and the model another channel.
 Diagnostic channel_of_other_name(Span span, std::string const& channel, Subject const& owner, std::string const& own,
                                  std::pair<std::string, std::string> const& column_and_unit);
-Diagnostic unknown_channel(Span span, std::string const& channel, Subject const& owner, Names const& channels);
 /// rules: those under which the derivative exists.
 Diagnostic rate_under_zero_order(Span rule, Span use, std::string const& input, Names const& rules);
 Diagnostic unit_mismatch(Span span, Subject const& what, std::string const& column_unit, std::string const& declared_unit);
