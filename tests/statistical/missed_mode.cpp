@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/fit/higher_place.hpp"
+#include "app/search/higher_place.hpp"
 #include "core/numeric/random.hpp"
 #include "core/system/progress.hpp"
 #include "fits.hpp"

@@ -7,7 +7,7 @@
 
 #include "app/fit/fit_likelihood.hpp"
 #include "app/fit/fit_preparation.hpp"
-#include "app/fit/higher_place.hpp"
+#include "app/search/higher_place.hpp"
 #include "app/session/preparation.hpp"
 #include "app/session/session.hpp"
 #include "app/session/task_checkpoint.hpp"

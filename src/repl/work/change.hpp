@@ -12,8 +12,8 @@ namespace sysid::repl {
 /// state); what is listed under one word, as inputs or parts of a split, is replaced one by one.
 WorkItem with_statement(WorkItem block, std::string const& entry, Span span);
 
-/// A parameter that was declared in a unit, by a statement that another without one has replaced, also `let` with a bare number: its
-/// numbers mean others now.
+/// A parameter that was declared in a unit, by a statement that another without one has replaced, also `let` with a bare number:
+/// its numbers mean others now.
 struct LostUnit {
   std::string parameter, unit;
 };

@@ -1,5 +1,5 @@
 // The comparison with the modes, and the search that follows it.
-#include "app/fit/higher_place.hpp"
+#include "app/search/higher_place.hpp"
 
 #include <algorithm>
 #include <utility>
