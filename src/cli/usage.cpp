@@ -176,7 +176,7 @@ ExitCode misread(Messages const& messages, CLI::App const& app, CLI::ParseError 
   if (std::find(own.begin(), own.end(), word) != own.end()) {
     CLI::Option const* option = verb.get_option_no_throw(word);
     if (option == nullptr) option = app.get_option_no_throw(word);
-    bool const has_value = option != nullptr && option->get_type_size() > 0;
+    bool const has_value = option != nullptr && option->get_items_expected_max() > 0;
     messages.complain(
         fmt::format("`{}` stands before the command", word),
         fmt::format("options follow the command: `sysid {} FILE {}{}`", verb.get_name(), word, has_value ? " VALUE" : ""));

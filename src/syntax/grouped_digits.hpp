@@ -9,11 +9,11 @@
 
 namespace sysid {
 
-/// The digits of a whole number without a name, a sign or a unit, zeros in front kept; empty for all else. Told from the value and
+/// The digits of a whole number without a sign or a unit, zeros in front kept; empty for all else. Told from the value and
 /// the width: what could be `0.5`, `2.0` or `1e0` as well has none, and so `002` has none; three zeros are taken for digits.
 inline std::string whole_digits(ast::Argument const& argument) {
   auto const* number = std::get_if<ast::Number>(&argument.value.node);
-  if (argument.name || number == nullptr || number->unit || number->value != std::floor(number->value)) return {};
+  if (number == nullptr || number->unit || number->value != std::floor(number->value)) return {};
   std::size_t const width = number->span.end - number->span.begin;
   std::string const digits = fmt::format("{:.0f}", number->value);
   bool const zeros = number->value == 0 && width == 3;

@@ -147,7 +147,7 @@ void score_draws(FinishedFit& fit, Criteria& criteria) {
   criteria.in_time = fit.likelihood.model().dynamics != Dynamics::none;
   auto const width = static_cast<std::size_t>(criteria.draws);
   double const shared = share_of_fit * simulations(fit) / static_cast<double>(fit.data.size());
-  OwnDraws const own{std::min(criteria.draws, std::max(fewest_draws, static_cast<int>(std::min(shared, 1e6)))),
+  OwnDraws const own{std::min({criteria.draws, usual_draws, std::max(fewest_draws, static_cast<int>(std::min(shared, 1e6)))}),
                      walkers_within(shared)};
   DrawInfluence loo(width), block(width), future(width);
   double own_variance = 0;

@@ -160,6 +160,7 @@ class OtherReadings {
         if (experiments.empty() || (each.of_channel && has_one_tone(fit_, experiments, data))) continue;
         consider(std::move(experiments),
                  {FindingCode::column_used_twice,
+                  Severity::warning,
                   {each.one, each.other, block.name},
                   fmt::format("the columns `{}` and `{}` of {} exchanged", each.one, each.other, block.name),
                   "the columns may be exchanged",
@@ -205,6 +206,7 @@ class OtherReadings {
  private:
   struct Words {
     FindingCode code;
+    Severity severity;
     std::vector<std::string> names;
     std::string what, conclusion, cure;
   };
@@ -234,7 +236,7 @@ class OtherReadings {
     if (columns.empty()) return;
     std::vector<std::string> names = columns;
     names.insert(names.end(), blocks.begin(), blocks.end());
-    consider(std::move(experiments), {FindingCode::sign_reversed, std::move(names),
+    consider(std::move(experiments), {FindingCode::sign_reversed, Severity::warning, std::move(names),
                                       fmt::format("the sign of column {} of {} reversed", quoted(columns), listed(blocks)),
                                       "the sign may be wrong in the file or in the equations", std::move(cure)});
   }

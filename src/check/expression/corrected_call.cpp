@@ -99,7 +99,7 @@ std::string without_grouped_digits(ast::Call const& call, std::size_t arguments,
     ast::Argument const& each = call.arguments[i];
     std::string const digits = whole_digits(each);
     bool const adjoins = i > 0 && call.arguments[i - 1].span.end + 1 == each.span.begin;
-    bool const group = adjoins && continues_group(before, before_is_group, digits);
+    bool const group = adjoins && !each.name && continues_group(before, before_is_group, digits);
     if (group) {
       auto& number = std::get<ast::Number>(joined.arguments.back().value.node);
       number.value = 1000 * number.value + std::get<ast::Number>(each.value.node).value;

@@ -15,7 +15,7 @@ namespace {
 std::string decimal_comma(ast::Call const& call, ast::Argument const& last) {
   for (std::size_t i = 1; i < call.arguments.size() && &call.arguments[i - 1] != &last; ++i) {
     ast::Argument const &left = call.arguments[i - 1], &right = call.arguments[i];
-    std::string const whole = whole_digits(left), fraction = whole_digits(right);
+    std::string const whole = whole_digits(left), fraction = right.name ? std::string() : whole_digits(right);
     if (whole.empty() || fraction.empty() || left.span.end + 1 != right.span.begin) continue;
     std::string const decimal = fmt::format("write the number with a decimal point: `{}.{}`", whole, fraction);
     return continues_group(whole, false, fraction)
