@@ -108,6 +108,11 @@ Diagnostic dot_without_digits(Span number, std::string_view written, std::string
                fmt::format("write `{}` in place of `{}`", repaired, written));
 }
 
+Diagnostic second_dot(Span number, std::string_view written) {
+  return error("E1107", number, fmt::format("the number `{}` has a dot too many", written),
+               "a number has one dot, and an exponent is a whole number: `1.5e3`");
+}
+
 Diagnostic fortran_exponent(Span number, std::string_view digits, std::string_view exponent) {
   return error("E1129", number, fmt::format("the exponent of `{}{}` is written as in Fortran", digits, exponent),
                fmt::format("write `{0}e{1}`; a product is written `{0}*{2}`", digits, exponent.substr(1), exponent));
@@ -284,8 +289,9 @@ Diagnostic begins_with_sign(Token const& sign) {
       "write the first term in parentheses, or begin with another term; a sign at the start of a line continues the line before");
 }
 
-Diagnostic prime_apart(Span where) {
-  return error("E1121", where, "a prime must directly follow a name", "write the derivative of `y` as `y'`");
+Diagnostic prime_apart(Span where, std::string_view number) {
+  return error("E1121", where, "a prime must directly follow a name",
+               number.empty() ? "write the derivative of `y` as `y'`" : fmt::format("digits are not grouped: write `{}`", number));
 }
 
 Diagnostic nesting_too_deep(Span where, int most) {

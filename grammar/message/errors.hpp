@@ -33,6 +33,8 @@ Diagnostic no_operator_between(Token const& left, Token const& right, std::strin
 Diagnostic chained_comparison(Token const& first, Token const& second);
 /// E1107: `1.` and `.5`; `repaired` is how it is written.
 Diagnostic dot_without_digits(Span number, std::string_view written, std::string_view repaired);
+/// Also one behind an exponent.
+Diagnostic second_dot(Span number, std::string_view written);
 /// E1129: `1d-3`; digits: `1`, exponent: `d-3`.
 Diagnostic fortran_exponent(Span number, std::string_view digits, std::string_view exponent);
 /// E1108
@@ -83,7 +85,8 @@ Diagnostic reserved_word(Token const& word);
 /// E1120: a statement that begins with + or -.
 Diagnostic begins_with_sign(Token const& sign);
 /// E1121: `y '`.
-Diagnostic prime_apart(Span where);
+/// number: the one that primes group, `1'000`, as it is written here; empty: there is none.
+Diagnostic prime_apart(Span where, std::string_view number);
 /// E1122
 Diagnostic nesting_too_deep(Span where, int most);
 /// E1123

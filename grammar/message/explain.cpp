@@ -177,10 +177,26 @@ class Failure {
     return std::nullopt;
   }
 
+  /// `1'000'000` without its primes; empty for all else.
+  std::string grouped_by_primes() const {
+    if (previous() == nullptr || previous()->kind != TokenKind::number) return {};
+    std::string number(previous()->text);
+    std::size_t end = previous()->span.end;
+    for (std::size_t i = found_; i + 1 < tokens_.size() && tokens_[i].is("'") && tokens_[i].span.begin == end; i += 2) {
+      Token const& group = tokens_[i + 1];
+      if (group.kind != TokenKind::number || group.span.begin != end + 1 || group.text.substr(0, 3).find('.') != group.text.npos ||
+          group.text.size() < 3)
+        return {};
+      number += group.text;
+      end = group.span.end;
+    }
+    return end > previous()->span.end ? number : std::string();
+  }
+
   std::optional<Diagnostic> at_token() const {
     bool const value_before = previous() != nullptr && ends_value(*previous());
     bool const wants_name = wanted_ == wanted::name || wanted_ == wanted::column;
-    if (found().is("'")) return errors::prime_apart(found().span);
+    if (found().is("'")) return errors::prime_apart(found().span, grouped_by_primes());
     bool const keyword = first() != nullptr && words::contains(words::model_statements, first()->text);
     if (found().is("[") && previous() != nullptr && is_word(*previous()) && found_ == first_ + 1 && has("~") && !keyword)
       return errors::tilde_without_keyword(found().span);

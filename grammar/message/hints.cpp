@@ -346,7 +346,21 @@ std::string instead_of_product(Gap const& gap) {
   return {};
 }
 
+namespace {
+
+/// `20.5*[N s/m]`: the number with its unit.
+std::string unit_as_factor(Gap const& gap) {
+  bool const factor = gap.wanted == wanted::value && gap.found_is("[") && gap.before() != nullptr && gap.before()->is("*");
+  if (!factor || gap.before(2) == nullptr || gap.before(2)->kind != TokenKind::number) return {};
+  std::size_t const close = gap.closing(gap.at);
+  if (close >= gap.statement.size()) return {};
+  return fmt::format("a unit follows its number without `*`: write `{} {}`", gap.before(2)->text, gap.text(gap.at, close + 1));
+}
+
+}  // namespace
+
 std::string hint(Gap const& gap) {
+  if (std::string unit = unit_as_factor(gap); !unit.empty()) return unit;
   if (std::string here = hint_in_model(gap); !here.empty()) return here;
   if (std::string here = hint_in_block(gap); !here.empty()) return here;
   if (std::string options = options_without_with(gap); !options.empty()) return options;

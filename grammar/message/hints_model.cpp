@@ -252,7 +252,9 @@ std::string at_bracket(Gap const& gap) {
     return fmt::format("the size of a vector is written in parentheses: `{}({})`", declared_name(gap),
                        gap.text(gap.find("[") + 1, gap.at - 1));
   bool const other = is_task(gap) || words::contains(words::data_statements, gap.statement[0].text);
-  bool const value = gap.wanted == "')'" || (!keyword && gap.wanted == wanted::end_of_statement && equals < gap.at);
+  constexpr std::array<std::string_view, 5> operators{"+", "-", "*", "/", "^"};
+  bool const operand = close + 1 < gap.statement.size() && words::contains(operators, gap.statement[close + 1].text);
+  bool const value = gap.wanted == "')'" || (!keyword && (operand || (gap.wanted == wanted::end_of_statement && equals < gap.at)));
   if (value && !other && gap.before()->kind == TokenKind::word)
     return fmt::format("remove `{}`: `{}` has the unit that it is declared with", unit, gap.before()->text);
   return {};

@@ -190,6 +190,10 @@ class Scanner {
       mistake(errors::number_out_of_range(from(begin), number));
     if (peek() == '.' && peek(1) != '.') {
       ++at_;
+      if (words::is_digit(peek())) {
+        digits();
+        return mistake(errors::second_dot(from(begin), text_.substr(begin, at_ - begin)));
+      }
       mistake(errors::dot_without_digits(from(begin), text_.substr(begin, at_ - begin), with_digits_behind(number)));
     }
   }
