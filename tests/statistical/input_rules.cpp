@@ -212,8 +212,9 @@ TEST_CASE("an input in continuous time that is whole samples late is named, with
   for (int const late : {1, 3, 5}) {
     Said const said = said_of_drive(7, 8, late, "zero_order");
     CAPTURE(said.message);
-    CHECK(said.message.find(fmt::format("shifted earlier by {} sample{} ({:.4g} s)", late, late == 1 ? "" : "s", 0.05 * late)) !=
-          std::string::npos);
+    CHECK(said.message.find(fmt::format("shifted earlier by {}{} sample{} ({:.4g} s)", late == 5 ? "at least " : "", late,
+                                        late == 1 ? "" : "s", 0.05 * late)) != std::string::npos);
+    CHECK((said.help.find("larger shifts were not tried") != std::string::npos) == (late == 5));
     CHECK(said.help.find(fmt::format("move it up by {} row", late)) != std::string::npos);
   }
   CHECK(said_of_drive(7, 8, -2, "zero_order").message.find("shifted later by 2 samples") != std::string::npos);

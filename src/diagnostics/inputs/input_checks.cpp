@@ -28,7 +28,6 @@ constexpr double gain_at_least = 20;
 constexpr double rule_gain_at_least = 10;
 constexpr double as_good = 3;                             // nats: of two rules the simpler, of a rule and a shift the rule
 constexpr double noticeable = 1;                          // sds, of a parameter's move
-constexpr int most_samples = 5;                           // of a shift in whole samples
 constexpr int refit_rounds = 12, refit_evaluations = 60;  // by residuals; by gradients
 constexpr std::uint64_t refit_stream = 2;
 

@@ -48,6 +48,12 @@ std::string lag_advice(InputOf const& input, int later) {
   return fmt::format("{} if the system has this delay; otherwise correct the delay of the recording of {}", read, name);
 }
 
+std::string_view at_least(int samples) { return samples >= most_samples ? "at least " : ""; }
+
+std::string after_the_largest(int samples) {
+  return samples >= most_samples ? "; larger shifts were not tried: correct this one and run again" : "";
+}
+
 std::string better_shifted(InputOf const& input, bool later, std::string const& by, double gain, int scored) {
   return fmt::format("the fit is much better with input {}{} shifted {} by {} (log density higher by {:.0f} for {} samples)",
                      name_of(input), input.on, later ? "later" : "earlier", by, gain, scored);
@@ -86,8 +92,9 @@ Finding other_timing(InputOf const& input, double shift, double gain, int scored
             "check the delay of the recording: no other rule between input samples explains the record as well"};
   int const count = static_cast<int>(std::fabs(shift));
   std::vector<double> const& time = input.experiment.time;
-  std::string const by =
-      unequal_step(time) == 0 ? fmt::format("{} ({:.4g} s)", of_samples(count), count * mean_step(time)) : of_samples(count);
+  std::string const by = unequal_step(time) == 0
+                             ? fmt::format("{}{} ({:.4g} s)", at_least(count), of_samples(count), count * mean_step(time))
+                             : fmt::format("{}{}", at_least(count), of_samples(count));
   std::string const help =
       later
           ? fmt::format(
@@ -96,15 +103,17 @@ Finding other_timing(InputOf const& input, double shift, double gain, int scored
                 by, move_column("the column of " + name_of(input), true, count))
           : fmt::format("the column of {} is delayed by {} relative to the response: {}, or correct the delay of the recording",
                         name_of(input), by, move_column("it", false, count));
-  return {FindingCode::input_timing, Severity::warning, names, better_shifted(input, later, by, gain, scored), help};
+  return {FindingCode::input_timing, Severity::warning, names, better_shifted(input, later, by, gain, scored),
+          help + after_the_largest(count)};
 }
 
 Finding other_lag(InputOf const& input, int later, double gain, int scored) {
-  return {FindingCode::input_timing,
-          Severity::warning,
-          {name_of(input), input.experiment.name},
-          better_shifted(input, later > 0, of_samples(std::abs(later)), gain, scored),
-          lag_advice(input, later)};
+  return {
+      FindingCode::input_timing,
+      Severity::warning,
+      {name_of(input), input.experiment.name},
+      better_shifted(input, later > 0, fmt::format("{}{}", at_least(std::abs(later)), of_samples(std::abs(later))), gain, scored),
+      lag_advice(input, later) + after_the_largest(std::abs(later))};
 }
 
 }  // namespace sysid

@@ -21,6 +21,8 @@ struct InputOf {
 Finding other_rule(InputOf const& input, InputRule better, double gain, int scored);
 /// `linear` on a smooth input, of which `cubic` moves a parameter by so many sds.
 Finding smooth_input(InputOf const& input, std::string const& parameter, double sds);
+/// Of a shift in whole samples; of more nothing is known.
+inline constexpr int most_samples = 5;
 /// shift: samples later, of which half ones are possible; in continuous time.
 Finding other_timing(InputOf const& input, double shift, double gain, int scored);
 /// The same in discrete time, where the equation states lags.
