@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/text/words.hpp"
 #include "grammar/message/hints.hpp"
 #include "syntax/words.hpp"
 
@@ -41,9 +42,8 @@ constexpr ModuleRow rows[] = {
 };
 
 ModuleRow const* row_of(std::string_view name) {
-  std::string small;
-  for (char const c : name)
-    if (c != '_') small += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::string small = in_small_letters(std::string(name));
+  std::erase(small, '_');
   auto const* const row =
       std::find_if(std::begin(rows), std::end(rows), [&](ModuleRow const& each) { return each.theirs == small; });
   return row == std::end(rows) ? nullptr : row;

@@ -253,7 +253,7 @@ class Discover {
     add_regression_findings(dictionary_, found, discovery.equations, validation ? &*validation : nullptr, report.findings);
     bool const simulated = validation && validation->report.structures.front().failure.empty();
     for (Finding& each : interpolation_findings(interpolated_, simulated)) report.findings.push_back(std::move(each));
-    for (Finding& each : filling_findings(filled_)) report.findings.push_back(std::move(each));
+    for (Finding& each : filling_findings(filled_, simulated)) report.findings.push_back(std::move(each));
     if (dictionary_.numbers.discrete && !structures.empty()) add_forecasts(found, discovery, report.findings);
     if (validation) {
       temper_by_simulation(validation->report, report.findings);

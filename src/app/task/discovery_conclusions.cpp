@@ -73,16 +73,16 @@ Findings interpolation_findings(std::vector<std::string> const& records, bool si
   return findings;
 }
 
-Findings filling_findings(std::vector<std::string> const& records) {
+Findings filling_findings(std::vector<std::string> const& records, bool simulated) {
   Findings findings;
   for (std::string const& name : records)
     findings.push_back({FindingCode::windows_missing,
                         Severity::note,
                         {name},
                         fmt::format("missing samples of `{}` would leave too few windows: the regression uses values that are "
-                                    "interpolated from their neighbours, the simulation only what was measured",
-                                    name),
-                        ""});
+                                    "interpolated from their neighbours{}",
+                                    name, simulated ? ", the simulation only what was measured" : ""),
+                        simulated ? "" : "take the coefficients and sds as approximate"});
   return findings;
 }
 

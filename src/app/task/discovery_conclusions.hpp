@@ -21,7 +21,7 @@ void add_regression_findings(CheckedDictionary const& dictionary, regression::Di
 Findings interpolation_findings(std::vector<std::string> const& records, bool simulated);
 
 /// Records whose missing samples were filled in, by name.
-Findings filling_findings(std::vector<std::string> const& records);
+Findings filling_findings(std::vector<std::string> const& records, bool simulated);
 
 /// Parameters inside terms that the record puts where their prior is not: the fit is by the likelihood alone.
 void add_prior_findings(CheckedDictionary const& dictionary, DiscoveryReport const& discovery, Findings& findings);
