@@ -9,22 +9,13 @@
 
 #include "check/units/changed_power.hpp"
 #include "check/units/product.hpp"
+#include "check/units/term_shape.hpp"
 #include "check/units/unit_errors.hpp"
 #include "syntax/unparse.hpp"
 #include "syntax/walk.hpp"
 
 namespace sysid {
 namespace {
-
-// A factor of a product that is a number without a unit; null when there is none.
-ast::Expression const* bare_factor(ast::Expression const& tree) {
-  if (auto const* number = std::get_if<ast::Number>(&tree.node)) return number->unit ? nullptr : &tree;
-  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return bare_factor(*(*unary)->operand);
-  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
-  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return nullptr;
-  ast::Expression const* left = bare_factor(*(*binary)->left);
-  return left != nullptr || (*binary)->symbol == "/" ? left : bare_factor(*(*binary)->right);
-}
 
 // A factor of a product that is a name with primes or without; null when there is none.
 ast::Reference const* named_factor(ast::Expression const& tree, std::vector<DeclaredUnit> const& declared) {
@@ -50,12 +41,6 @@ Unit plain(Unit const& unit) {
   return result;
 }
 
-std::vector<std::string> names_in(ast::Expression const& tree) {
-  std::vector<std::string> names;
-  each_reference(tree, [&](ast::Reference const& reference) { names.push_back(reference.name.text); });
-  return names;
-}
-
 // A declared unit times a factor, in the names that it is written with where they have one for it.
 Unit changed(Unit const& unit, Dimension const& missing) {
   Unit factor;
@@ -63,14 +48,6 @@ Unit changed(Unit const& unit, Dimension const& missing) {
   Unit result = multiply(plain(unit), factor);
   result.text = with_changed_power(unit.text, missing);
   return result;
-}
-
-// Whether it is what somebody measured, and no factor of a formula such as 2, 0.5 or 3/4.
-bool is_measured_number(ast::Expression const& tree) {
-  auto const* number = std::get_if<ast::Number>(&tree.node);
-  auto const fraction = number == nullptr ? std::nullopt : to_rational(number->value);
-  constexpr int of_formulas = 4;
-  return number != nullptr && (!fraction || fraction->denominator > of_formulas);
 }
 
 // The one declared name in an expression that does not move and is no pure number: what its unit depends on, beside the states.
@@ -85,47 +62,12 @@ std::optional<DeclaredUnit> only_coefficient(ast::Expression const& tree, std::v
   return found;
 }
 
-// Of an expression whose names all stand in its only quotient: that one as it is written, and turned over: `k/m` and `m/k` of
-// `2*pi*sqrt(k/m)`.
-std::optional<std::pair<std::string, std::string>> turned_over(ast::Expression const& tree) {
-  ast::Binary const* only = nullptr;
-  int quotients = 0;
-  each_expression(tree, [&](ast::Expression const& part) {
-    auto const* binary = std::get_if<ast::Box<ast::Binary>>(&part.node);
-    if (binary == nullptr || (*binary)->symbol != "/") return;
-    ++quotients;
-    only = &**binary;
-  });
-  if (quotients != 1) return std::nullopt;
-  std::vector<std::string> outside = names_in(tree);
-  auto const simple = [](ast::Expression const& side) { return std::holds_alternative<ast::Reference>(side.node); };
-  if (!simple(*only->left) || !simple(*only->right)) return std::nullopt;
-  for (std::string const& name : {names_in(*only->left).front(), names_in(*only->right).front(), std::string("pi")})
-    std::erase(outside, name);
-  if (!outside.empty()) return std::nullopt;
-  std::string const above = unparse(*only->left), below = unparse(*only->right);
-  return std::pair(above + "/" + below, below + "/" + above);
-}
-
 // "h" of "1/h" and "1/h" of "h"; empty for all else.
 std::string inverse_text(std::string const& unit) {
   bool const below = unit.starts_with("1/");
   std::string const name = below ? unit.substr(2) : unit;
   if (!unit_atom(name)) return {};
   return below ? name : "1/" + name;
-}
-
-// How often a name is a factor of a product, -1 below the fraction line; nothing where it stands elsewhere as well, as in a sum.
-std::optional<int> factor_power(ast::Expression const& tree, std::string const& name) {
-  std::vector<std::string> const used = names_in(tree);
-  if (std::find(used.begin(), used.end(), name) == used.end()) return 0;
-  if (std::holds_alternative<ast::Reference>(tree.node)) return 1;
-  if (auto const* unary = std::get_if<ast::Box<ast::Unary>>(&tree.node)) return factor_power(*(*unary)->operand, name);
-  auto const* binary = std::get_if<ast::Box<ast::Binary>>(&tree.node);
-  if (binary == nullptr || ((*binary)->symbol != "*" && (*binary)->symbol != "/")) return std::nullopt;
-  auto const left = factor_power(*(*binary)->left, name), right = factor_power(*(*binary)->right, name);
-  if (!left || !right) return std::nullopt;
-  return (*binary)->symbol == "*" ? *left + *right : *left - *right;
 }
 
 }  // namespace
