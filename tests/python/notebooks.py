@@ -58,7 +58,11 @@ def shown(cell):
     found = []
     for output in cell.get("outputs", []):
         if output.output_type == "stream":
-            found.append((output.name, output.text))
+            # A kernel may send what is printed in any number of pieces.
+            if found and isinstance(found[-1], tuple) and found[-1][0] == output.name:
+                found[-1] = (output.name, found[-1][1] + output.text)
+            else:
+                found.append((output.name, output.text))
         elif output.output_type == "error":
             found.append(("error", output.traceback))
         else:
